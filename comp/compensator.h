@@ -9,13 +9,13 @@
 
 namespace vernier {
 
-/// Motion of one axis in its own count (nm, or 2^-32 turn).
+/// Motion of one axis in its count (nm, or 2^-32 turn).
 struct AxisInput {
   AxisPosition position;
   AxisSpeed velocity;
   AxisAcceleration acceleration;
   AxisTravel since{INT64_MAX};  // travel since the last reversal; a long way where unknown
-  std::int8_t sense = 0;        // -1, 0, +1: sense of the last motion
+  std::int8_t sense = 0;        // -1, 0, +1: direction of the last motion
 };
 
 /// All that the error equation may depend on at one tick. Indices as in the image's axes and inputs.
@@ -85,8 +85,8 @@ struct Program {
   std::uint32_t input_count = 0;
 };
 
-/// Actual minus nominal, seen along an axis; and what is added to the command of the axis. Axis counts, two
-/// types so that nobody mixes the signs.
+/// Deviation: actual minus nominal along an axis. Correction: the value that is added to the command of the
+/// axis. Axis counts. Two types prevent a mix of the signs.
 struct Deviation {
   std::int32_t counts = 0;
 };
@@ -100,7 +100,7 @@ constexpr Correction correction_for(Deviation deviation) noexcept {
 /// The correction of a linear axis as a length.
 constexpr LengthNm length_of(Correction correction) { return LengthNm(correction.counts); }
 
-/// Limits in force in this tick: reported, never silent, nothing latches.
+/// Limits in force in this tick. They are always reported and never latched.
 enum CycleFlag : std::uint32_t {
   kBeyondRange = 1u << 0,  // a channel outside its declared range: its edge was held
   kSaturated = 1u << 1,    // a correction at its limit

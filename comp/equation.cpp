@@ -21,7 +21,7 @@ Word run_dot(const Instruction& step, const ProductTerm* terms, const std::int32
   return word_of(round_shift(sum, step.shift));
 }
 
-// The verifier has seen every operation code: the switch below needs no check of its own.
+// The verifier has tested every operation code: the switch below needs no check.
 inline void never_reached() noexcept {
 #if defined(__GNUC__)
   __builtin_unreachable();

@@ -62,9 +62,8 @@ static_assert(offsetof(Instruction, op) == 0 && offsetof(Instruction, shift) == 
               offsetof(Instruction, c) == 6 && offsetof(Instruction, k) == 8 &&
               offsetof(Instruction, l) == 12);
 
-/// The error equation of a machine: registers are first the constants, then the channels, then the
-/// results in order (static single assignment: an instruction reads only registers before its own).
-/// Non-owning.
+/// The error equation of a machine. The registers are first the constants, then the channels, then the
+/// results in order (static single assignment: an instruction reads only earlier registers). Non-owning.
 struct Equation {
   View<std::int32_t> constants;
   std::uint32_t channel_count = 0;

@@ -26,7 +26,7 @@ static_assert(offsetof(Segment, start) == 0 && offsetof(Segment, length) == 4 &&
               offsetof(Segment, reciprocal) == 8 && offsetof(Segment, shift) == 12);
 constexpr std::uint32_t kSegmentWords = 4;
 
-/// A periodic axis: positions are brought into [first, first + period) before the look-up.
+/// A periodic axis: positions are brought into [first, first + period) before the interpolation.
 struct Wrap {
   std::int32_t first;
   std::int32_t period;      // > 0
@@ -37,8 +37,8 @@ static_assert(sizeof(Wrap) == 16);
 static_assert(offsetof(Wrap, first) == 0 && offsetof(Wrap, period) == 4 && offsetof(Wrap, reciprocal) == 8 &&
               offsetof(Wrap, shift) == 12);
 
-/// Errors of one axis as functions of its position: polynomial pieces between stations, all columns of a
-/// piece beside each other, so that a look-up finds everything in one or two cache lines. Non-owning.
+/// Errors of one axis as functions of its position: polynomial pieces between stations. All columns of a
+/// piece are beside each other; an interpolation reads one or two cache lines. Non-owning.
 ///
 /// Record of a piece: the four words of its Segment, then for each column its coefficients in the column's
 /// format, in powers of the fraction: two where degree is 1 (value at the near station, rise to the far one),

@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// An acceleration that bounds nothing: every way that there is, is gone in one tick.
+/// An acceleration that limits nothing: any distance is covered in one tick.
 constexpr std::int64_t kAnyAcceleration = std::int64_t{1} << 40;
 
 /// Most that a correction may move its axis, in counts a tick, and change that by, in counts a tick each

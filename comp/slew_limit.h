@@ -21,7 +21,7 @@ class SlewLimit {
   constexpr std::int32_t value() const noexcept { return value_; }
   /// True where the last step could not reach its target.
   constexpr bool limiting() const noexcept { return moving_; }
-  /// Goes on from another value than its own.
+  /// Continues from another value than the present one.
   constexpr void start_from(std::int32_t value) noexcept { value_ = value, moving_ = false; }
   constexpr void reset() noexcept { value_ = 0, moving_ = false; }
 

@@ -292,7 +292,7 @@ std::uint64_t look_up_work(const ErrorTable& table) noexcept {
   return search + std::uint64_t{table.columns} * (table.degree == 3 ? 6 : 2);
 }
 
-// Lines that one look-up may find in no cache.
+// Largest number of cache lines that one interpolation may read from memory.
 std::uint64_t look_up_lines(const ErrorTable& table) noexcept {
   constexpr std::uint64_t kLine = 64;  // bytes
   const std::uint64_t record = std::uint64_t{4} * table.stride();

@@ -5,18 +5,18 @@
 
 namespace vernier {
 
-/// What a controller says about one axis: its own counts (1 nm, or 2^-32 turn), per s, per s^2.
+/// State of one axis from its controller: counts of the axis (1 nm, or 2^-32 turn), per s, per s^2.
 struct AxisReading {
   AxisPosition position;
   AxisSpeed velocity;
   AxisAcceleration acceleration;
   AxisTravel since{INT64_MAX};  // travel since the last reversal; a long way where unknown
-  std::int8_t sense = 0;        // -1, 0, +1: sense of the last motion
+  std::int8_t sense = 0;        // -1, 0, +1: direction of the last motion
   bool referenced = true;       // the controller knows where its zero is
   bool restarted = false;  // counts from another zero than the reading before: the difference is no travel
 };
 
-/// What a controller says about the path as a whole.
+/// State of the path from its controller.
 struct PathReading {
   FeedNmPerMin feed;
   bool tells_feed = false;  // else the firmware takes the speed of the linear axes together

@@ -18,11 +18,11 @@ struct Board {
   InputReader& inputs;
   CorrectionWriter& corrections;
   ProbeLine* probe = nullptr;
-  AxisReader* actual = nullptr;    // where the axes stand, for touches, where `axes` says where they are sent
-  TickSync* sync = nullptr;        // starts the ticks; null: the clock does
-  DigitalInput* enable = nullptr;  // off: no correction is let in
+  AxisReader* actual = nullptr;      // actual positions, for touches, if `axes` gives commanded positions
+  TickSync* sync = nullptr;          // starts the ticks; null: the clock does
+  DigitalInput* enable = nullptr;    // off: no correction is let in
   DigitalOutput* healthy = nullptr;  // on: devices answer and no fault is latched
-  IdentityKey* identity = nullptr;   // proves who the board is; null: the board has no key of its own
+  IdentityKey* identity = nullptr;   // proves the identity of the board; null: the board has no key
 };
 
 }  // namespace vernier

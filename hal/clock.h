@@ -13,7 +13,7 @@ class Clock {
   virtual ~Clock() = default;
   /// realtime.
   virtual InstantNs now() noexcept = 0;
-  /// Returns when now() >= due, at once if that is past. kRefused: the timer failed. realtime.
+  /// Returns when now() >= due, immediately if that is past. kRefused: the timer failed. realtime.
   virtual HalFault sleep_until(InstantNs due) noexcept = 0;
 };
 

@@ -19,8 +19,7 @@ class CommandHandler {
   virtual std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) = 0;
   /// What later() is to be asked with, right after answer() said kLater. setup.
   virtual std::uint32_t ticket() const { return 0; }
-  /// The reply that was to come later: its bytes, kLater while it is worked on, 0 where there is none any
-  /// more. setup.
+  /// The deferred reply: its bytes, kLater while it is being made, 0 if no reply is pending. setup.
   virtual std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) {
     return static_cast<void>(ticket), static_cast<void>(reply), 0;
   }

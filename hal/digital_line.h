@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// A line that is on or off, polarity already undone: what the machine's controller says.
+/// A line that is on or off, after its polarity is applied, as the machine controller sets it.
 class DigitalInput {
  public:
   virtual ~DigitalInput() = default;

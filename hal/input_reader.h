@@ -11,7 +11,8 @@ class InputReader {
   virtual ~InputReader() = default;
   /// A tick of the firmware begins; each input is read once until the next call. Never waits. realtime.
   virtual void begin_tick() noexcept {}
-  /// Newest value, 1e-6 of the unit that the image declares. kNoReading: the sensor is silent. realtime.
+  /// Newest value, 1e-6 of the unit that the image declares. kNoReading: the sensor gives no reading.
+  /// realtime.
   virtual HalFault read_input(std::uint32_t input, InputMicro& value) noexcept = 0;
 };
 

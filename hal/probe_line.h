@@ -11,12 +11,12 @@ struct ProbeEdge {
   bool made = false;  // the probe touched; false: it let go
 };
 
-/// The line over which a touch probe says that it touched.
+/// The line on which a touch probe reports a touch.
 class ProbeLine {
  public:
   virtual ~ProbeLine() = default;
-  /// Oldest edge that has not been read yet. kNoReading: none is waiting. kRefused: edges were lost since the
-  /// last call; the next call goes on with what is left. Never waits. realtime.
+  /// Oldest edge that has not been read yet. kNoReading: no edge is waiting. kRefused: edges were lost since
+  /// the last call; the next call continues with the remaining edges. Never waits. realtime.
   virtual HalFault read_edge(ProbeEdge& edge) noexcept = 0;
   /// How far `at` may be from the edge; 0 where the device does not know. setup.
   virtual InstantNs resolution() const noexcept = 0;

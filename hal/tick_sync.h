@@ -9,8 +9,8 @@ namespace vernier {
 class TickSync {
  public:
   virtual ~TickSync() = default;
-  /// Waits for the next sign. kNoReading: none came until `latest`; kRefused: the device is broken, at once.
-  /// Several that came since the last call count as one. realtime.
+  /// Waits for the next sync signal. kNoReading: no signal came until `latest`; kRefused: the device is
+  /// broken, returned immediately. Several signals since the last call count as one. realtime.
   virtual HalFault wait_for_sync(InstantNs latest) noexcept = 0;
 };
 

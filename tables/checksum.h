@@ -8,7 +8,8 @@ namespace vernier {
 /// setup.
 std::uint32_t crc32c(const std::uint8_t* bytes, std::uint32_t size) noexcept;
 
-/// FNV-1a, 64 bit; `seed` chains several stretches. Tells versions apart, protects against nothing. setup.
+/// FNV-1a, 64 bit; `seed` chains several stretches. Distinguishes versions; gives no protection against
+/// manipulation. setup.
 constexpr std::uint64_t kFnvSeed = 0xcbf29ce484222325u;
 constexpr std::uint64_t fnv1a(const std::uint8_t* bytes, std::uint32_t size,
                               std::uint64_t seed = kFnvSeed) noexcept {

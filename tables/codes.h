@@ -2,8 +2,7 @@
 #pragma once
 #include <cstdint>
 
-/// What a board says of itself, by number: the codes of link messages and records, and their words for
-/// people.
+/// The state of a board by number: the codes of link messages and records, and their words for people.
 namespace vernier {
 
 /// Where the firmware stands. Correction is zero in Boot, Checking, Faulted and, until told to activate,
@@ -28,10 +27,10 @@ const char* name_of(Mode mode) noexcept;
 /// Why the correction was taken out. One enumerator per cause; the first one latches.
 enum class Fault : std::uint8_t {
   kNone = 0,
-  kPositionMissing = 1,   // an axis was silent for longer than tolerated
+  kPositionMissing = 1,   // an axis gave no reading for longer than tolerated
   kPositionFrozen = 2,    // an axis claims speed and does not move
   kPositionJump = 3,      // an axis moved further in a tick than it can
-  kInputMissing = 4,      // a sensor was silent for longer than tolerated
+  kInputMissing = 4,      // a sensor gave no reading for longer than tolerated
   kWriteFailed = 5,       // the controller refused a correction
   kOverrun = 6,           // too many ticks in a row ended after the next was due
   kClock = 7,             // the timer failed, or time jumped

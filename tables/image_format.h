@@ -57,7 +57,7 @@ enum class SectionType : std::uint32_t {
   kRecords = 8,       // int32: the records of all tables one after the other (comp/error_table.h), no gaps
   kWraps = 9,         // Wrap
   kOutputs = 10,      // Output
-  // The shares of the effects (comp/shares.h): an equation of its own.
+  // The shares of the effects (comp/shares.h): a separate equation.
   kShareConstants = 11,     // int32
   kShareSources = 12,       // uint16: registers of the tick
   kShareInstructions = 13,  // Instruction
@@ -79,7 +79,7 @@ static_assert(offsetof(SectionEntry, type) == 0 && offsetof(SectionEntry, offset
 
 /// Shape of a table; its records are pieces * (4 + columns * (degree + 1)) words of kRecords: of each piece
 /// its Segment (start, length, reciprocal, shift), then the coefficients of column after column. Six linear
-/// columns make records of 64 bytes: a look-up touches two cache lines at most.
+/// columns make records of 64 bytes: an interpolation reads two cache lines at most.
 struct TableRecord {
   std::uint32_t pieces;
   std::uint16_t columns;

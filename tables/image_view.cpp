@@ -106,7 +106,7 @@ bool same_text(const char* a, const char* b, std::uint32_t size) {
   return true;
 }
 
-/// Does a name stand in two records? More records than a board has room for are the verifier's to refuse.
+/// True if a name is in two records. The verifier refuses more records than a board has room for.
 template <class Record>
 bool named_twice(View<Record> records, std::uint32_t most) {
   if (records.size > most) return false;

@@ -11,7 +11,7 @@ namespace vernier {
 enum class ImageFault : std::uint8_t {
   kNone = 0,
   kMisaligned = 1,       // the buffer does not start on a multiple of 8
-  kTruncated = 2,        // shorter than a header, or than the header says
+  kTruncated = 2,        // shorter than a header, or than the length in the header
   kMagic = 3,            // no Vernier image
   kFormatVersion = 4,    // another format version
   kHeader = 5,           // header size, image size, section count, tick or reserved words wrong

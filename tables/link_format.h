@@ -30,7 +30,7 @@ enum class LinkOp : std::uint8_t {
   kConfirm = 10,  // -> nothing
   kRevert = 11,   // -> nothing
   kRead = 12,     // u32 offset, u8 bytes -> bytes of the confirmed upload
-  kCommand = 13,  // u8 Command -> nothing: it is taken by the next tick, and counted where it does not fit
+  kCommand = 13,  // u8 Command -> empty reply: the next tick takes it, or counts it if it is not possible
   kWeight = 14,   // u8 axis, u32 weight 0..65536 -> nothing
   kShares = 15,   // u16 first -> u16 shares in all, u32 programs taken so far, LinkShare each, as many as fit
   kShareName = 16,  // u16 share, u32 programs -> char[64]; kBadValue where another program runs by now
@@ -223,8 +223,7 @@ static_assert(kReplyHeaderBytes + 10 + sizeof(LinkTick) + kMaxAxes * sizeof(Link
 /// Register map of the Modbus server: big-endian registers of 16 bits, bytes packed high byte first.
 /// Addresses count from zero.
 ///  - Mailbox: a request is written (function 16) to the holding registers from kMailbox: its length in
-///  bytes, then
-///    the bytes. The reply stands in the input registers from kMailbox, likewise.
+///    bytes, then the bytes. The reply is in the input registers from kMailbox, likewise.
 ///  - Live state for any Modbus master: input registers from 0, LiveRegister.
 ///  - Command: holding register 0 takes a Command (function 6).
 constexpr int kMailboxRegister = 256;

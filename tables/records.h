@@ -5,7 +5,7 @@
 
 #include "comp/shares.h"
 
-/// What the tick tells the rest of the board, and the board its tools (tables/link_format.h).
+/// Data from the tick to the rest of the board, and from the board to its tools (tables/link_format.h).
 namespace vernier {
 
 /// A tick as others see it. Axes and inputs in the board's order, in their counts.

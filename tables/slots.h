@@ -71,7 +71,7 @@ class Slots {
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }
   std::uint8_t trial() const noexcept { return now_.trial; }
-  /// Signing time of the confirmed image; 0 where there is none.
+  /// Signing time of the confirmed image; 0 without a confirmed image.
   std::uint64_t issued() const noexcept { return now_.issued; }
   std::uint64_t trial_issued() const noexcept { return now_.trial_issued; }
   /// What an upload has to be above, and at least: the highest that were ever tried, kept or not.
@@ -84,7 +84,7 @@ class Slots {
   SlotChange start_trial(std::uint64_t issued, std::uint32_t security) const noexcept;
   /// The image on trial is kept. Only while one is on trial. setup.
   SlotChange confirm() const noexcept;
-  /// The image on trial is given up. setup.
+  /// Reverts the image on trial. setup.
   SlotChange revert() const noexcept;
   /// The change is on the medium. setup.
   void stored(const SlotChange& change) noexcept;

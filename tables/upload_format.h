@@ -69,7 +69,7 @@ constexpr std::uint8_t kRequestMagic[8] = {'V', 'E', 'R', 'N', 'C', 'M', 'D', '1
 
 constexpr std::uint32_t kPublicKeyBytes = 32;
 
-/// What a board signs with its own key to prove who it is: Ed25519ph of these 80 bytes.
+/// The data that a board signs with its key to prove its identity: Ed25519ph of these 80 bytes.
 struct IdentityHead {
   std::uint8_t magic[8];         // kIdentityMagic
   std::uint8_t asked_nonce[32];  // of whoever asks, new with each question

@@ -34,8 +34,8 @@ bool TouchFilter::edge(InstantNs at, bool made, Touch& touch) noexcept {
   } else if (state_ == State::kClosed) {
     state_ = State::kOpening, since_ = at;
   } else {
-    // It opened and had not closed. A contact that settled before this edge cannot be concluded in the same
-    // call, since then the line was closed.
+    // The contact opened and had not closed. A contact that settled before this edge cannot be concluded in
+    // the same call, because the line was closed afterwards.
     ++counts_.missing;
     touch = {at, TouchKind::kMissed, 0};
     concluded = true;

@@ -28,7 +28,7 @@ struct TouchCounts {
   std::uint32_t missing = 0;  // touches or releases that were lost
 };
 
-/// Makes touches of edges: the first edge of a contact counts, bounces until it has settled do not, and an
+/// Converts edges to touches. The first edge of a contact counts, bounces until it has settled do not, and an
 /// edge that does not last is a spike. Bounded, no heap.
 class TouchFilter {
  public:
@@ -38,7 +38,8 @@ class TouchFilter {
   /// An edge; not earlier than the one before. Returns true with `touch` where it ended one that was
   /// settling. realtime.
   bool edge(InstantNs at, bool made, Touch& touch) noexcept;
-  /// Time has passed without an edge: true with `touch` where the last contact has settled by then. realtime.
+  /// Called as time passes without an edge: true with `touch` if the last contact has settled by then.
+  /// realtime.
   bool wait(InstantNs now, Touch& touch) noexcept;
 
   const TouchCounts& counts() const noexcept { return counts_; }

@@ -24,7 +24,7 @@ std::int64_t times(std::int64_t value, Factor factor) noexcept {
   return round_shift(high + low, factor.shift - 31);
 }
 
-// 1 / (4 sin^2(t/2)) - 1 / t^2 with kBendBits: its series in t^2; what is left out is below 2^-20 for t <=
+// 1 / (4 sin^2(t/2)) - 1 / t^2 with kBendBits: its series in t^2; the omitted terms are below 2^-20 for t <=
 // pi/2.
 std::int64_t bend_of(Scaled t) noexcept {
   constexpr std::uint64_t kDivisors[] = {12, 240, 6048, 172800, 5322240};

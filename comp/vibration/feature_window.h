@@ -8,8 +8,8 @@
 
 namespace vernier {
 
-/// What one axis of an accelerometer tells over a window of samples x, m their mean (C. Walker, PhD thesis,
-/// University of Strathclyde 2026, section 6.2.1; the last three as the code of its appendix 16.8 has them).
+/// Features of one axis of an accelerometer over a window of samples x, m their mean (C. Walker, PhD thesis,
+/// University of Strathclyde 2026, section 6.2.1; the last three as in the code of its appendix 16.8).
 enum class Feature : std::uint8_t {
   kMav,        // sum |x| / n
   kVar,        // sum (x - m)^2 / (n - 1)

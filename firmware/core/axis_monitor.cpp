@@ -34,7 +34,7 @@ std::int64_t AxisMonitor::travel_to(AxisPosition position) const noexcept {
 
 bool AxisMonitor::on_time() const noexcept { return elapsed_.count <= kOneTick.count + kJitter; }
 
-// A controller that sends by its own clock may have sent once more in a longer time. Below 2^50 * 2^13.
+// A controller with an independent clock may have sent one reading more in a longer time. Below 2^50 * 2^13.
 std::int64_t AxisMonitor::most_travel() const noexcept {
   if (missing_ == 0 && on_time()) return limits_.step;
   const std::int64_t own = (std::int64_t{missing_} + 1) * kOneTick.count;

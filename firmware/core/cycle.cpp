@@ -67,14 +67,15 @@ Fault Cycle::read_axes(TicksQ8 elapsed) noexcept {
     const bool present = board_.axes.read_axis(axis, reading) == HalFault::kNone;
     fault = first_of(fault, axes_[axis].take(present, reading, health_, elapsed));
   }
-  // What no program needs is read as well, for records and touches; where it fails nobody is hurt.
+  // Inputs that no program needs are read as well, for records and touches; their failure is no fault.
   for (std::uint32_t axis = 0; axis < axis_count_; ++axis) {
     AxisReading reading;
     if (uses_axis_[axis]) continue;
     const bool present = board_.axes.read_axis(axis, reading) == HalFault::kNone;
     axes_[axis].take(present, reading, idle_health_, elapsed);
   }
-  // Feed and curvature of a silent controller are held; its axes are silent too and raise the fault.
+  // If the controller gives no reading, feed and curvature keep their values; its axes give no reading either
+  // and raise the fault.
   PathReading path;
   if (board_.axes.read_path(path) == HalFault::kNone) path_ = path;
   if (!path_.tells_feed) path_.feed = feed_of_axes();
@@ -172,7 +173,7 @@ void Cycle::collect_wishes(const CycleOutput& output) noexcept {
   }
 }
 
-// What is told of an axis: what its output gives, and what holds it.
+// Reported state of an axis: the value of its output, and the limit that holds it.
 void Cycle::judge_limits(std::uint32_t axis) noexcept {
   Drive& drive = drive_[axis];
   drive.achieved = board_.corrections.within_range(axis, written_[axis]);

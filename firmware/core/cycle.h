@@ -18,7 +18,7 @@ struct AxisSetting {
   bool own = false;  // `limits` count instead of those of the kind
   AxisLimits limits;
   MotionBounds motion;               // of the correction, on top of the image's slew limit; counts and ticks
-  std::int64_t largest = INT32_MAX;  // correction that may ever be written, whatever the image says; counts
+  std::int64_t largest = INT32_MAX;  // largest correction that is ever written, for every image; counts
 };
 
 /// When a reading of a sensor is a fault; 1e-6 of its unit.
@@ -53,7 +53,7 @@ class Cycle {
  public:
   /// A board whose devices are those of the image, in its order. view: opened without fault. setup.
   Cycle(const ImageView& view, const Board& board, const CycleLimits& limits = {}) noexcept;
-  /// A board of its own wiring that has no program yet. setup.
+  /// A board with wiring but without a program. setup.
   Cycle(const Wiring& wiring, TimeUs tick, const Board& board, const CycleLimits& limits = {}) noexcept;
 
   /// time: since start (the machine file's t); outer: a fault found around the tick (clock, overruns);

@@ -153,7 +153,7 @@ void pack(const Point& p, std::uint8_t* bytes) noexcept {
   bytes[31] = static_cast<std::uint8_t>(bytes[31] ^ (is_odd(times(p.x, z)) ? 0x80 : 0));
 }
 
-// The negative of a packed point (section 5.1.3); false where there is none. y is taken modulo p.
+// The negative of a packed point (section 5.1.3); false if the point does not exist. y is taken modulo p.
 bool unpack_negative(const std::uint8_t* bytes, Point& p) noexcept {
   p.y = unpack(bytes);
   p.z = kOne;

@@ -8,8 +8,8 @@
 
 namespace vernier {
 
-/// Time between two readings, in 1/256 of a tick: 256 where both came on time. Less than a tick counts as
-/// one: a tick that follows a late one takes readings that a controller sends at its own pace.
+/// Time between two readings, in 1/256 of a tick: 256 if both came on time. Less than a tick counts as one
+/// tick: the tick after a late one takes readings that a controller sends at its rate.
 struct TicksQ8 {
   std::int32_t count = 256;
 };

@@ -92,9 +92,9 @@ class Published {
   AtomicWords<T> value_;
 };
 
-/// The last values of one writer; a reader names the value that it wants and learns whether it is still
-/// there. The writer never waits and never fails: what nobody read in time is overwritten, and readers know
-/// it.
+/// The last values of one writer. A reader names the value that it needs and gets it, or the answer that it
+/// is overwritten. The writer never waits and never fails: values that were not read in time are overwritten,
+/// and readers detect this.
 template <class T>
 class History {
  public:

@@ -23,9 +23,9 @@ bool same_signal(const FeatureRequest& a, const FeatureRequest& b) noexcept {
          a.bridged == b.bridged && a.corner_mHz == b.corner_mHz && a.lsb_nm_s2 == b.lsb_nm_s2;
 }
 
-// Nearest multiple of lsb to value, ties away from zero; held just beyond the window's own limit, which then
-// counts it. The product is the quotient or one below it, as size < 2^51 and the inverse is cut by less than
-// 1: the remainder tells. No division.
+// Nearest multiple of lsb to value, ties away from zero; limited to just beyond the window's limit, and
+// counted there. The product is the quotient or one below it, as size < 2^51 and the inverse is cut by less
+// than 1: the remainder decides. No division.
 std::int32_t rounded(std::int64_t value, std::int64_t lsb, std::uint64_t inverse) noexcept {
   const std::int64_t most = (std::int64_t{FeatureWindow::kLimit} + 1) * lsb;
   const std::int64_t size = lower(magnitude_of(value), most) + lsb / 2;

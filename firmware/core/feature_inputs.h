@@ -25,28 +25,27 @@ struct FeatureRequest {
   std::uint32_t window = 1500;  // samples; even, 6..2048
   std::uint32_t every = 1;      // ticks from sample to sample
   InputMicro lsb{10};           // resolution of a sample, 1e-6 of the unit of `of`; 1..2^30
-  std::uint32_t bridged = 3;    // missing samples in a row that the last one stands for
+  std::uint32_t bridged = 3;    // missing samples in a row for which the last one is used
   /// Not 0: the input is no feature of a window but the displacement (um) of an accelerometer, cut off below
   /// this corner, mHz: rate/2^17 .. rate/64. A sample's lsb is then lsb_nm_s2 too, nm/s^2.
   std::int64_t corner_mHz = 0;
   std::int64_t lsb_nm_s2 = 98067;
 };
 
-/// The feature of a name as `vernier features` writes it ("RMS"); false where there is none. setup.
+/// The feature of a name as `vernier features` writes it ("RMS"); false if the name is not known. setup.
 bool feature_of(std::string_view name, Feature& feature) noexcept;
 
-/// The board's inputs with features and displacements of some of them among them. In each tick the other
-/// inputs are read once; on a sampling tick each window takes its sample and works its features out. Features
-/// of the same signal, window and resolution share one window. A tick costs, for each window, one
-/// FeatureWindow::push and one features(): 5500 instructions of x86-64 at 800 samples, 8900 at 2048
-/// (tools/docs/vibration.md).
-///
-/// Samples: round(signal / lsb), ties away from zero, exact; held at +-524287 lsb and counted. A feature is
-/// silent (kNoReading) until its window is full, where it is 0/0 (FeatureValues::undefined), and, after
-/// more missing samples than are bridged, until that many have come again: no window has a gap in it. A
-/// displacement has a filter (comp/vibration/displacement.h, exact at 0.18 of the rate) in a window's place,
-/// which starts from rest, is silent for three periods of its corner and starts again after a gap; its value
-/// is of the latest sample, to 1 nm. Its tick costs 200 instructions of x86-64.
+/// The board's inputs, some of which are features and displacements. In each tick the other inputs are read
+/// once. On a sampling tick each window takes its sample and computes its features. Features of the same
+/// signal, window and resolution share one window. A tick needs, for each window, one FeatureWindow::push and
+/// one features(): 5500 instructions of x86-64 at 800 samples, 8900 at 2048 (tools/docs/vibration.md).
+/// Samples: round(signal / lsb), ties away from zero, exact; limited to +-524287 lsb and counted. A feature
+/// gives no reading (kNoReading) in three cases: its window is not full; it is 0/0
+/// (FeatureValues::undefined); more samples than bridged are missing and not as many have come again. No
+/// window has a gap in it.
+/// A displacement has a filter (comp/vibration/displacement.h, exact at 0.18 of the rate) instead of a
+/// window. The filter starts from rest, gives no reading for three periods of its corner and starts again
+/// after a gap. Its value is of the latest sample, to 1 nm. Its tick needs 200 instructions of x86-64.
 class FeatureInputs : public InputReader {
  public:
   /// source: of all inputs that are no feature, outlives this. inputs: of the board, at most kMaxInputs.

@@ -11,13 +11,14 @@ namespace vernier {
 
 using Nonce = std::array<std::uint8_t, sizeof(ChallengeReply::nonce)>;
 
-/// Decides which requests of a link are carried out: what the link may be used for, and where the board has
-/// keys, /// only what one of them has signed. A signed request is taken once: it names the nonce of this
-/// start of the board and the number of a challenge that was given in the last seconds, so that what was held
-/// back on its way is worth nothing later.
+/// Decides which requests of a link are executed: by the rights of the link and, if the board has keys, only
+/// requests signed with one of them. A signed request is accepted once: it names the nonce of this start of
+/// the board and the number of a challenge from the last seconds. A request that was delayed on its way is
+/// therefore not valid later.
 class Gate {
  public:
-  /// identity, own_key: outlive this; own_key null: the board has none; nonce: nobody can foretell it. setup.
+  /// identity, own_key: outlive this; own_key null: the board has no key; nonce: must not be predictable.
+  /// setup.
   Gate(const BoardIdentity& identity, const Nonce& nonce, IdentityKey* own_key = nullptr) noexcept
       : identity_(identity), nonce_(nonce), own_key_(own_key) {}
 
@@ -34,9 +35,9 @@ class Gate {
   ChallengeReply challenge(LinkAccess access, TimeUs now) noexcept;
   /// Is it the request to prove who the board is? Everybody may ask for that.
   static bool is_identify(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// Signs the asker's nonce, the nonce of this start and the board's name with the board's own key.
-  /// kUnknownOp: the board has no key of its own; kBadLength: the request has no nonce; kNotReady: the
-  /// library failed. `reply` is filled in with kDone only. setup.
+  /// Signs the asker's nonce, the nonce of this start and the board's name with the key of the board.
+  /// kUnknownOp: the board has no key; kBadLength: the request has no nonce; kNotReady: the library failed.
+  /// `reply` is filled in with kDone only. setup.
   LinkStatus identify(const std::uint8_t* request, std::uint32_t size, IdentifyReply& reply) noexcept;
   /// May a master that knows nothing but registers give commands over this link?
   bool lets_plain_commands(LinkAccess access, bool trusted_line) const noexcept {

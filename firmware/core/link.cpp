@@ -136,7 +136,7 @@ LinkStatus Link::run(LinkOp op, Reader& in, Writer& out, TimeUs now) {
     case LinkOp::kIdentify:
     case LinkOp::kChallenge:
     case LinkOp::kSigned:
-      return LinkStatus::kUnknownOp;  // the gate's
+      return LinkStatus::kUnknownOp;  // executed by Gate
     case LinkOp::kBegin:
     case LinkOp::kData:
     case LinkOp::kFinish:

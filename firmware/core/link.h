@@ -8,8 +8,8 @@
 
 namespace vernier {
 
-/// Answers the requests of tables/link_format.h, whatever carries them. Runs outside the tick; every byte
-/// of a request is hostile until it is checked.
+/// Answers the requests of tables/link_format.h on any medium. Runs outside the tick; every byte of a request
+/// counts as hostile until it is checked.
 class Link {
  public:
   /// All outlive the link. identity: what HelloReply names. setup.
@@ -72,7 +72,7 @@ class Link {
   const Wiring& wiring_;
   TimeUs tick_;
   const BoardIdentity& identity_;
-  // Room for the shares, which are worked out when they are asked for.
+  // Memory for the shares, which are computed on request.
   EquationRecord equation_;
   std::int32_t registers_[kMaxRegisters];
   Correction shares_[kMaxShares];

@@ -87,8 +87,8 @@ bool Probing::publish(const Touch& touch, InstantNs zero, const WorkpieceFrame& 
     LatchedPosition latched;
     fault = ring_.position_of(i, settings_.rollover[i], time_uncertainty_, latched);
     record.position[i] = latched.position.count;
-    // With the whole correction on it the axis would stand where it is asked to: the tool is off by what is
-    // missing.
+    // With the whole correction the axis would be at its commanded position: the error of the tool point is
+    // the missing part.
     record.compensated[i] = latched.position.count - latched.owed.count;
     record.uncertainty[i] = latched.uncertainty.count;
   }

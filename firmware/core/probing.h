@@ -34,8 +34,8 @@ class Probing {
   static constexpr std::uint32_t kMostEdges = 16;  // taken in one tick
   static constexpr std::uint32_t kMostWaiting = 8;
 
-  /// line: outlives this, as does `actual`, which says where the axes stand in a tick; null: where the cycle
-  /// read them. setup.
+  /// line: outlives this, as does `actual`, which gives the positions of the axes in a tick; null: the
+  /// positions that the cycle read. setup.
   Probing(ProbeLine& line, const ProbeSettings& settings, AxisReader* actual = nullptr) noexcept;
 
   /// From contact to edge, 0 .. 50 ms, of the edges that come from now on. realtime.

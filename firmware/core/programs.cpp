@@ -50,7 +50,7 @@ bool Programs::give_up() noexcept {
   return true;
 }
 
-// What the tick ran before is nobody's once it runs what it was offered.
+// The previous program of the tick is free when the tick runs the offered one.
 void Programs::collect() noexcept {
   if (exchange_.retired.load(std::memory_order_acquire) == nullptr) return;
   running_ = offered_;

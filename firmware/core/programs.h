@@ -31,7 +31,7 @@ struct GiveBack {
     program->taken.store(false, std::memory_order_release);
   }
 };
-/// A place that somebody has; it is free again when this ends.
+/// A place in use; it is free again when this object is destroyed.
 using ProgramRef = std::unique_ptr<LoadedProgram, GiveBack>;
 
 /// How far the trial of an image is. Who may leave a state stands behind it.
@@ -40,7 +40,7 @@ enum class Trial : std::uint8_t {
   kRunning,     // the guardian when its time is over; the store when it is to be kept
   kConfirming,  // the store: it is being written down that the image is kept, however long that takes
   kKept,        // the guardian: it now goes back to this one
-  kOver,        // the store, when it is written down that the image was given up
+  kOver,        // the store, when the record says that the image was reverted
 };
 
 /// The programs of a board: which one the tick runs, which one it goes back to. Three parties use it, none of
@@ -68,11 +68,11 @@ class Programs {
   bool begin_to_keep() noexcept { return change(Trial::kRunning, Trial::kConfirming); }
   /// It is written down that it is kept, or that could not be done. Only after begin_to_keep().
   void kept(bool written) noexcept { trial_.store(written ? Trial::kKept : Trial::kRunning); }
-  /// The image on trial is given up with the guardian's next round.
+  /// The image on trial is reverted with the guardian's next round.
   bool give_up() noexcept;
   /// Has give_up() been asked for and not been done yet?
   bool giving_up() const noexcept { return to_give_up_.load() && trial_.load() == Trial::kRunning; }
-  /// It is written down that the last one was given up. Only in Trial::kOver.
+  /// The revert of the last trial is recorded. Only in Trial::kOver.
   void given_up() noexcept { trial_.store(Trial::kNone); }
 
   // ---- the guardian
@@ -112,7 +112,7 @@ class Programs {
   // The guardian's. A program is in none, one or several of these.
   LoadedProgram *running_ = nullptr, *offered_ = nullptr, *wanted_ = nullptr, *kept_ = nullptr,
                 *tried_ = nullptr;
-  LoadedProgram empty_[2];  // takes all corrections out, where there is nothing to go back to
+  LoadedProgram empty_[2];  // removes all corrections if no image can be restored
 };
 
 }  // namespace vernier

@@ -37,7 +37,8 @@ bool Runner::wait_for_sync() noexcept {
     if (sync_->wait_for_sync(latest) != HalFault::kNone) return false;
     const InstantNs now = clock_.now();
     if ((due_ - now).count <= period.count / 2) return true;
-    // The first sign after ticks by the own clock may come right after one: it says when the next is due.
+    // The first sync signal after ticks by the board's clock may follow one of them directly: it defines the
+    // next due time.
     if (!in_step_) due_ = now + period;
     in_step_ = true;
   }
@@ -86,7 +87,7 @@ void Runner::schedule(InstantNs ended) noexcept {
   if (due_ < ended) due_ = ended + instant_ns(period_);
 }
 
-// The controller moves its axes by one period in every call: what the clock says of a late one is no motion.
+// The controller moves its axes by one period in every call: the delay of a late call is no motion.
 TickReport Runner::step_of_caller(Command command, Fault found) noexcept {
   const InstantNs began = clock_.now();
   last_ = last_ + instant_ns(period_);

@@ -46,7 +46,7 @@ void Service::take_over() noexcept {
   if (next != nullptr) exchange_.retired.store(cycle_.use(*next), std::memory_order_release);
 }
 
-// A line that cannot be read is one that is off: a wire that is cut lets no correction in.
+// A line that cannot be read counts as off: with a cut wire no correction is applied.
 void Service::read_enable() noexcept {
   if (board_.enable == nullptr) return;
   bool on = false;
@@ -65,7 +65,7 @@ void Service::tell_health(const TickReport& report) noexcept {
   if (now != told_ && board_.healthy->write_line(well) == HalFault::kNone) told_ = now, line_ = well;
 }
 
-// A line that stands still says nothing good, be it high or low: the relay behind it drops when the tick
+// A line that does not change is not a sign of life, high or low: the relay behind it drops when the tick
 // stops.
 void Service::pump() noexcept {
   told_ = Told::kNothing;
@@ -202,7 +202,7 @@ bool Service::look_after_store() noexcept {
   uploader_.look_after_store();
   if (!desk_.asked()) return false;
   if (!answered_) answer_size_ = link_.answer(desk_.request(), desk_.size(), desk_.reply(), now());
-  // An image is given up when the tick has been offered another one, a moment after the order.
+  // An image is reverted when the tick has been offered another one, shortly after the command.
   answered_ =
       desk_.request()[0] == static_cast<std::uint8_t>(LinkOp::kRevert) && uploader_.programs().giving_up();
   if (answered_) return false;
@@ -239,7 +239,8 @@ std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, s
     std::memcpy(reply + kReplyHeaderBytes, &proof, sizeof(proof));
     return head + static_cast<std::uint32_t>(sizeof(proof));
   }
-  // Before the gate: a request that is turned away now comes again as it is, with its signature not yet used.
+  // Before the signature is tested: a request that is refused now is sent again unchanged, with its signature
+  // not yet used.
   const bool may_need_store = options_.store_beside && Link::may_need_store(request, size);
   if (may_need_store && !desk_.free()) return Link::answer_busy(request, reply);
   const Gate::Opened opened = gate_.open(request, size, rights_.access, now());

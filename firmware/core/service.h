@@ -25,11 +25,10 @@ struct ServiceOptions {
   CycleLimits limits;
   Uploader::Options upload;
   OverrunLimits overruns;
-  Nonce nonce{};         // of this start of the board; nobody can foretell it
-  TimeUs sync_patience;  // beyond a tick's time, until the clock takes the place of the sync
-  ProbeSettings probe;   // where the board has one; axes are filled in from the wiring
-  bool store_beside =
-      false;  // look_after_store() has a context of its own, so that links never wait for the medium
+  Nonce nonce{};              // of this start of the board; must not be predictable
+  TimeUs sync_patience;       // beyond a tick's time, until the clock takes the place of the sync
+  ProbeSettings probe;        // where the board has one; axes are filled in from the wiring
+  bool store_beside = false;  // look_after_store() has a separate context: links never wait for the medium
   std::uint32_t healthy_toggle =
       0;                         // ticks between two edges of the healthy line while all is well; 0: it is on
   bool activate = false;         // bring the correction in when the board becomes ready, once for each enable

@@ -6,8 +6,8 @@
 
 namespace vernier {
 
-/// When a watchdog may be fed: four times a second, and only where the tick ran since the last time. It says
-/// that the tick lives, not that who asks does.
+/// True when a watchdog may be fed: four times a second, and only if the tick ran since the last time. It
+/// shows that the tick runs; it does not show that the caller runs.
 class SignOfLife {
  public:
   static constexpr InstantNs kPeriod{250'000'000};  // an eighth of the unit's WatchdogSec

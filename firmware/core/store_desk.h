@@ -14,8 +14,8 @@ namespace vernier {
 class StoreDesk {
  public:
   // ---- the links
-  /// May a request be left here? One whose reply nobody has collected gives way after a while: its peer has
-  /// gone.
+  /// True if a request may be left here. A request whose reply is not collected is removed after a while: its
+  /// peer is not connected any more.
   bool free() noexcept {
     const State state = state_.load(std::memory_order_acquire);
     return state == State::kFree || (state == State::kDone && ++asked_while_done_ > kPatience);

@@ -107,7 +107,7 @@ bool Uploader::within_budget(const ImageView& view) const noexcept {
   return options_.budget.covers(view.program(), view.shares());
 }
 
-// A key that is retired vouches for what was confirmed with it while it was not, and for nothing else.
+// A retired key is valid only for images that were confirmed with it before it was retired.
 UploadResult Uploader::check_signature(const LoadedProgram& loaded, Origin origin) const {
   const UploadHeader& header = loaded.header;
   if (options_.identity.keys.empty()) return refused(UploadFault::kNoKey);
@@ -181,7 +181,8 @@ UploadResult Uploader::load_v1(std::uint8_t slot, LoadedProgram& loaded) {
   return check_image(loaded);
 }
 
-// A reset ends a trial. Where even that cannot be stored, the state on the medium says the same next time.
+// A reset ends a trial. If even that cannot be stored, the state on the medium gives the same result next
+// time.
 void Uploader::read_slots() {
   const SlotRecord first = read_record(store_, 0), second = read_record(store_, 1);
   // The first record that was ever written may have been cut by the power; nothing was confirmed by then.

@@ -40,15 +40,15 @@ struct SlotsRecord {
 };
 static_assert(sizeof(SlotsRecord) % 8 == 0);
 
-/// Takes images in, checks, tries, keeps or gives them up. What touches the medium may take its time and runs
-/// in a context of its own; what is to run next goes to Programs. Whenever the power fails, the next boot()
-/// finds the image that was confirmed before or, once confirm() has returned, the new one.
+/// Receives, checks, tries, confirms and reverts images. Functions that access the medium may take time and
+/// run in a separate context; the next program is passed to Programs. After a power failure at any time, the
+/// next boot() finds the image that was confirmed before or, once confirm() has returned, the new one.
 class Uploader {
  public:
   struct Options {
     TimeUs tick{1000};
     BoardIdentity identity;
-    TimeUs trial_time{60'000'000};  // an image on trial is given up after that
+    TimeUs trial_time{60'000'000};  // an image on trial is reverted after that
     std::uint32_t places = Programs::kFewest;
     WorkBudget budget{};  // measured_work_budget()
   };
@@ -56,12 +56,12 @@ class Uploader {
   Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, const Options& options);
 
   // ---- the store
-  /// After power-on: gives up an image that was on trial, checks the confirmed one, and has it run. The
-  /// result says why there is none, kNone also where none was ever confirmed; kStore where neither record
-  /// of the store can be read any more, so that nobody knows. setup.
+  /// Call after power-on. Reverts an image that was on trial, checks the confirmed one, and starts it. The
+  /// result is the reason if no image runs: kNone also if no image was ever confirmed; kStore if no record of
+  /// the store can be read and the state is therefore not known. setup.
   UploadResult boot();
-  /// As boot(), but what runs is an image that whoever starts the board gives: nobody signed it, and the
-  /// medium keeps what it has. setup.
+  /// As boot(), but runs an image given by the operator who starts the board: it is not signed, and the
+  /// medium is not changed. setup.
   UploadResult boot_with(std::span<const std::uint8_t> image);
   /// Writes what came in to the medium, checks what is there and has it tried. setup.
   UploadResult finish();
@@ -69,8 +69,8 @@ class Uploader {
   UploadResult confirm();
   /// Gives the image on trial up; the guardian takes it out with its next round. setup.
   UploadResult revert();
-  /// Writes down that a trial is over; true where that is done now. What cannot be written is tried again
-  /// with the next call: the medium as it is says the same after a reset. setup.
+  /// Records that a trial is over; true if the record is written. If it cannot be written, the next call
+  /// tries again: the present medium gives the same result after a reset. setup.
   bool look_after_store();
   /// Bytes of the confirmed upload (header and image), from the medium. kNoReading beyond it. setup.
   HalFault read_confirmed(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept;

@@ -11,7 +11,7 @@
 namespace vernier {
 
 constexpr std::uint64_t kAnyWork = UINT64_MAX;
-/// Shares are worked out outside the tick, for a display: they may be so many times as much work as a tick.
+/// Shares are computed outside the tick, for a display. They may need this many times the work of a tick.
 constexpr std::uint64_t kShareWorkFactor = 20;
 
 /// What a board does in its share of a tick.

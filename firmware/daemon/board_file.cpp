@@ -3,8 +3,8 @@
 
 #include <sodium.h>
 
-// The library takes for granted what it has not looked at yet ("[`a]" for the name of a table): an assertion
-// would end the daemon, an assumption leave it undefined. With neither it goes on to its own error.
+// The library assumes text that it has not checked yet ("[`a]" for the name of a table). An assertion would
+// end the daemon, an assumption would be undefined behaviour. Without both it reports its parse error.
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_assert(true)
 #include <toml++/toml.h>
@@ -30,7 +30,7 @@ const std::set<std::string_view> kSections = {"board", "axis", "input", "probe",
 toml::table read_toml(const std::string& path) {
   try {
     std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) return toml::parse_file(path);  // it says why not
+    if (!file || std::filesystem::is_directory(path)) return toml::parse_file(path);  // it reports the reason
     const std::string text((std::istreambuf_iterator<char>(file)), {});
     refuse_letters_outside_strings(text, path);
     return toml::parse(text, path);
@@ -40,7 +40,7 @@ toml::table read_toml(const std::string& path) {
   }
 }
 
-/// Reads the settings of one table and knows which of them nobody asked for.
+/// Reads the settings of one table and records which of them were not read.
 class Table {
  public:
   Table(const toml::table& table, std::string file, std::string where)
@@ -65,7 +65,7 @@ class Table {
   bool flag(const std::string& name, bool otherwise) { return get<bool>(name, otherwise, "true or false"); }
   double number(const std::string& name, double otherwise, double low, double high) {
     const double value = get<double>(name, otherwise, "a number");
-    // A default need not lie in the range: it stands for "not given".
+    // A default may be outside the range: it means "not given".
     if (table_.get(name) != nullptr && !(value >= low && value <= high))
       fail(name + " must be between " + number_text(low) + " and " + number_text(high), table_.get(name));
     return value;
@@ -345,7 +345,7 @@ void each_table(const BoardFile& board, const char* section, const toml::node& n
   }
 }
 
-/// What a link may be used for. Off this computer it shows the state and no more, unless the file says so.
+/// Rights of a link. A link to another computer shows only the state unless the file allows more.
 LinkRights rights_of(SignalSource& link) {
   LinkRights rights;
   const bool loopback = link.kind == "modbus-tcp" && link.text("address", "127.0.0.1").starts_with("127.");

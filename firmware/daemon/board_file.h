@@ -58,7 +58,7 @@ struct BoardFile {
   ServiceOptions service;
   std::vector<AxisEntry> axes;
   std::vector<InputEntry> inputs;
-  SignalSource probe;                  // line of the touch probe; how late it is stands in `service`
+  SignalSource probe;                  // line of the touch probe; its delay is in `service`
   SignalSource sync;                   // of the ticks
   SignalSource enable, healthy;        // digital lines from and to the machine's controller
   std::vector<LinkEntry> links;        // kind: "modbus-tcp", "modbus-rtu", "isotp"

@@ -15,7 +15,7 @@ struct CalibrationPoint {
 /// Gain and zero of an output with their standard uncertainties, from a straight line through the points.
 struct Calibration {
   double span = 0, span_std = 0;  // mm or deg that `codes` codes are
-  double zero = 0, zero_std = 0;  // code at which the instrument says 0
+  double zero = 0, zero_std = 0;  // code at which the instrument reads 0
   bool inverted = false;          // the measured value falls as the code rises
   double residual = 0;  // rms of measured - line, with the freedom of the line taken off; um or arcsec
   double worst = 0;     // largest of them

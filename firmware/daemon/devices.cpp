@@ -172,8 +172,9 @@ std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
   return routes;
 }
 
-/// The calibration that an output names. Where the board file has a span of its own the output is opened all
-/// the same, so that --zero can take it out; nothing runs, as the calibration is missing.
+/// The calibration that an output names. If the board file has a separate span, the output is opened without
+/// the calibration, so that --zero can remove the correction; no correction runs, because the calibration is
+/// missing.
 void Devices::Parts::look_for_calibration(const AxisEntry& axis) {
   const std::string path = axis.output.text("calibration", "");
   if (path.empty()) return;
@@ -388,7 +389,7 @@ void Devices::release() noexcept { parts_->plant->release(); }
 void Devices::advance() noexcept { parts_->plant->advance(); }
 bool Devices::has_sensors() const noexcept { return !parts_->sensors.empty(); }
 
-// All links are waited for at once: one that is quiet does not keep a request of another waiting.
+// All links are waited for together: a quiet link does not delay a request of another link.
 void Devices::wait_for_request(TimeUs wait, WakeUp& wake_up) noexcept {
   pollfd waiting[kMostHandles + 1];
   std::uint32_t count = 0;
@@ -437,7 +438,7 @@ std::vector<std::string> Devices::output_budget() const {
     const char* const name = axis.wiring.rotary ? "mdeg" : "um";
     char text[240];
     int used = std::snprintf(
-        text, sizeof text, "axis.%s.output: %.6g to %.6g %s, step %.4g, off by at most %.4g (rms %.4g)",
+        text, sizeof text, "axis.%s.output: %.6g to %.6g %s, step %.4g, error at most %.4g (rms %.4g)",
         axis.wiring.name.c_str(), std::min(of(scale.low), of(scale.high)),
         std::max(of(scale.low), of(scale.high)), name, step, step / 2, step / std::sqrt(12.0));
     if (const double delay_ms = axis.output.number("delay_ms", 0); delay_ms > 0) {

@@ -14,7 +14,7 @@ namespace vernier {
 
 class WakeUp;
 
-/// What `--check` says of a device or a file.
+/// Result of `--check` for a device or a file.
 struct DeviceFinding {
   std::string device;                    // "axis.X.output  pwm"
   std::string missing;                   // empty: it is there
@@ -41,11 +41,11 @@ class Devices {
   Board board() noexcept;
   Clock& clock() noexcept;
   std::vector<OpenLink>& links() noexcept;
-  /// Waits until a request comes over one of the links or somebody wakes it, at most `wait`. setup.
+  /// Waits until a request comes over one of the links or wake() is called, at most `wait`. setup.
   void wait_for_request(TimeUs wait, WakeUp& wake_up) noexcept;
   /// One of each device and each file, in the order of the board file. setup.
   std::vector<DeviceFinding>& findings() noexcept;
-  /// What opening and trying all of them does not tell, a sentence each. setup.
+  /// Items that opening and trying all devices does not test, one sentence each. setup.
   std::vector<std::string> not_looked_at() const;
 
   /// A correction that a killed daemon left in a drive, or the value that a converter wakes up with, is taken
@@ -67,7 +67,7 @@ class Devices {
   bool has_sensors() const noexcept;
   /// What each output adds to the error: its step and range, and its delay where the file gives one. setup.
   std::vector<std::string> output_budget() const;
-  /// Says on standard error which outputs were held at the end of their range.
+  /// Reports on standard error which outputs were limited to the end of their range.
   void say_held() const;
 
  private:

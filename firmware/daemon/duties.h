@@ -11,10 +11,9 @@
 
 namespace vernier {
 
-/// The daemon's threads beside the tick, one a duty:
-///   guardian  hands programs over, ends trials, tells the service manager that the tick ran; it waits for
-///   nothing
-///             but time, so that no client and no medium can keep it from that;
+/// The daemon's threads beside the tick, one per duty:
+///   guardian  hands programs over, ends trials, reports to the service manager that the tick ran;
+///             it waits for time only: no client and no medium can block it;
 ///   links     answers requests;
 ///   store     waits for the medium;
 ///   sensors   waits for drivers.

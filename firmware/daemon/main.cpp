@@ -275,7 +275,8 @@ int run_board(const Arguments& arguments) {
   }
   auto duties = std::make_unique<Duties>(*service, devices, manager, grant.fifo ? file.priority - 1 : 0);
   devices.release();
-  if (!manager.notify("READY=1")) std::fputs("vernierd: note: the service manager cannot be told\n", stderr);
+  if (!manager.notify("READY=1"))
+    std::fputs("vernierd: note: the service manager cannot be notified\n", stderr);
   const auto ticks = static_cast<std::int64_t>(arguments.seconds * 1e6) / file.service.upload.tick.count;
   for (std::int64_t tick = 0; (ticks == 0 || tick < ticks) && !stop_asked; ++tick) {
     devices.advance();

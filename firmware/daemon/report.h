@@ -11,8 +11,8 @@ struct GrantReport {
   bool fifo = false, locked = false, awake = false;
 };
 
-/// Tells people (standard output, standard error where json is "-") and programs (json: a file, "-" or empty)
-/// what a run did. False where the file cannot be written. tool.
+/// Reports the result of a run to people (standard output; standard error if json is "-") and to programs
+/// (json: a file, "-" or empty). False if the file cannot be written. tool.
 bool report_run(const Runner& runner, const Cycle& cycle, const GrantReport& grant, const std::string& json);
 
 /// Writes a result for programs: json is a file, "-" for standard output, or empty for none. False, and said

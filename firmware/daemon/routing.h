@@ -26,7 +26,7 @@ std::vector<Port*> backends_of(const std::vector<Route<Port>>& routes) {
   return backends;
 }
 
-/// The board's axes, spread over several backends. The first route's backend speaks for the path.
+/// The board's axes, spread over several backends. The first route's backend gives the data of the path.
 class RoutedAxes : public AxisReader {
  public:
   explicit RoutedAxes(std::vector<Route<AxisReader>> routes)

@@ -58,7 +58,7 @@ void refuse_letters_outside_strings(const std::string& text, const std::string& 
     for (std::size_t i = begun; i < at; ++i) line += text[i] == '\n' ? 1 : 0;
     if (at < text.size() && beyond_ascii(text[at]))
       throw BoardError{path + ":" + std::to_string(line) + ": \"" + word_at(text, at) +
-                       "\": letters beyond ASCII stand in quotes, on one line"};
+                       "\": letters beyond ASCII must be in quotes, on one line"};
   }
 }
 

@@ -221,7 +221,7 @@ std::unique_ptr<Service> Component::make_service(const Introduction& introductio
   for (std::uint32_t i = 0; i < introduction.keys; ++i)
     options.upload.identity.keys.push_back({introduction.key[i], "public-key"});
   options.nonce = introduction.nonce;
-  // The pin is looked at once a tick: what lets go for a few of them bounces.
+  // The pin is read once per tick: a contact that opens for a few ticks bounces.
   options.probe.settle = instant_ns(TimeUs(kSettleTicks * tick.count));
   options.store_beside = true;
   options.activate = options.clear_on_enable = options.in_controller = true;

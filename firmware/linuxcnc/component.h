@@ -15,12 +15,12 @@
 
 namespace vernier {
 
-/// The board that stands in LinuxCNC's servo thread: firmware/core's service on HAL pins. Beside the thread's
-/// tick it has two threads of its own, which are not realtime: the keeper (guardian and links), and the
-/// store, which waits for vernier-hal. Until vernier-hal has come the joints are passed through.
+/// The board inside LinuxCNC's servo thread: firmware/core's service on HAL pins. Beside the tick it has two
+/// threads that are not realtime: the keeper (guardian and links), and the store, which waits for
+/// vernier-hal. Until vernier-hal is connected, the joints are passed through unchanged.
 class Component {
  public:
-  /// Says on LinuxCNC's log what changes. level: as of rtapi_print_msg, 1: an error, 3: a note.
+  /// Reports changes in LinuxCNC's log. level: as of rtapi_print_msg, 1: an error, 3: a note.
   using Say = void (*)(int level, const char* text);
 
   /// pins, hatch: outlive this. mm_per_unit: of the machine's lengths. setup.
@@ -69,7 +69,7 @@ class Component {
   Introduction met_;
   // The tick's.
   bool cleared_ = false, held_ = false;
-  // What was told last, the keeper's.
+  // The last reported state; used by the keeper only.
   std::atomic<std::uint32_t> fault_{0}, limits_{0};
   std::uint32_t told_fault_ = 0, told_limits_ = 0;
 };

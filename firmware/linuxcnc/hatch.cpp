@@ -55,7 +55,7 @@ bool wait_for_call(Call& call, TimeUs wait) noexcept {
 }
 
 void answer_call(Call& call) noexcept {
-  // One that was withdrawn meanwhile is nobody's any more.
+  // A request that was withdrawn meanwhile has no owner any more.
   std::uint32_t turn = call.turn.load(std::memory_order_relaxed);
   if ((turn & 1) != 0) call.turn.compare_exchange_strong(turn, turn + 1, std::memory_order_release);
   wake(call.turn);

@@ -26,7 +26,7 @@ bool wait_for_call(Call& call, TimeUs wait) noexcept;
 inline bool is_asked(const Call& call) noexcept {
   return (call.turn.load(std::memory_order_acquire) & 1) != 0;
 }
-/// What was asked is answered: result, size and bytes stand in the call. setup.
+/// The request is answered: result, size and bytes are in the call. setup.
 void answer_call(Call& call) noexcept;
 /// Waits until the call is answered; false, and the call withdrawn, where `peer` is gone or `stop` is set.
 /// setup.
@@ -44,7 +44,7 @@ enum class StoreOp : std::uint32_t {
 /// What the component is asked by vernier-hal's links (hal/command_link.h). place: the link's access.
 enum class LinkCall : std::uint32_t { kAnswer, kLater, kRegisters, kCommand };
 
-/// What vernier-hal says of itself when it comes.
+/// Data that vernier-hal sends about itself when it connects.
 struct Introduction {
   std::int32_t pid = 0;
   std::uint32_t capacity = 0;     // of a slot
@@ -67,7 +67,7 @@ enum class Attached : std::int32_t {
 };
 
 /// The memory that component and vernier-hal share. Neither waits for the other in a tick: the component has
-/// all that it runs in memory of its own.
+/// all data that it runs in private memory.
 struct Hatch {
   static constexpr int kKey = 0x5645524e;              // "VERN", as HAL's keys are: one component a machine
   static constexpr std::uint32_t kMagic = 0x31544148;  // "HAT1", written when the rest is there

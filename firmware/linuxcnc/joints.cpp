@@ -16,7 +16,7 @@ constexpr double kTurnsAt = 1;
 // Largest outward share of the way to a limit, where the slew limit would let more.
 constexpr double kShareOfWay = 1.0 / 128;
 
-// Is it connected to nothing: HAL points such a pin at a place of its own.
+// True if the pin is not connected: HAL gives such a pin a separate address.
 bool is_loose(const hal_float_t* pin, const hal_float_t* loose) noexcept { return pin == loose; }
 
 // Part of a jump by which it may miss the feedback that it goes to.
@@ -53,9 +53,9 @@ double Joints::greatest_speed(const Joint& joint) noexcept {
   return std::max(std::isfinite(told) ? told : 0.0, joint.fastest);
 }
 
-// LinuxCNC lays a joint that it does not enable onto its feedback: after a following error at once, by as
-// much as that was. That is no motion of the axis, whose sense stays what it was; what the controller itself
-// commands leaves the feedback behind. Backlash on its way makes the two differ a little.
+// LinuxCNC sets a joint that it does not enable to its feedback. After a following error the position jumps
+// in one step by that error. That is no motion of the axis, and its direction does not change. A commanded
+// motion differs from the feedback. Backlash on its way makes the two differ a little.
 bool Joints::laid_on_feedback(const Joint& joint, double position, double seconds) noexcept {
   const double jump = std::abs(position - joint.position);
   const double off = std::abs(*joint.pins->cmd_in - *joint.pins->fb_out);

@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// What `loadrt vernier` was given, as rtapi_app fills it in: null where there is nothing.
+/// The arguments of `loadrt vernier`, as rtapi_app fills them in: null if not given.
 struct LoadArguments {
   std::span<char*const> axes, inputs, rotary;
   const char* units = nullptr;

@@ -20,7 +20,7 @@ struct JointPins {
 /// All pins of the component, in HAL's memory.
 struct Pins {
   JointPins joint[kMaxAxes];
-  hal_float_t* input[kMaxInputs];  // not a number (not connected): the sensor is silent
+  hal_float_t* input[kMaxInputs];  // not a number (not connected): no reading
   hal_bit_t *enable, *hold, *clear, *probe_in;
   hal_float_t *weight, *current_vel, *probe_delay;
   hal_bit_t *active, *fault, *saturated, *at_limit, *abort;

@@ -8,7 +8,7 @@
 
 namespace vernier {
 
-/// Sensors as pins. One that is not a finite number is a sensor that is silent.
+/// Sensors as pins. A value that is not a finite number is a missing reading.
 class PinInputs : public InputReader {
  public:
   PinInputs(const Pins& pins, std::uint32_t count) noexcept : pins_(pins), count_(count) {}
@@ -33,7 +33,7 @@ class EnablePin : public DigitalInput {
   const Joints& joints_;
 };
 
-/// The pin `probe-in`, looked at once a tick: an edge is half a tick old on average.
+/// The pin `probe-in`, read once per tick: an edge is half a tick old on average.
 class PinProbe : public ProbeLine {
  public:
   PinProbe(const Pins& pins, TimeUs tick) noexcept : pins_(pins), tick_(instant_ns(tick)) {}

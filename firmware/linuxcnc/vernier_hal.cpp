@@ -69,7 +69,7 @@ int refuse(const char* what, const std::string& why) {
   return kBadInput;
 }
 
-/// What the component is told; throws BoardError.
+/// The settings that are sent to the component; throws BoardError.
 Introduction introduction_of(const HelperArguments& arguments, std::size_t given_bytes) {
   Introduction introduction;
   introduction.pid = ::getpid();

@@ -10,13 +10,13 @@
 namespace vernier {
 
 /// The correction of one axis as an analogue quantity: the pulse width of a PWM channel, or a channel of a
-/// converter. Its own axis 0 is the only one. Setting up changes no value that a running channel has, so that
-/// a correction which an earlier process left behind can be read back and taken out.
+/// converter. It has axis 0 only. Setting up changes no value of a running channel: a correction of an
+/// earlier process can be read back and removed.
 class AnalogueOutput : public CorrectionWriter {
  public:
   /// channel: directory of an exported channel of the PWM class (/sys/class/pwm/pwmchip0/pwm0); scale: in ns
   /// of on-time; period: ns, >= scale.high. A channel that is off, or has another period, is set to its zero
-  /// and switched on. Null with `error` set where that cannot be done. setup.
+  /// and switched on. Null with `error` set if that fails. setup.
   static std::unique_ptr<AnalogueOutput> pwm(const std::string& channel, std::int64_t period_ns,
                                              const AnalogueScale& scale, std::string& error);
   /// device: directory of an IIO device; channel: the N of out_voltageN_raw; scale: in codes. setup.

@@ -13,7 +13,7 @@ namespace vernier {
 /// What came over the bus so far; all only go up.
 struct CanCounts {
   std::uint64_t frames = 0;      // taken as the newest position of an axis
-  std::uint64_t malformed = 0;   // not 8 bytes, remote, or an identifier that nobody asked for
+  std::uint64_t malformed = 0;   // not 8 bytes, remote, or an identifier that was not requested
   std::uint64_t duplicates = 0;  // the counter of the frame before
   std::uint64_t late = 0;        // a counter before that of the newest frame
   std::uint64_t lost = 0;        // counters that were left out
@@ -29,7 +29,7 @@ struct CanCounts {
 class CanAxes : public AxisReader {
  public:
   static constexpr std::uint32_t kMostFrames = 256;   // taken from the socket in one tick
-  static constexpr std::uint32_t kStalledFrames = 3;  // frames with one and the same stamp that are believed
+  static constexpr std::uint32_t kStalledFrames = 3;  // frames with one and the same stamp that are accepted
 
   /// interface: "can0"; ids: 11 bits, or 29 bits where above 0x7ff, all different, at least one. Null with
   /// `error` set where the kernel refuses. setup.

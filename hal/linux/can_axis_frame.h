@@ -4,8 +4,7 @@
 
 namespace vernier {
 
-/// What a controller says about one axis in one CAN frame of 8 data bytes (classic CAN, an identifier of its
-/// own per axis):
+/// State of one axis in one CAN frame of 8 data bytes (classic CAN, a separate identifier per axis):
 ///
 ///   bytes 0..5  position, signed, 48 bits, least significant byte first; counts of the axis: 1 nm
 ///               (±140 km), or 2^-32 turn (±32768 turns)
@@ -13,7 +12,7 @@ namespace vernier {
 ///   byte 7      bit 0 the position is valid, bit 1 the axis is referenced, bits 2..7 stamp
 ///
 /// stamp: the low six bits of the controller's clock in units of 64 us when the position was *sampled*. It
-/// stands still where the communication of a controller outlives its measuring.
+/// does not change if the communication of a controller continues after its measurement has stopped.
 struct CanAxisFrame {
   static constexpr unsigned kBytes = 8;
   static constexpr std::int64_t kMostPosition = (std::int64_t{1} << 47) - 1;

@@ -15,8 +15,8 @@ canid_t can_identifier(std::uint32_t id) noexcept;
 /// the socket and sets `error` where it cannot. setup.
 bool bind_can(int socket, const std::string& interface, sockaddr_can address, std::string& error);
 
-/// A socket for frames with these identifiers that does not block; bus_errors: the kernel tells of a bus that
-/// went off, too. -1 with `error` set where the kernel refuses. setup.
+/// A non-blocking socket for frames with these identifiers. bus_errors: the kernel also reports the bus-off
+/// state. -1 with `error` set if the kernel refuses. setup.
 int open_can(const std::string& interface, const std::vector<std::uint32_t>& ids, bool bus_errors,
              std::string& error);
 

@@ -50,7 +50,7 @@ HalFault CanSync::wait_for_sync(InstantNs latest) noexcept {
     if (ready < 0 || (waiting.revents & POLLIN) == 0) break;
     return drain() ? HalFault::kNone : HalFault::kRefused;
   }
-  drain();  // an error of the socket is told once and then gone
+  drain();  // an error of the socket is reported once and then cleared
   return HalFault::kRefused;
 }
 

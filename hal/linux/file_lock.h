@@ -7,7 +7,8 @@ namespace vernier {
 /// A file or directory that one process has to itself (flock(2)), until it closes its descriptor or ends.
 class FileLock {
  public:
-  /// Locks `path`, which exists. Empty, or what stands in the way: "in use by another process". setup.
+  /// Locks `path`, which exists. Returns empty, or the reason of a failure: "in use by another process".
+  /// setup.
   std::string take(const std::string& path);
   FileLock() = default;
   ~FileLock();

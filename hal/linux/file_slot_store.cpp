@@ -9,7 +9,7 @@
 namespace vernier {
 namespace {
 
-/// A descriptor that closes itself; close() tells whether all went well.
+/// A descriptor that closes itself; close() returns true if all writes succeeded.
 class File {
  public:
   File(const std::string& path, int flags) noexcept : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {}

@@ -25,7 +25,7 @@ std::int64_t monotonic_ns() noexcept {
   return ns_of(time);
 }
 
-/// Kernels before 5.7 stamp by the time of day, which says nothing about the tick.
+/// Kernels before 5.7 stamp by the time of day, which cannot be related to the tick.
 void put_edge(EdgeQueue& queue, std::int64_t at, bool made, std::uint32_t number) noexcept {
   if (at > monotonic_ns() + kClockMargin) return queue.put_loss();
   queue.put({InstantNs(at), made}, number);

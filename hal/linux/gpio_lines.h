@@ -34,8 +34,8 @@ class GpioLine {
 };
 
 /// The edges of a probe's line, stamped by the kernel in the interrupt by CLOCK_MONOTONIC (from Linux 5.7 on;
-/// an edge of an older one, stamped by another clock, is told as lost). Two edges that are closer than the
-/// interrupt's latency are told as a loss, as the kernel reads the level after the interrupt.
+/// an edge of an older kernel, stamped by another clock, is reported as lost). Two edges that are closer than
+/// the interrupt's latency are reported as a loss, because the kernel reads the level after the interrupt.
 class GpioProbeLine : public ProbeLine {
  public:
   static std::unique_ptr<GpioProbeLine> open(const GpioAddress& address, std::string& error);

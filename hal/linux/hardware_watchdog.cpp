@@ -18,7 +18,7 @@ std::unique_ptr<HardwareWatchdog> HardwareWatchdog::open(const std::string& devi
     error = device + ": " + std::strerror(errno);
     return nullptr;
   }
-  // A driver with a time of its own keeps it.
+  // A driver with a fixed time keeps it.
   [[maybe_unused]] const int unused = ::ioctl(fd, WDIOC_SETTIMEOUT, &seconds);
   return std::unique_ptr<HardwareWatchdog>(new HardwareWatchdog(fd));
 }
@@ -27,7 +27,7 @@ HardwareWatchdog::~HardwareWatchdog() { ::close(fd_); }
 
 void HardwareWatchdog::feed() noexcept { [[maybe_unused]] const auto unused = ::write(fd_, "\n", 1); }
 
-// The letter that says that the end was meant (Documentation/watchdog/watchdog-api.rst, "magic close").
+// The letter that marks an intended end (Documentation/watchdog/watchdog-api.rst, "magic close").
 void HardwareWatchdog::disarm() noexcept { [[maybe_unused]] const auto unused = ::write(fd_, "V", 1); }
 
 }  // namespace vernier

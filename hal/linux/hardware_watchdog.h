@@ -8,8 +8,8 @@ namespace vernier {
 /// A watchdog of the kernel (/dev/watchdog): what is not fed for its time resets the computer.
 class HardwareWatchdog {
  public:
-  /// Begins its time at once, where the driver lets it be set `seconds` long. Null with `error` set where it
-  /// cannot be opened. setup.
+  /// Starts the watchdog immediately, with a time of `seconds` if the driver allows to set it. Null with
+  /// `error` set if it cannot be opened. setup.
   static std::unique_ptr<HardwareWatchdog> open(const std::string& device, int seconds, std::string& error);
   /// Without disarm() the computer is reset when its time is over.
   ~HardwareWatchdog();

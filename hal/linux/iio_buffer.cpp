@@ -35,7 +35,7 @@ std::string first_line(const std::string& path) {
   return line;
 }
 
-/// Gives a device its trigger. The kernel takes a name that it does not know for none, and says nothing.
+/// Assigns a trigger to a device. The kernel treats an unknown name as no trigger and reports no error.
 bool pull_trigger(const std::string& path, const std::string& trigger, std::string& error) {
   if (!write_word(path, trigger, error)) return false;
   if (first_line(path) == trigger) return true;

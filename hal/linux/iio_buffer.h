@@ -34,11 +34,11 @@ struct IioBufferCounts {
   std::uint64_t broken = 0;     // ticks in which the device failed
 };
 
-/// A sensor that fills a buffer of the kernel's industrial I/O class by its own clock or a trigger, an
-/// accelerometer say: every tick has the next scan, in order, each once. Input i is the i-th channel. A scan
-/// waits for its tick; where the sensor's clock is quicker than the ticks' the queue grows to kMostWaiting
-/// and then a scan is skipped now and then, where it is slower a tick is left without (kNoReading): a
-/// feature's window repeats a sample there.
+/// A sensor (for example an accelerometer) that fills a buffer of the kernel's industrial I/O class by its
+/// clock or a trigger. Every tick gets the next scan, in order, each once. Input i is the i-th channel. A
+/// scan waits for its tick. If the sensor's clock is faster than the ticks, the queue grows to kMostWaiting
+/// and then a scan is skipped now and then. If it is slower, a tick has no scan (kNoReading): a feature's
+/// window repeats a sample there.
 class IioBuffer : public InputReader {
  public:
   static constexpr std::uint32_t kMostWaiting = 4;  // ticks that a tick may be late without a scan lost
@@ -62,7 +62,7 @@ class IioBuffer : public InputReader {
     std::size_t at = 0;  // in a scan
     IioScale scale;
   };
-  static constexpr std::size_t kMostBytes = 8192;  // read at once
+  static constexpr std::size_t kMostBytes = 8192;  // read in one call
 
   explicit IioBuffer(const IioBufferSettings& settings) : settings_(settings) {}
   bool choose_channels(std::string& error);

@@ -8,7 +8,7 @@
 
 namespace vernier {
 
-/// value = (what the attribute says + offset) * scale, in the unit of the input, as the kernel defines its
+/// value = (value of the attribute + offset) * scale, in the unit of the input, as the kernel defines its
 /// in_*_offset and in_*_scale.
 struct IioScale {
   double offset = 0;

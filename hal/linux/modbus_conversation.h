@@ -7,18 +7,18 @@
 
 namespace vernier {
 
-/// Where things stand in the register map. The mailbox: a request is written (function 16) to the holding
-/// registers from `mailbox` on, its length in bytes, then the bytes, high byte first; the reply stands in the
-/// input registers there, for each client its own. Input registers from 0: live state; holding register 0:
-/// command (function 6).
+/// Layout of the register map. The mailbox: a request is written (function 16) to the holding registers from
+/// `mailbox` on, its length in bytes, then the bytes, high byte first. The reply is in the input registers
+/// there, separate for each client. Input registers from 0: live state; holding register 0: command (function
+/// 6).
 struct ModbusLayout {
   int mailbox = 0, mailbox_registers = 0, live_registers = 0;
 };
 
 /// The server's side of a conversation with one Modbus client: bytes in, bytes out, no device and no wait.
-/// One buffer each way: while a reply is being worked out or has not been sent, nothing more is taken in.
-/// Functions 3, 4, 6 and 16; everything else is refused with the exceptions of the standard (Modbus
-/// Application Protocol V1.1b3; Modbus over Serial Line V1.02 for the frames of RTU).
+/// One buffer each way: while a reply is being made or has not been sent, no further bytes are accepted.
+/// Functions 3, 4, 6 and 16; all others are refused with the exceptions of the standard (Modbus Application
+/// Protocol V1.1b3; Modbus over Serial Line V1.02 for the frames of RTU).
 class ModbusConversation {
  public:
   static constexpr std::uint32_t kMostFrame = 260;           // 7 of MBAP and 253 of a request

@@ -19,7 +19,7 @@ ModbusLine::ModbusLine(_modbus* context, bool serial, TimeUs wait)
     : context_(context), serial_(serial), wait_(wait) {
   modbus_set_response_timeout(context_, static_cast<std::uint32_t>(wait.count / kUsPerS),
                               static_cast<std::uint32_t>(wait.count % kUsPerS));
-  // An answer that stops in the middle is given up as one that never came.
+  // An answer that stops in the middle counts as no answer.
   modbus_set_byte_timeout(context_, static_cast<std::uint32_t>(wait.count / kUsPerS),
                           static_cast<std::uint32_t>(wait.count % kUsPerS));
 }

@@ -98,8 +98,8 @@ std::vector<ModbusServer::Client>::const_iterator ModbusServer::first_to_go() co
                           [](const Client& a, const Client& b) { return a.talk.worth() < b.talk.worth(); });
 }
 
-// Where nobody gives way just now, who knocks waits at the door: he is not turned away, since a client that
-// says nothing soon gives way.
+// If no client can be removed now, a new client waits in the queue of the socket. It is not refused, because
+// an inactive client is removed soon.
 bool ModbusServer::has_room(InstantNs now) const noexcept {
   return clients_.size() < kMostClients || first_to_go()->talk.worth() <= (now - kIdle).count;
 }

@@ -11,8 +11,9 @@ struct RealtimeGrant {
   int idle_error = 0;      // /dev/cpu_dma_latency
 };
 
-/// Makes the calling thread a realtime one: memory locked, stack touched, SCHED_FIFO, deep idle states off
-/// while the process lives. Goes on without what is refused; the caller says so. priority: 1..99. setup.
+/// Makes the calling thread a realtime thread: memory locked, stack touched, SCHED_FIFO, deep idle states off
+/// while the process lives. Continues without the refused settings; the caller reports them. priority: 1..99.
+/// setup.
 RealtimeGrant become_realtime(int priority) noexcept;
 
 /// Gives the calling thread SCHED_FIFO alone, for one beside the tick. Returns 0 or the errno. setup.

@@ -7,8 +7,8 @@
 
 namespace vernier {
 
-/// A sensor whose answer takes its time, often milliseconds: a thread of its own takes the samples, and the
-/// tick finds the newest one. Its own input 0 is the only one.
+/// A sensor with a slow answer, often milliseconds: a separate thread takes the samples, and the tick gets
+/// the newest one. It has input 0 only.
 class SampledInput : public InputReader {
  public:
   /// Takes a sample; waits for the device. Returns what the next reads will. One thread, not the tick's.
@@ -22,7 +22,7 @@ class SampledInput : public InputReader {
   static bool scaled(double raw_micro, double offset, double scale, std::int64_t& micro) noexcept;
 
  protected:
-  /// stale_reads: reads without a new sample until the sensor counts as silent.
+  /// stale_reads: reads without a new sample after which the sensor counts as missing.
   explicit SampledInput(std::uint32_t stale_reads) : stale_reads_(stale_reads) {}
   /// One sample, 1e-6 of the unit of the input. kNoReading: there was none. Waits.
   virtual HalFault take(std::int64_t& micro) noexcept = 0;

@@ -3,11 +3,12 @@
 
 namespace vernier {
 
-/// Tells the service manager how the daemon does, by the datagram protocol of systemd (sd_notify(3)); does
-/// nothing where none asked. It never waits: a message that finds no room is dropped.
+/// Reports the state of the daemon to the service manager, by the datagram protocol of systemd
+/// (sd_notify(3)); no action if no service manager requested it. It never waits: a message without room is
+/// dropped.
 class ServiceManager {
  public:
-  /// Where it listens stands in NOTIFY_SOCKET. setup.
+  /// Its address is in NOTIFY_SOCKET. setup.
   ServiceManager() noexcept;
   ~ServiceManager();
   ServiceManager(const ServiceManager&) = delete;

@@ -4,11 +4,11 @@
 
 namespace vernier {
 
-/// Wakes a thread that waits, be it in wait() or in a poll() of its handle. A wake-up that comes before the
-/// wait ends the wait at once.
+/// Wakes a thread that waits in wait() or in a poll() of its handle. A wake-up before the wait ends the wait
+/// immediately.
 class WakeUp {
  public:
-  /// Throws nothing: where the system has no more handles, waits end by their time alone. setup.
+  /// Never throws: if the system has no more handles, waits end by their time alone. setup.
   WakeUp() noexcept;
   ~WakeUp();
   WakeUp(const WakeUp&) = delete;

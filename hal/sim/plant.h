@@ -14,10 +14,10 @@ namespace vernier {
 enum class PlantFaultKind : std::uint8_t {
   kMissingPosition,  // the axis gives no reading
   kFrozenAxis,       // the axis repeats its last position, its speed goes on
-  kJump,             // the axis is off by `counts`
+  kJump,             // the axis has an error of `counts`
   kSensorLost,       // the input gives no reading
   kWriteFailure,     // corrections of the axis are refused
-  kReferenceLost,    // the controller says that the axis does not know its zero
+  kReferenceLost,    // the controller reports that the axis is not referenced
   kSensorWild,       // the input reads `counts` more than it should
 };
 

@@ -12,9 +12,8 @@ struct RoamingAxis {
   std::int64_t low, high;
 };
 
-/// Every axis swings through its range as a sine of its own seeded period and phase, at no more than a given
-/// share of the range per second; inputs stand at given values. Exact velocities, accelerations and
-/// reversals.
+/// Every axis moves through its range as a sine with seeded period and phase, at no more than a given share
+/// of the range per second; inputs have given values. Exact velocities, accelerations and reversals.
 class Roaming : public Trajectory {
  public:
   /// tick: time between two ticks; share_per_s: peak speed over range, 1/s.

@@ -32,7 +32,7 @@ struct AnalogueScale {
   /// finds them. setup.
   std::int64_t wanted_code(AxisTravel correction) const noexcept;
   std::int64_t code_for(AxisTravel correction) const noexcept;
-  /// Correction that a code stands for, to the nearest count. code: 0 .. 2^31. setup.
+  /// Correction that a code represents, to the nearest count. code: 0 .. 2^31. setup.
   AxisTravel correction_of(std::int64_t code) const noexcept {
     const std::int64_t off = RoundedRatio(span, codes).of(code - zero);
     return AxisTravel(inverted ? -off : off);

@@ -6,9 +6,9 @@
 
 namespace vernier {
 
-/// Edges that came in and have not been read: keeps their order and knows where some are missing. A probe
-/// touches and lets go in turn, so two edges of one kind in a row have lost one between them; a kernel that
-/// numbers its edges tells of every one.
+/// Edges that were received and have not been read. Keeps their order and records where edges are missing.
+/// The line of a probe closes and opens in turn: two edges of one kind in a row have lost one between them. A
+/// kernel that numbers its edges shows every loss.
 class EdgeQueue {
  public:
   static constexpr std::uint32_t kRoom = 128;
@@ -32,7 +32,7 @@ class EdgeQueue {
     loss_ = true;
     known_ = false;
   }
-  /// Oldest edge. kNoReading: there is none; kRefused: some are missing here, the next call goes on.
+  /// Oldest edge. kNoReading: the queue is empty; kRefused: edges are missing here, the next call continues.
   /// realtime.
   HalFault take(ProbeEdge& edge) noexcept {
     bool& missing = count_ > 0 ? entries_[first_].after_loss : loss_;

@@ -46,7 +46,7 @@ std::error_code write_all(int to, std::string_view text) {
     const ssize_t put = ::write(to, text.data(), text.size());
     if (put >= 0) {
       text.remove_prefix(static_cast<std::size_t>(put));
-    } else if (errno == EAGAIN) {  // somebody else made the shared end non-blocking
+    } else if (errno == EAGAIN) {  // another process made the shared end non-blocking
       pollfd room{to, POLLOUT, 0};
       ::poll(&room, 1, -1);
     } else if (errno != EINTR) {
@@ -113,10 +113,10 @@ int open_beside(const fs::path& target, mode_t mode, fs::path& name) {
   }
 }
 
-/// As the old file: whoever could read it can, and nobody else.
+/// The same access rights as the old file: no other user gets access.
 std::error_code keep_access(int to, const struct stat& old) {
   constexpr mode_t kPermissions = 0777;
-  // Somebody else's file becomes that of the one who writes, where it cannot be given away.
+  // A file of another owner becomes a file of the writer if its ownership cannot be changed.
   const bool given =
       ::fchown(to, old.st_uid, old.st_gid) == 0 || ::fchown(to, static_cast<uid_t>(-1), old.st_gid) == 0;
   const mode_t mode = old.st_mode & (given ? kPermissions : kPermissions & ~mode_t{S_IRWXG});

@@ -7,8 +7,9 @@
 
 namespace vernier {
 
-/// round(value * numerator / denominator), halves away from zero, to the last bit and without a division: the
-/// ratio is made once, a product with it is the quotient or one less, and the remainder tells which.
+/// round(value * numerator / denominator), halves away from zero, exact to the last bit and without a
+/// division. The ratio is computed once; a product with it is the quotient or one less, and the remainder
+/// decides which.
 class RoundedRatio {
  public:
   static constexpr std::int64_t kMost = std::int64_t{1} << 50;
@@ -18,7 +19,7 @@ class RoundedRatio {
       : numerator_(static_cast<std::uint64_t>(numerator)),
         denominator_(static_cast<std::uint64_t>(denominator)),
         ratio_(numerator_ / denominator_) {
-    // ratio_ = numerator * 2^shift_ / denominator, cut, from 2^62 on: off by less than 2^-62 of itself.
+    // ratio_ = numerator * 2^shift_ / denominator, cut, from 2^62 on: error below 2^-62 of the ratio.
     for (std::uint64_t rest = numerator_ % denominator_; ratio_ < std::uint64_t{1} << 62; ++shift_) {
       rest *= 2;
       ratio_ *= 2;

@@ -90,7 +90,7 @@ TEST_F(Check, SaysWhatThePublishedChainAddsToTheError) {
   const Said said = run("--check");
   EXPECT_EQ(said.status, 0) << said.text;
   // 250 um over 255 codes; 0.2 mm/s for 83.3 ms.
-  EXPECT_NE(said.text.find("budget   axis.X.output: -124.51 to 124.51 um, step 0.9804, off by at most 0.4902 "
+  EXPECT_NE(said.text.find("budget   axis.X.output: -124.51 to 124.51 um, step 0.9804, error at most 0.4902 "
                            "(rms 0.283); 83.3 ms "
                            "late: at most 16.66 more at the correction's fastest\n"),
             std::string::npos)

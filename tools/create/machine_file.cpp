@@ -14,7 +14,8 @@ constexpr std::array<char, 3> kLengths = {'X', 'Y', 'Z'}, kTurns = {'A', 'B', 'C
 /// Bounds of what a correction may do: a millimetre is a crash, a tenth of a degree at a metre nearly two.
 constexpr const char* kLinearLimits = R"(maxcorrection="0.5" maxslew="5")";
 constexpr const char* kRotaryLimits = R"(maxcorrection="0.1" maxslew="1")";
-/// A joint's zero is off by more, and near a singular pose a joint turns far for a short way of the tool.
+/// The zero error of a joint is larger, and near a singular pose a small tool motion needs a large joint
+/// rotation.
 constexpr const char* kJointLimits = R"(maxcorrection="5" maxslew="20")";
 
 const MachineType* type_named(const std::string& name) {
@@ -23,7 +24,7 @@ const MachineType* type_named(const std::string& name) {
   return nullptr;
 }
 
-/// "carriage", "head", "table": what moves with the axis.
+/// "carriage", "head", "table": the part that moves with the axis.
 std::string what_moves(const MachinePlan& plan, std::size_t index, bool work) {
   const PlannedAxis& axis = plan.axes[index];
   if (axis.rotary()) return work ? "turning table" : "turning head";
@@ -100,8 +101,8 @@ std::string slide_row(const MachinePlan& plan, std::size_t index, bool work, int
   return row + "/>\n";
 }
 
-/// A turning axis: where its line is and how it leans, with the errors of its own motion; then the turn. A
-/// table turns the workpiece the other way (ISO 841), its positioning error with it.
+/// A rotary axis: location and tilt of its line with the errors of its motion, then the rotation. A table
+/// rotates the workpiece in the opposite direction (ISO 841), and its positioning error too.
 std::string turning_rows(const MachinePlan& plan, std::size_t index, bool work, int n) {
   const PlannedAxis& axis = plan.axes[index];
   std::array<std::string, 6> dof;
@@ -282,7 +283,7 @@ std::string signs_remark(const MachinePlan& plan) {
   std::string text = "     Positions are the tool's, seen from the workpiece, as a control shows them.";
   if (!plan.work_side.empty())
     text +=
-        " What carries the workpiece therefore stands with\n     a minus sign: it moves the other way (ISO "
+        " An axis that carries the workpiece therefore has\n     a minus sign: it moves the other way (ISO "
         "841). Does "
         "a table of yours count the other way, take its minus signs away.";
   return text + "\n";

@@ -11,7 +11,7 @@ namespace vernier::create {
 /// robot by its rows, with Hayati's angle between parallel joints. What it writes parse_machine reads. tool.
 std::string machine_file(const MachinePlan& plan);
 
-/// Who carries whom, in one line a side: "bed > Y (beam) > X (carriage) > Z (ram) > tool". tool.
+/// The order of the axes, one line per side: "bed > Y (beam) > X (carriage) > Z (ram) > tool". tool.
 std::string drawing(const MachinePlan& plan);
 
 }  // namespace vernier::create

@@ -102,7 +102,7 @@ std::vector<std::size_t> by_directions(const std::vector<PlannedAxis>& axes, con
   return side;
 }
 
-/// Between head and table a machine with one turning axis each: the table's is C, else the last one.
+/// A machine with one rotary axis each on head and table: the axis of the table is C, else the last one.
 void share_rotaries(MachinePlan& plan) {
   std::vector<std::size_t> rotary;
   for (std::size_t i = 0; i < plan.axes.size(); ++i)
@@ -126,7 +126,8 @@ void place_all(MachinePlan& plan, bool tool_given, bool work_given) {
     if (tool_given && work_given)
       throw text::InputError("\"" + plan.axes[i].name +
                              "\": neither --tool-side nor --work-side has this axis");
-    // What one side was not given belongs to the other; a turning axis that a type does not know is a table.
+    // Axes that are not assigned to one side belong to the other. A rotary axis that a type does not know is
+    // a table.
     (work_given ? plan.tool_side : plan.work_side).push_back(i);
   }
   for (const auto* side : {&plan.tool_side, &plan.work_side})
@@ -198,7 +199,7 @@ PlannedAxis parse_planned_axis(const std::string& words) {
                              "\": is neither a direction (X Y Z along it, A B C about X Y Z) nor wrap");
   }
   if (axis.rollover && !axis.rotary())
-    throw text::InputError("--axis " + words + ": only a turning axis wraps");
+    throw text::InputError("--axis " + words + ": only a rotary axis can wrap");
   if (axis.rollover && std::abs(axis.max - axis.min - 360) > 1e-9)
     throw text::InputError("--axis " + words + ": an axis that wraps has a range of one turn, 360 deg");
   return axis;

@@ -22,7 +22,8 @@ struct PlannedAxis {
   std::size_t along() const { return static_cast<std::size_t>(direction - (rotary() ? 'A' : 'X')); }
 };
 
-/// What a new machine file is made of. Both sides begin at the bed; the last entry carries tool or workpiece.
+/// Contents of a new machine file. Both sides begin at the bed; the last entry carries the tool or the
+/// workpiece.
 struct MachinePlan {
   std::string type, name;
   std::vector<PlannedAxis> axes;                  // as the file lists them
@@ -50,9 +51,9 @@ const std::vector<MachineType>& machine_types();
 /// "X:0:600", "U:0:300:X" (along X), "C:0:360:wrap". Throws InputError with the word. tool.
 PlannedAxis parse_planned_axis(const std::string& words);
 
-/// Puts the axes on the sides as the type has them. tool_order, work_order: names from the bed outwards where
-/// they are given otherwise. Throws InputError: an unknown type (a delta says why), no axis, a name twice, an
-/// axis on no side. tool.
+/// Assigns the axes to the sides as the type defines it. tool_order, work_order: names from the bed outwards
+/// if the order differs. Throws InputError: an unknown type (with the reason for a delta), no axis, a name
+/// twice, an axis on no side. tool.
 MachinePlan plan_machine(const std::string& type, std::vector<PlannedAxis> axes,
                          const std::optional<std::vector<std::string>>& tool_order,
                          const std::optional<std::vector<std::string>>& work_order);

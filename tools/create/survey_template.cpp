@@ -64,7 +64,7 @@ std::string remarks_of(const format::SurveyReading& reading) {
   return text;
 }
 
-/// The rows: positions of all axes, the sense of the axis that moves alone, run and role.
+/// The rows: positions of all axes, the direction of the axis that moves alone, run and role.
 class Rows {
  public:
   Rows(const model::Machine& machine, const std::string& empty) : machine_(machine), empty_(empty) {
@@ -129,28 +129,28 @@ std::string remarks(const model::Machine& machine, const format::SurveyReading& 
   axes.resize(std::max<std::size_t>(14, axes.size()), ' ');
   return "# Survey of the machine \"" + machine.name +
          "\". Fill in the empty cells; a row that you could not measure may stay empty or go.\n"
-         "# Decimal point, comma between columns, one row a reading. A unit stands in the brackets of the "
+         "# Decimal point, comma between columns, one row per reading. A unit is in the brackets of the "
          "header and may be\n"
          "# another one (um, in, arcsec, ...). Positions may be changed to what the machine can reach; the "
          "more they differ\n"
-         "# in all axes at once, the more errors can be told apart.\n#\n"
+         "# in all axes together, the more errors can be distinguished.\n#\n"
          "# " +
          axes +
          "where the machine was sent: positions as the control shows them.\n"
-         "# dir...        the sense of the last motion of an axis, 1 or -1: come from that side. 0: it does "
+         "# dir...        approach direction: direction of the last motion of an axis, 1 or -1. 0: it does "
          "not matter.\n" +
          remarks_of(reading) +
          "# run           which pass it was. Stood the instrument elsewhere in some run, give the machine "
          "file a BaseShift\n"
          "#               with that run=\"label\".\n"
-         "# role          fit, or check: rows that a fit does not see and that judge it.\n"
+         "# role          fit, or check: held-out rows that test the fit.\n"
          "# More columns are welcome, in any place: " +
          format::heading(format::columns::kUncertainty) + " standard uncertainty of the reading, " +
          format::heading(format::columns::kTime) + " time,\n# " + format::heading(format::columns::kFeed) +
          ", T_name[degC] a temperature, load[%], whatever was logged; `vernier diagnose` asks them what "
          "they\n"
          "# explain.\n"
-         "# `vernier lint` says what is wrong with the file, `vernier import table` reads a spreadsheet "
+         "# `vernier lint` reports errors in the file, `vernier import table` reads a spreadsheet "
          "instead.\n";
 }
 
@@ -183,7 +183,7 @@ std::string survey_template(const model::Machine& machine, const format::SurveyR
 std::string survey_workbook(const std::string& survey) {
   sheet::SheetToWrite rows{"Survey", {}}, remarks{"Read me", {{"How to fill it in"}}};
   for (const std::string& line : text::parts_of(survey, '\n')) {
-    // How a CSV is written concerns nobody here.
+    // The rules of a CSV file are applied elsewhere.
     if (line.starts_with("# Decimal point, comma")) continue;
     if (line.starts_with("#"))
       remarks.rows.push_back({line.substr(line.starts_with("# ") ? 2 : 1)});

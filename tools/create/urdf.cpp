@@ -188,7 +188,7 @@ struct Line {
   Vector3d point, direction;
 };
 
-/// What is left of `v` across the unit vector `along`.
+/// The component of `v` perpendicular to the unit vector `along`.
 Vector3d across(const Vector3d& v, const Vector3d& along) { return v - v.dot(along) * along; }
 
 double angle_deg(const Vector3d& from, const Vector3d& to, const Vector3d& about) {

@@ -24,10 +24,10 @@ struct UrdfArm {
   std::array<double, 3> tool(const std::array<double, 3>& in_tip) const;
 };
 
-/// tip: name of a link; empty: the only one behind the most moving joints. Joints that do not move
-/// (`fixed`) become part of the links. Throws InputError with file, line and word: no URDF, xacro that
-/// nobody expanded, a joint that is none of an arm (floating, planar, mimic), no such link, several ends.
-/// tool.
+/// tip: name of a link; empty: the only end of the chain with most moving joints. Joints that do not move
+/// (`fixed`) become part of the links. Throws InputError with file, line and word: no URDF, an xacro that is
+/// not expanded, a joint type that an arm does not have (floating, planar, mimic), no such link, several
+/// ends. tool.
 UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::string& tip);
 
 }  // namespace vernier::create

@@ -32,10 +32,11 @@ struct BudgetPart {
 /// Its parts over a length: what is in proportion to the way, and the drift. tool.
 std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double length_mm);
 
-/// U (k = 2) of A, E, M, R, B in mm, of tests with `runs` readings in each sense. A, E and M are differences
-/// over the length: all parts. What is in proportion to the way is the same in both senses of a target and in
-/// all runs: in B and R the drift is left, in B of two means of `runs`, in R of both ends of a range. tool.
-/// Parts as in public descriptions of ISO/TR 230-9; the combination is the GUM's.
+/// U (k = 2) of A, E, M, R, B in mm, of tests with `runs` readings in each approach direction. A, E and M are
+/// differences over the length: all components count. Components proportional to the distance are equal for
+/// both approach directions of a target and for all runs. In B and R the drift remains: in B of two means of
+/// `runs`, in R of both ends of a range. tool. Components as in public descriptions of ISO/TR 230-9; combined
+/// by the GUM.
 std::map<std::string, double> budget_uncertainty(const PositioningBudget& budget, double length_mm,
                                                  double runs);
 

@@ -64,7 +64,7 @@ std::string signs_of(const Eigen::Vector3d& direction) {
   return name;
 }
 
-/// Rows that follow each other along one line, in both senses; the direction has its first axis upwards.
+/// Consecutive rows along one line, in both approach directions; the direction has its first axis upwards.
 struct Line {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   std::vector<Row> rows;
@@ -125,7 +125,7 @@ DiagonalFile diagonal_of(const std::vector<Line>& passes, const std::string& nam
   result.length = high - low;
   std::map<long long, TargetReadings> targets;
   for (const Line& pass : passes) {
-    // The instrument counts in its own sense: the one in which its displacement follows the way.
+    // The sign of the instrument is the one with which its displacement follows the distance.
     double together = 0, mean_way = 0, mean_reading = 0;
     for (const Row& row : pass.rows) {
       mean_way += (row.at - origin).dot(direction) / static_cast<double>(pass.rows.size());

@@ -16,17 +16,17 @@ struct DiagonalFile {
   PositioningFile positions;
 };
 
-/// The diagonals of a measurement file with columns of two or three linear axes (where the machine was sent)
-/// and `reading`, the displacement measured along the diagonal, in any zero and either sense of counting.
-/// Rows of one straight line in space are a diagonal; the sense of approach is that of the way from the row
-/// before. Throws InputError with file and line: a row on no line with its neighbours, a line along an axis,
-/// fewer than two targets. tool.
+/// Reads the diagonals of a measurement file. Its columns are two or three linear axes (commanded positions)
+/// and `reading`, the displacement measured along the diagonal, with any zero and either sign. Rows of one
+/// straight line in space are a diagonal; the approach direction is that of the motion from the previous row.
+/// Throws InputError with file and line: a row on no line with its neighbours, a line along an axis, fewer
+/// than two targets. tool.
 std::vector<DiagonalFile> read_diagonals(const std::string& text, const std::string& file,
                                          const std::string& reading);
 
-/// ISO 230-6:2002: each diagonal evaluated as an axis by ISO 230-2, and the machine's values, the largest of
-/// its body diagonals (E_d, B_d, R_d, …). By the letters A E M R B. Values of face diagonals stand for
-/// themselves.
+/// ISO 230-6:2002: each diagonal evaluated as an axis by ISO 230-2, and the values of the machine, the
+/// largest of its body diagonals (E_d, B_d, R_d, …). By the letters A E M R B. Values of face diagonals are
+/// reported separately.
 std::map<std::string, double> machine_values(const std::map<std::string, PositioningResult>& body);
 
 }  // namespace vernier::evaluate

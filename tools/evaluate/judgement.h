@@ -20,8 +20,8 @@ const char* conformity_text(Conformity conformity);
 /// A characteristic that a tolerance was given for; all numbers in the unit that is printed.
 struct JudgedValue {
   std::string name;
-  std::optional<double> value;     // nothing: these readings do not have it
-  std::optional<double> expanded;  // uncertainty, k = 2; nothing: none is known, the value alone is judged
+  std::optional<double> value;     // nullopt: these readings do not contain it
+  std::optional<double> expanded;  // uncertainty, k = 2; nullopt: not known, the value alone is tested
   double tolerance = 0;
 };
 
@@ -31,8 +31,8 @@ inline constexpr int kPrintedDigits = 3;
 struct JudgedText {
   std::string value, uncertainty, tolerance;
 };
-/// The numbers of a judgement with `least` digits behind the point, or with as many more as it takes until
-/// the printed numbers say what the verdict says. A value that is not there is "–".
+/// The numbers of a judgement with `least` digits behind the point, or with as many as needed for the printed
+/// numbers to agree with the verdict. A missing value is "–".
 JudgedText judged_text(const JudgedValue& one, int least);
 
 /// Holds where every tolerance that was given is met. unit: of the numbers, for the sentences. tool.

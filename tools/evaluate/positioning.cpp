@@ -146,7 +146,7 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
       sense = std::isnan(senses[row]) ? 0 : senses[row];
       if (sense != 0 && std::abs(sense) != 1)
         throw text::InputError(reader.place(static_cast<std::size_t>(row)), text::number_text(sense),
-                               "a sense of approach is 1 or -1 (0: nothing moved)");
+                               "an approach direction is 1 or -1 (0: nothing moved)");
     } else if (row > 0) {
       // At the far end the same target is approached again from the other side.
       const double before = position[row - 1];
@@ -162,7 +162,7 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
   for (auto& [key, target] : targets) result.readings.push_back(std::move(target));
   if (result.rows == 0)
     throw text::InputError(reader.header(), axis,
-                           "no row has a reading and a sense of approach (" + dir + " of 1 or -1)");
+                           "no row has a reading and an approach direction (" + dir + " of 1 or -1)");
   return result;
 }
 

@@ -7,7 +7,7 @@
 
 namespace vernier::evaluate {
 
-/// Deviations at one target, by sense of approach: forward (0) and backward (1). mm or deg.
+/// Deviations at one target, by approach direction: forward (0) and backward (1). mm or deg.
 struct TargetReadings {
   double target = 0;
   std::array<std::vector<double>, 2> deviation;  // actual − target, in the order of the runs
@@ -25,7 +25,8 @@ struct TargetResult {
   double repeatability_both = 0;          // R_i: the largest of 2 s+ + 2 s− + |B_i|, R_i+, R_i−
 };
 
-/// Of the axis (2014, 3.16 to 3.23). Values of both senses are absent where one was measured only.
+/// Of the axis (2014, 3.16 to 3.23). Bidirectional values are absent if only one approach direction was
+/// measured.
 struct PositioningResult {
   std::vector<TargetResult> targets;                                         // in the order of positions
   std::array<std::optional<double>, 2> accuracy, systematic, repeatability;  // A, E, R of one sense

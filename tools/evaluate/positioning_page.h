@@ -12,7 +12,7 @@
 
 namespace vernier::evaluate {
 
-/// What a report to be handed over says besides its numbers.
+/// Data of a report that is handed over, besides its numbers.
 struct PositioningWords {
   std::string axis;
   std::vector<std::string> files;
@@ -28,7 +28,7 @@ std::optional<double> characteristic(const PositioningResult& result, const std:
 std::optional<JudgedValue> judged_of(const nlohmann::ordered_json& characteristic);
 
 /// {axis, unit, factor, targets[…], characteristics[{name, value, tolerance, uncertainty, conformity}],
-/// assurance, …}; values in um (linear) or arcsec (rotary), as `unit` says. tool.
+/// assurance, …}; values in um (linear) or arcsec (rotary), as `unit` states. tool.
 nlohmann::ordered_json positioning_json(const PositioningResult& result, const PositioningFile& file,
                                         const PositioningWords& words);
 

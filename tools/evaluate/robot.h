@@ -10,7 +10,7 @@
 
 namespace vernier::evaluate {
 
-/// One visit of a pose, or one sample of a path: where the robot was told to be and where it was found. mm;
+/// One visit of a pose, or one sample of a path: the commanded and the measured pose of the robot. mm;
 /// rotations as rotation vectors, deg.
 struct PoseReading {
   std::string run;  // the cycle that it belongs to

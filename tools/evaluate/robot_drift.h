@@ -23,12 +23,13 @@ struct DriftResult {
   std::size_t accuracy_at = 0, repeatability_at = 0, shift_at = 0;  // blocks of the largest
 };
 
-/// Drift of the characteristics of each pose, from readings whose run is their block of cycles: dAP =
-/// |AP of the first block - AP of this one|, dRP = |RP of the first - RP of this one|; reported are the
-/// largest. Throws InputError: a block with fewer than two readings of a pose, a pose in one block only,
-/// blocks that go back in time. tool. Source: ISO 9283:1998, 7.6. The shift of the barycentre is not the
-/// standard's. What the instrument errs by in the same way in both blocks is no drift: uncertainties are of
-/// the scatter alone; an instrument that drifts itself is not told from the robot.
+/// Drift of the characteristics of each pose, from readings whose run is their block of cycles: dAP = |AP of
+/// the first block - AP of this one|, dRP = |RP of the first - RP of this one|. The largest are reported.
+/// Throws InputError: a block with fewer than two readings of a pose, a pose in one block only, blocks that
+/// go back in time. tool.
+/// Source: ISO 9283:1998, 7.6. The shift of the barycentre is not in the standard. An instrument error that
+/// is equal in both blocks is no drift: uncertainties contain the scatter only. A drift of the instrument
+/// cannot be distinguished from a drift of the robot.
 std::vector<DriftResult> evaluate_drift(const std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate

@@ -105,7 +105,7 @@ model::Table table_of_block(const Block& block, const std::string& file, const m
   if (arguments == 0)
     throw text::InputError(place, block.header[0],
                            "a position error or parameter of the machine, no component error: "
-                           "a machine file holds it as a static of its own sign and place");
+                           "a machine file has it as a static with another sign and location");
   if (arguments > 1)
     throw text::InputError(place, block.header[1], "errors of two arguments: a table has one axis");
   const auto found = std::find_if(block.header.begin(), block.header.end(), is_argument);

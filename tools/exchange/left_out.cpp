@@ -72,7 +72,7 @@ std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t 
     if (other == axis) continue;
     const std::string& name = machine.axes[other].name;
     look("the position of " + name, [&](model::States& s) { sampler.fill_axis(s, other); });
-    look("the sense of motion of " + name, [&](model::States& s) { sampler.signs(s.direction[other]); });
+    look("the direction of motion of " + name, [&](model::States& s) { sampler.signs(s.direction[other]); });
   }
   for (std::size_t k = 0; k < machine.inputs.size(); ++k) {
     const model::Input& input = machine.inputs[k];

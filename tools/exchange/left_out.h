@@ -16,10 +16,10 @@ struct LeftOut {
 /// Above this an error counts as one, um: a tenth of the finest digit that controllers' tables are kept in.
 inline constexpr double kNothing_um = 0.01;
 
-/// How the first-order offset of `axis` depends on anything but the position and the sense of that
-/// axis: the largest change that other axes, inputs, speed, travel since reversal … make at random states
-/// (fixed seed) within the axis ranges, one entry for each that counts. `at`: the state (count 1) that stays.
-/// tool.
+/// Finds the variables, other than its position and direction, on which the first-order offset of `axis`
+/// depends. Reports the largest change that other axes, inputs, speed, travel since reversal … make at random
+/// states (fixed seed) within the axis ranges, one entry for each that is significant. `at`: the fixed state
+/// (count 1). tool.
 std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t axis,
                                      const model::States& at);
 

@@ -157,7 +157,7 @@ std::string readme(const model::Machine& machine, const std::string& folder) {
       "and `[VERNIER]`.\n"
       "4. Set `CMD_n` and `FB_n` to the signals of your HAL files, and `POSITION` (see there).\n"
       "5. Connect the sensors in `vernier.hal`, where the machine has some.\n"
-      "6. Start LinuxCNC and home. `halcmd getp vernier.0.active` says TRUE when the whole correction is "
+      "6. Start LinuxCNC and home. `halcmd getp vernier.0.active` is TRUE when the whole correction is "
       "in.\n"
       "7. A better image: `vernier upload DIR --to tcp://127.0.0.1:1502 --key vernier.key --confirm`, while "
       "LinuxCNC runs; then\n"

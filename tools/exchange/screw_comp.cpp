@@ -75,8 +75,8 @@ class LinePlacer {
  private:
   double worst() const { return worst_.empty() ? 0 : *std::max_element(worst_.begin(), worst_.end()); }
 
-  /// Trims at positions that no period is a multiple of: one in each of many equal parts, at a place of its
-  /// own there (golden section: no two parts alike).
+  /// Trims at positions that are no multiple of a period: one in each of many equal parts, at a different
+  /// position in each part (golden section).
   std::vector<ScrewPoint> look(double low, double high) const {
     constexpr double kFewest = 4096, kMost = 65536, kPerPeriod = 32, kPerStation = 8;
     constexpr double kGolden = 0.6180339887498949;

@@ -25,15 +25,15 @@ inline constexpr std::size_t kMostScrewPoints = 256;
 struct ScrewTable {
   std::vector<ScrewPoint> points;
   double worst_um = 0;     // largest distance between the trims and the lines, rounding of the file included
-  std::size_t probed = 0;  // positions that were looked at, in both senses
+  std::size_t probed = 0;  // positions that were evaluated, in both directions
 };
 
-/// Trims of one linear axis in both senses, at the stations of its table and wherever it takes to stay within
-/// tolerance_um between them; other axes, motion and inputs as in `at` (count 1). They are first-order
-/// offsets, as if measured at the commanded positions, so an axis that carries the workpiece has the right
-/// sign. Looked at are at least 4096 positions at uneven distances, 32 in each period and 8 between stations
-/// (65536 at most). Throws InputError: no min and max; LimitNotMet, with the error reached: more lines than
-/// the controller keeps. tool.
+/// Trims of one linear axis in both directions, at the stations of its table and at further positions until
+/// the error between them is within tolerance_um; other axes, motion and inputs as in `at` (count 1). They
+/// are first-order offsets, as if measured at the commanded positions, so that an axis that carries the
+/// workpiece has the right sign. At least 4096 positions at uneven distances are evaluated, 32 in each period
+/// and 8 between stations (65536 at most). Throws InputError: no min and max; LimitNotMet, with the error
+/// reached: more lines than the controller accepts. tool.
 ScrewTable screw_table(const model::Machine& machine, std::size_t axis, const model::States& at,
                        double tolerance_um);
 
@@ -44,10 +44,9 @@ std::string screw_text(const std::vector<ScrewPoint>& points, ScrewType type);
 /// increase, too many lines. tool.
 std::vector<ScrewPoint> parse_screw(const std::string& text, const std::string& file, ScrewType type);
 
-/// The machine text with the points as the axis' own column of its table: minus the mean of both trims, and
-/// half their difference as static `reversal` (empty: there must be none). Verified: the machine that comes
-/// out has these trims again. Throws InputError where it has not, or where the reversal is not the same at
-/// all points. tool.
+/// The machine text with the points as the axis' column of its table: minus the mean of both trims, and half
+/// their difference as static `reversal` (empty: no reversal is allowed). Verified: the resulting machine has
+/// the same trims. Throws InputError if it has not, or if the reversal is not the same at all points. tool.
 std::string screw_into_machine(const std::string& text, const model::Machine& machine, std::size_t axis,
                                const std::vector<ScrewPoint>& points, const std::string& reversal);
 

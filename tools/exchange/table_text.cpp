@@ -83,7 +83,7 @@ std::string set_table(const std::string& text, const model::Machine& machine, co
   const model::Table* read = back.table_of(table.axis);
   if (read == nullptr || !same(*read, table))
     throw text::InputError({machine.file, 0}, machine.axes[table.axis].name,
-                           "the table cannot be put into this text: a comment may hold a table of its own");
+                           "the table cannot be put into this text: a comment may contain a table");
   return result;
 }
 

@@ -114,11 +114,11 @@ constexpr std::array kGroups = {
     motion(columns::kCurvature, "1/mm", "curvature of the path", "0"),
     motion(columns::kVisit, "", "number of rows since the start of the run, from 0", "the rows are counted"),
     run(),
-    label(columns::kRole, false, "`fit`, or `check`: a held-out row that only judges the fit", "`fit`"),
+    label(columns::kRole, false, "`fit`, or `check`: a held-out row that only tests the fit", "`fit`"),
     label(columns::kCorrected, false,
           "fingerprint of the image whose correction was on; its file is found with `--images`",
           "no correction was on"),
-    label(columns::kSetup, true, "label of the set-up of the instrument, with its own BaseShift", "`run`"),
+    label(columns::kSetup, true, "label of the set-up of the instrument, with a separate BaseShift", "`run`"),
     label(columns::kClock, true, "label of the rows with one unbroken time base", "`run`"),
     label(columns::kBlock, true, "label of the rows that cross-validation leaves out together", "`run`"),
 };

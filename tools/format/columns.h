@@ -47,7 +47,7 @@ enum class ColumnUse : std::uint8_t {
   kBeside,       // what a reading needs in its row: a centre, a normal
   kUncertainty,  // of the readings of the row
   kMotion,       // state of the machine along its path
-  kLabel         // says which rows belong together
+  kLabel         // groups the rows
 };
 
 /// Columns of one meaning: "x y z", or one alone.
@@ -59,8 +59,8 @@ struct ColumnGroup {
   const char* meaning;                     // a phrase; of one column and of several
   ReadingForm form = ReadingForm::kPoint;  // of kReading and kBeside
   bool words = false;                      // words, not numbers
-  /// Of a later version of the format: a machine file may use the name for an input of its own. Then, or
-  /// with another unit, the column is a person's own.
+  /// Column of a later version of the format: a machine file may use the name for an input. In that case, or
+  /// with another unit, the column is a user's column.
   bool later = false;
   bool filled = false;              // no cell may be empty
   bool in_terms = false;            // expressions read it by this name, so nothing else may have it
@@ -109,7 +109,8 @@ inline constexpr std::array kAxisColumns = {
     AxisColumnEntry{AxisQuantity::kPosition, "", Dimension::kLength, Dimension::kAngle, "mm", true,
                     "commanded or read position of the axis", "an error"},
     AxisColumnEntry{AxisQuantity::kSense, "dir", Dimension::kNone, Dimension::kNone, "", true,
-                    "approach direction: sense of the last motion of the axis, 1 or −1; 0: not known", "0"},
+                    "approach direction: direction of the last motion of the axis, 1 or −1; 0: not known",
+                    "0"},
     AxisColumnEntry{AxisQuantity::kSince, "since", Dimension::kLength, Dimension::kAngle, "mm", true,
                     "travel of the axis since its last reversal", "a long way"},
     AxisColumnEntry{AxisQuantity::kSpeed, "v", Dimension::kSpeed, Dimension::kAngularSpeed, "mm/s", true,

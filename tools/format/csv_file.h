@@ -21,8 +21,8 @@ struct CsvFile {
   std::vector<std::size_t> line;  // 1-based line of each row
 };
 
-/// Splits `text`; every row has as many fields as the header has columns. Fields may stand in double quotes.
-/// Throws InputError: wrong number of fields, a name that stands twice or is no name, an unknown unit, no
+/// Splits `text`; every row has as many fields as the header has columns. Fields may be in double quotes.
+/// Throws InputError: wrong number of fields, a name that occurs twice or is not valid, an unknown unit, no
 /// header. tool.
 CsvFile parse_csv(const std::string& text, const std::string& file);
 

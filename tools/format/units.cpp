@@ -61,7 +61,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kSigns =
     {"\u00b0C", "degC"},  // degree sign
     {"\u00ba"
      "C",
-     "degC"},            // masculine ordinal, which stands for it on many keyboards
+     "degC"},            // masculine ordinal, which many keyboards give instead
     {"\u2103", "degC"},  // degree Celsius in one sign
     {"\u00b0F", "degF"},
     {"\u00ba"

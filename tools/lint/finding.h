@@ -9,7 +9,7 @@ namespace vernier::lint {
 /// How much a finding weighs.
 enum class LintWeight {
   kError,    // the file cannot be used
-  kWarning,  // it can, and probably says something else than was meant
+  kWarning,  // it can be used, but its meaning probably differs from the intention
   kRemark,   // good to know
 };
 

@@ -57,7 +57,7 @@ class LintNames {
   const model::Machine* machine_;
 };
 
-/// A file's name as it may stand in a command.
+/// A file name, quoted for use in a command.
 std::string quoted_for_shell(const std::string& file);
 
 }  // namespace vernier::lint

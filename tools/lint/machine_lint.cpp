@@ -178,7 +178,7 @@ std::string meaning_of(const Problem& problem, const std::string& text) {
   if (number && !problem.word.empty()) {
     std::size_t end = problem.word.find_first_not_of("0123456789.+-eE");
     if (end != std::string::npos && end > 0 && text::parse_number(problem.word.substr(0, end)))
-      return "a unit stands in unit=\"…\", not behind the number; values are in mm and deg";
+      return "a unit is written in unit=\"…\", not behind the number; values are in mm and deg";
   }
   if (has(problem.what, "unknown name") || has(problem.what, "no such axis"))
     if (const auto meant = text::word_meant(problem.word, names_in(text)))
@@ -197,7 +197,7 @@ std::string meaning_of(const Problem& problem, const std::string& text) {
     if (const auto meant = text::word_meant(problem.word, kElements)) return "did you mean " + *meant + "?";
   }
   if (has(problem.what, "stations must increase"))
-    return "stations stand in the order of their positions, each once";
+    return "list stations in the order of their positions, each once";
   return "";
 }
 
@@ -260,7 +260,7 @@ class Oddities {
     for (const model::Table& table : m_.tables) look_at(table);
     if (m_.base_shifts.empty())
       findings_.remark(
-          0, "BaseShift", "there is none: the measuring frame is the machine's own",
+          0, "BaseShift", "missing: the measuring frame is the frame of the machine",
           "a tracker or CMM stands somewhere else; <BaseShift X=\"0\" …/> lets a fit find where");
     std::set<std::string> runs;
     for (const model::BaseShift& shift : m_.base_shifts)
@@ -286,8 +286,7 @@ class Oddities {
       // "1/K", "mm/degC": units of coefficients are made of the known ones.
       const bool composed = unit.find_first_of("/*^") != std::string::npos;
       if (!composed)
-        findings_.warn(line, unit, "nobody knows this unit, of " + name,
-                       meant ? "did you mean " + *meant + "?" : "");
+        findings_.warn(line, unit, "unknown unit, of " + name, meant ? "did you mean " + *meant + "?" : "");
       return;
     }
     const bool base = known->factor == 1 && known->offset == 0;
@@ -407,7 +406,7 @@ class Oddities {
 }  // namespace
 
 MachineLint lint_machine(const std::string& text, const std::string& file) {
-  constexpr std::size_t kMostProblems = 200;  // that anybody mends at a time
+  constexpr std::size_t kMostProblems = 200;  // more problems than a user corrects in one pass
   MachineLint result;
   LintFindings findings(file);
   std::string mended = text;
@@ -428,8 +427,8 @@ MachineLint lint_machine(const std::string& text, const std::string& file) {
     }
   }
   if (!all_read)
-    findings.add(LintWeight::kRemark, 0, "", "what stands behind the last error was not looked at",
-                 "mend it and ask again");
+    findings.add(LintWeight::kRemark, 0, "", "the text after the last error was not checked",
+                 "correct it and run lint again");
   if (machine) {
     for (const std::string& note : machine->notes)
       findings.add(LintWeight::kRemark, 0, "",

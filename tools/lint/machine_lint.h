@@ -14,8 +14,8 @@ struct MachineLint {
   std::optional<model::Machine> machine;  // where nothing is an error
 };
 
-/// Reads a machine file to its end, past what is wrong with it (a broken word is taken out and the rest read
-/// again), then looks for what is right in form and odd in meaning: a unit that nobody knows or that does not
+/// Reads a machine file to its end, past its errors (a wrong word is removed and the rest is read again).
+/// Then reports parts that are valid in form but doubtful in meaning: a unit that is unknown or that does not
 /// scale, an axis, static, input or table that no transform uses, a missing range or nominal. tool.
 MachineLint lint_machine(const std::string& text, const std::string& file);
 

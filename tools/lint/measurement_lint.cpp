@@ -107,9 +107,10 @@ class Look {
     const char separator = sheet::guess_separator(joined_lines, "");
     if (separator != ',' && lines.front().find(separator) != std::string::npos &&
         lines.front().find(',') == std::string::npos && (separator != ' ' || lines.size() > 1)) {
-      findings_.error(numbers.front(), lines.front().substr(0, 30),
-                      std::string("columns parted by ") + sheet::separator_word(separator) + ", not by comma",
-                      "a spreadsheet or an instrument's table; read it: " + command(file_));
+      findings_.error(
+          numbers.front(), lines.front().substr(0, 30),
+          std::string("columns separated by ") + sheet::separator_word(separator) + ", not by comma",
+          "a spreadsheet or an instrument's table; read it: " + command(file_));
       for (std::size_t i = 1; i < lines.size(); ++i)
         for (const std::string& cell : text::parts_of(lines[i], separator == ' ' ? ' ' : separator))
           if (sheet::decimal_sign_in(cell) == sheet::DecimalSign::kComma) {
@@ -167,7 +168,7 @@ class Look {
         column.unit = heading.unit;
       } else if (!column.unit.empty() && !format::find_unit(column.unit)) {
         const auto meant = sheet::unit_meant(column.unit);
-        findings_.error(table_.header_line, column.unit, "nobody knows this unit",
+        findings_.error(table_.header_line, column.unit, "unknown unit",
                         meant ? "meant is " + *meant + "? " + command(file_) + " reads it so"
                               : "known are " + format::known_units());
         column.unit = meant.value_or("");
@@ -329,7 +330,7 @@ class Look {
     if (own && 2 * words > filled) {
       column.label = true;
       findings_.remark(table_.header_line, column.name, "a column of words",
-                       "numbers can explain an error, words only tell rows apart");
+                       "numbers can explain an error, words only distinguish rows");
     }
     for (const LintRow& row : table_.rows) {
       const std::string& cell = row.cells[k];
@@ -353,7 +354,7 @@ class Look {
     }
   }
 
-  /// What a fit says of the file, where nothing above has said it.
+  /// The error that a fit reports for the file, if no finding above has reported it.
   void confirm() {
     if (machine_ == nullptr || findings_.any(LintWeight::kError)) return;
     try {

@@ -104,7 +104,7 @@ class Meaning {
       findings_.warn(table_.header_line, column.name,
                      fmt::format("axis {} never moves: it stands at {} {} in all rows", column.name,
                                  text::number_text(least), unit),
-                     "its errors cannot be told from the set-up's");
+                     "its errors cannot be distinguished from those of the set-up");
     if (machine_ == nullptr) return;
     const model::Axis& axis = machine_->axes[*machine_->find_axis(column.name)];
     if (!axis.min || !axis.max) return;
@@ -154,7 +154,7 @@ class Meaning {
       findings_.warn(table_.header_line, columns::kRole,
                      "all rows are check rows: nothing is left for a fit");
     if (check == 0)
-      findings_.remark(table_.header_line, columns::kRole, "no check rows: nothing will judge the fit",
+      findings_.remark(table_.header_line, columns::kRole, "no check rows: the fit will not be tested",
                        "give some rows the role check, spread over the volume");
     if (table_.find(columns::kUncertainty) == nullptr)
       findings_.remark(table_.header_line, columns::kUncertainty,
@@ -232,7 +232,7 @@ class Meaning {
         }
       ++used;
     }
-    // Where turning axes swing the tool, travel of the slides says nothing about the points.
+    // If rotary axes move the tool, travel of the linear axes gives no information on the points.
     for (const LintColumn& column : table_.columns)
       if (names_.is_axis(column.name) && names_.is_rotary(column.name)) return;
     if (used == 0 || sent < 1 || measured <= 0) return;
@@ -315,7 +315,7 @@ class Meaning {
       if (values[row] > high + kWild * width || values[row] < low - kWild * width)
         findings_.add_of_kind(
             "wild " + column.name, LintWeight::kWarning, line(row), column.cell[row],
-            fmt::format("{} is {:.3g} times the spread of its column away from it", column.name,
+            fmt::format("{} is outside its column by {:.3g} times the spread of the column", column.name,
                         (values[row] > high ? values[row] - high : low - values[row]) / width),
             "a slip, a lost point or a number for \"no reading\"? Leave the cell empty");
   }

@@ -11,11 +11,11 @@
 
 namespace vernier::offline {
 
-/// A move of all axes at once from one place to another: straight, or along an arc.
+/// A move of all axes together from one position to another: straight, or along an arc.
 struct ProgramMove {
   Eigen::VectorXd from, to;  // mm and deg
   std::optional<ProgramArc> arc;
-  double feed = 0;  // of the linear axes together, mm/min; 0: nobody knows it (rapid, inverse time)
+  double feed = 0;  // of the linear axes together, mm/min; 0: not known (rapid, inverse time)
 
   Eigen::VectorXd at(double share) const;
 };
@@ -27,15 +27,15 @@ class AxisMotion {
   /// at: one row, with the inputs.
   AxisMotion(const model::Machine& machine, const model::States& at);
 
-  /// Shares at which the senses of all axes are the same from one to the next: 0, reversals, 1.
+  /// Shares between which the directions of all axes do not change: 0, reversals, 1.
   std::vector<double> stretches(const ProgramMove& move) const;
   /// The axes set out from one place to another, none turning round between.
   void set_out(const Eigen::VectorXd& from, const Eigen::VectorXd& to);
   /// Positions with the motion at shares of a move, all within what was set out for.
   model::States along(const ProgramMove& move, const std::vector<double>& shares) const;
-  /// How many equal parts of a stretch are looked at: a millimetre or a tenth of a degree each at most, 32
-  /// in each period of a wave of the chain and 4 between stations, and of an arc so short that chords of them
-  /// stay within an eighth of the deviation.
+  /// Number of equal parts of a stretch that are evaluated. A part is at most a millimetre or a tenth of a
+  /// degree; each period of a cyclic error of the chain has 32 parts, each interval between stations 4. Parts
+  /// of an arc are so short that chords of them stay within an eighth of the deviation.
   int looks(const ProgramMove& move, double from, double to, double deviation_mm) const;
 
  private:

@@ -47,7 +47,7 @@ Eigen::MatrixXd Corrector::commands(const model::States& states) {
 }
 
 void Corrector::count(const model::States& states, const Eigen::MatrixXd& commands) {
-  // What was reached is judged on the chain itself, not by what the solver says.
+  // The result is tested with the chain, not by the report of the solver.
   model::States there = states;
   for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
     there.axis[i] = commands.row(static_cast<Eigen::Index>(i)).transpose().array();
@@ -72,7 +72,7 @@ void refuse_corrected(const std::string& text, const std::string& file) {
                             std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
   throw text::InputError(
       {file, line}, kCorrectedMark,
-      "this was corrected before; corrected again it would be off by as much the other way");
+      "this was corrected before; a second correction would give the same error with the other sign");
 }
 
 }  // namespace vernier::offline

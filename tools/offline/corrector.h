@@ -52,7 +52,7 @@ class Corrector {
 /// First words of what is written, by which a file that was corrected before is known.
 inline constexpr const char* kCorrectedMark = "corrected by vernier";
 
-/// Throws InputError, naming the line, where a text says that it was corrected. tool.
+/// Throws InputError, naming the line, if a text states that it was corrected. tool.
 void refuse_corrected(const std::string& text, const std::string& file);
 
 }  // namespace vernier::offline

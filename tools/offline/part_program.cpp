@@ -20,8 +20,8 @@ namespace {
 using Eigen::Index, Eigen::VectorXd;
 
 constexpr double kMmPerInch = 25.4;
-/// Shares of the deviation: a jump of the correction that is written as a block of its own, and how far a
-/// block may leave the points that are looked at; the rest is for what lies between two of them.
+/// Shares of the deviation: a jump of the correction that gets a separate block, and the largest distance of
+/// a block from the evaluated points; the rest is for the path between two of them.
 constexpr double kJump = 0.1, kBlock = 0.8;
 
 enum class Motion : std::uint8_t { kNone, kRapid, kLine, kClockwise, kCounterClockwise };
@@ -134,7 +134,7 @@ class Translator {
     const bool arc = motion_ == Motion::kClockwise || motion_ == Motion::kCounterClockwise;
     for (const Word& word : words) {
       moves = moves || (arc && (word.letter == 'I' || word.letter == 'J' || word.letter == 'K'));
-      if (word.letter == 'G' && word.value == 4) moves = false;  // a dwell has words of its own
+      if (word.letter == 'G' && word.value == 4) moves = false;  // a dwell has different words
     }
     if (!moves) {
       result_.text += without_modes(line, words) + "\n";

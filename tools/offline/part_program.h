@@ -23,7 +23,7 @@ struct PartProgramOptions {
   std::vector<double> zero;
   int digits = 5;                                    // behind the point
   bool arcs = true;                                  // G2 and G3 are written; else chords alone
-  std::function<void(const ProgramStretch&)> watch;  // is told every move in the order of the program
+  std::function<void(const ProgramStretch&)> watch;  // called with every move in the order of the program
 };
 
 struct PartProgram {
@@ -35,14 +35,15 @@ struct PartProgram {
   double worst_mm = 0;
 };
 
-/// A part program (RS-274: G0 G1 G2 G3, planes G17 to G19, G20/G21, G90/G91, G90.1/G91.1, G93/G94) with the
-/// correction in its positions. A block is split where the correction along it is no straight line; an arc or
-/// helix is written as arcs in its plane, with I J K as steps, and as chords where these reach as far; under
-/// G93 the parts share the block's time. Speeds and senses of a move are those of its direction and F word.
-/// What is no motion stays as it stands. `at`: where the axes stand before
-/// the first block, and inputs. Throws InputError with file, line and word for what would be wrong if it were
-/// passed on: cycles, compensation of the cutter, other zeros and rotations, parameters, loops, an axis that
-/// was never commanded and that `at` does not name. tool.
+/// Reads a part program (RS-274: G0 G1 G2 G3, planes G17 to G19, G20/G21, G90/G91, G90.1/G91.1, G93/G94) and
+/// writes it with the correction in its positions. A block is split if the correction along it is not a
+/// straight line. An arc or helix is written as arcs in its plane, with I J K as steps, or as chords if these
+/// reach as far; under G93 the parts share the block's time. The speed and direction of each axis are those
+/// of the move and its F word. Words without motion are not changed. `at`: positions of the axes before the
+/// first block, and inputs.
+/// Throws InputError with file, line and word for words that would be wrong in the output: cycles, cutter
+/// compensation, other zeros and rotations, parameters, loops, an axis that was never commanded and that `at`
+/// does not name. tool.
 PartProgram corrected_program(const std::string& text, const std::string& file, const model::States& at,
                               const std::vector<char>& known, const PartProgramOptions& options,
                               Corrector& corrector);

@@ -34,7 +34,7 @@ class ArcFit {
   ArcFit(const MatrixXd& points, const ArcGuide& guide, double most)
       : points_(points), guide_(guide), most_(most) {}
 
-  /// The arc from one point to another that stays near all between them; empty where there is none.
+  /// The arc from one point to another that stays near all points between them; empty if no arc does.
   std::optional<PathPiece> arc(Index from, Index to) const {
     const double turn =
         guide_.angle[static_cast<std::size_t>(to)] - guide_.angle[static_cast<std::size_t>(from)];
@@ -193,7 +193,7 @@ std::vector<PathPiece> fit_path(const MatrixXd& points, const std::optional<ArcG
     if (from == 0 && !best && arcs) best = arcs->arc(from, last);
     if (!best) best = PathPiece{reach(from + 1, 1, last, straight), {}, false};
     if (arcs && best->to < last && !best->centre) {
-      // So short an arc that a line would do says nothing about its centre.
+      // An arc so short that a line fits as well does not determine its centre.
       const Index to = reach(best->to, best->to - from, last, round);
       if (to > best->to) best = arcs->arc(from, to);
     }
@@ -220,7 +220,7 @@ double distance_from(const PathPiece& piece, const MatrixXd& points, Index from,
   const double turn =
       guide->angle[static_cast<std::size_t>(piece.to)] - guide->angle[static_cast<std::size_t>(from)];
   const double sense = std::copysign(1, turn);
-  const auto forward = [&](const Vector2d& at) {  // 0 to a turn, in the sense of the arc
+  const auto forward = [&](const Vector2d& at) {  // 0 to a turn, in the direction of the arc
     const double angle = sense * std::atan2(cross(start, at), start.dot(at));
     return angle < 0 ? angle + kTurn : angle;
   };

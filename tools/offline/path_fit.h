@@ -21,11 +21,11 @@ struct PathPiece {
   bool whole = false;  // a whole turn: ends where it began in its plane
 };
 
-/// As few blocks from the first point to the last as come out when each is as long as it can be: all points
+/// Finds few blocks from the first point to the last: each block is as long as possible, with all points
 /// between its ends within `most` of it (norm over all axes, one point per column). Arcs pass through the
-/// points at their ends and turn by at most 270 degrees, or once round; where a line reaches as far, the line
-/// is taken. What lies along a line or an arc is a matter of time, not of the path. Without a guide lines
-/// alone. tool.
+/// points at their ends and turn by at most 270 degrees, or one full turn. If a line reaches as far, the line
+/// is used. The position along a line or an arc is a matter of time, not of the path. Without a guide only
+/// lines are used. tool.
 std::vector<PathPiece> fit_path(const Eigen::MatrixXd& points, const std::optional<ArcGuide>& guide,
                                 double most);
 

@@ -64,7 +64,7 @@ void read_column(const PositionTable& table, const std::string& name, format::Di
   if (const auto column = table.find(name)) target = factor * table.numbers(*column, dimension);
 }
 
-/// All that is known of each row beside the positions: what `at` says, and what the columns do.
+/// All known values of each row besides the positions: from `at` and from the columns.
 model::States states_of(const PositionTable& table, const model::Machine& machine, const model::States& at) {
   const std::size_t rows = table.csv().rows.size();
   model::States states = model::select_states(at, std::vector<std::size_t>(rows, 0));

@@ -5,24 +5,25 @@
 
 namespace vernier::report {
 
-/// One self-contained HTML page that draws the JSON result of `compare`; it computes no result of its own.
-/// The page opens without a network, in light and dark. Everything is optional but an object:
+/// Makes one self-contained HTML page that draws the JSON result of `compare`; it computes no result. The
+/// page opens without a network, in light and dark. Every key is optional; the JSON must be an object:
 ///   machine, files[], rms_um, check_rms_um, max_um, check_max_um, noise_um, n_obs, n_excluded, rms_urad,
 ///   parameters[{name, value, std, unit}], notes[],
 ///   detail: { columns[{name, unit, kind}], column_data[column][row], runs[], row_run[], row_check[],
-///   row_line[],
+///     row_line[],
 ///     observations: {kind[], row[], kind_index[], residual[] (um or urad)},
-///     circular[{plane[2], nominal_radius_mm, runs[{label, direction, angle_deg[], measured_um[], model_um[],
-///     check[],
-///       centre_mm[2], radius_mm, circular_deviation_um, max_radial_um, max_radial_deg, min_radial_um,
-///       min_radial_deg, feed_mm_min}], bidirectional_um, hysteresis_um, hysteresis_deg}],
+///     circular[{plane[2], nominal_radius_mm,
+///       runs[{label, direction, angle_deg[], measured_um[], model_um[], check[],
+///         centre_mm[2], radius_mm, circular_deviation_um, max_radial_um, max_radial_deg,
+///         min_radial_um, min_radial_deg, feed_mm_min}],
+///       bidirectional_um, hysteresis_um, hysteresis_deg}],
 ///     worst[{row, line, run, kind, residual}] },
 ///   field: {axes[], counts[], point_mm[][3], deviation_um[][3], max_um, rms_um} (arrows over a volume), or
-///   field_note: why there is none
-/// Any of these pages: header[[key, value]…], who measured what, when and with what; "company" stands above.
-/// More observations of a kind than kMostDrawn are thinned: every n-th and the worst are drawn, and the page
-/// says so. Texts are shown as they are, never read as markup. Throws std::invalid_argument where `detail`
-/// contradicts itself. tool.
+///   field_note: reason why no field is drawn
+/// Any of these pages may have header[[key, value]…]: person, subject, date and instrument of the
+/// measurement; "company" is at the top. If a kind has more observations than kMostDrawn, only every n-th and
+/// the worst are drawn, and the page reports it. Texts are shown as they are, never read as markup. Throws
+/// std::invalid_argument if `detail` contradicts itself. tool.
 std::string compare_report_html(const nlohmann::ordered_json& result);
 
 /// The same kind of page for a job of several steps:

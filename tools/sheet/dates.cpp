@@ -15,7 +15,7 @@ namespace {
 
 bool is_digit_sign(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// Does text follow a pattern in which 0 stands for any digit?
+/// True if the text follows a pattern in which 0 is a placeholder for any digit.
 bool follows(std::string_view text, std::string_view pattern) {
   if (text.size() != pattern.size()) return false;
   for (std::size_t i = 0; i < text.size(); ++i)

@@ -112,7 +112,7 @@ bool is_units(const std::vector<std::string>& row) {
   return units >= std::min<std::size_t>(2, row.size());
 }
 
-/// Cells of a line that stand for those at their right until the next: what is merged in a workbook.
+/// Cells of a line that also apply to the empty cells at their right: merged cells of a workbook.
 std::vector<std::string> spread_to_the_right(const std::vector<std::string>& upper,
                                              const std::vector<std::string>& lower) {
   std::vector<std::string> spread = upper;
@@ -121,8 +121,8 @@ std::vector<std::string> spread_to_the_right(const std::vector<std::string>& upp
   return spread;
 }
 
-/// Does the line above go with this line of headings? Only where this one says too little by itself: a cell
-/// empty, a unit alone, or twice the same; and where the two together say it.
+/// True if the line above belongs to this line of headings. Conditions: this line is not complete (an empty
+/// cell, a unit alone, or the same text twice), and the two lines together are.
 bool is_second_line(const Sheet& sheet, std::size_t row) {
   const std::vector<std::string>& lower = sheet.rows[row];
   const std::vector<std::string>& upper = sheet.rows[row - 1];

@@ -13,8 +13,7 @@ namespace vernier::sheet {
 /// "mm/Min.", "U/min"; brackets around it do not count. Nothing where it is no unit. tool.
 std::optional<std::string> unit_meant(std::string_view word);
 
-/// A heading: its words without the unit, and the unit that stands in it: "X [mm]", "X(mm)", "X / mm", "Temp.
-/// in °C".
+/// A heading: its words without the unit, and the unit in it: "X [mm]", "X(mm)", "X / mm", "Temp. in °C".
 struct Heading {
   std::string text;          // as written
   std::string name;          // without unit

@@ -12,7 +12,7 @@ namespace {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-/// Signs that stand in numbers of spreadsheets, as ASCII: minus signs, blanks that do not break.
+/// Signs in numbers of spreadsheets, as ASCII: minus signs, non-breaking blanks.
 std::string ascii_signs(std::string_view cell) {
   std::string text = text::trimmed(cell);
   const auto replace = [&](std::string_view sign, const char* with) {

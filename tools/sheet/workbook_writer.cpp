@@ -61,7 +61,7 @@ std::string workbook_of(const std::vector<SheetToWrite>& sheets) {
   const TemporaryFile file;
   lxw_workbook* const workbook = workbook_new(file.path().c_str());
   if (workbook == nullptr) throw std::runtime_error("workbook: cannot be begun");
-  // Without a date of its own a workbook has that of its writing, and no two are alike.
+  // Without a fixed date a workbook contains its time of writing, and two files are never equal.
   lxw_doc_properties properties{};
   properties.created = 1;
   workbook_set_properties(workbook, &properties);

@@ -13,7 +13,7 @@ namespace vernier::text {
 /// no verdict is better than a wrong one). tool.
 double decisive(double value, std::string_view what);
 
-/// What a result vouches for; the names are those of tools/docs/assurances.md.
+/// The assurance of a result; the names are those of tools/docs/assurances.md.
 enum class AssuranceKind : std::uint8_t {
   kFit,
   kDiagnose,

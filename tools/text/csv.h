@@ -12,8 +12,8 @@ struct FieldRules {
   bool quotes_inside = false;  // a quote within a field that does not begin with one is a letter (5")
 };
 
-/// The fields of one line, without blanks around them. A field may stand in double quotes, in which a doubled
-/// one is one. Throws InputError. tool.
+/// The fields of one line, without blanks around them. A field may be in double quotes, in which a doubled
+/// quote is one quote. Throws InputError. tool.
 std::vector<std::string> fields_of(const std::string& line, const FieldRules& rules, const Place& place);
 
 /// A field as it is written: in quotes where it holds what a reader might take for more than a letter. tool.

@@ -33,7 +33,7 @@ std::optional<std::int64_t> parse_utc(const std::string& text) {
     const char* const end = strptime(text.c_str(), form, &parts);
     if (end == nullptr || *end != '\0') continue;
     const int day = parts.tm_mday;
-    const std::time_t seconds = timegm(&parts);  // carries a day over that its month has not
+    const std::time_t seconds = timegm(&parts);  // moves a day beyond the end of its month to the next month
     if (parts.tm_mday != day) return {};
     return std::int64_t{seconds} * 1'000'000;
   }

@@ -7,7 +7,7 @@
 
 namespace vernier::text {
 
-/// Where an attribute of a start tag stands in the text of an XML file.
+/// Position of an attribute of a start tag in the text of an XML file.
 struct AttributeSpan {
   std::string name;          // as written
   std::size_t name_at = 0;   // offset of its name

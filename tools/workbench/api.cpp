@@ -66,7 +66,7 @@ ApiReply Api::get_file(const ApiRequest& request) {
   if (!std::filesystem::is_regular_file(path)) throw text::InputError("\"" + name + "\": no file");
   ApiReply reply{200, "application/octet-stream", text::read_file(path.string()), {}};
   if (ends_with(name, ".html")) {
-    // A report may run its own script, but in an origin of its own: it reaches nothing of the workbench.
+    // A report may run its script, but in a separate origin: it has no access to the workbench.
     reply.type = "text/html; charset=utf-8";
     reply.headers.emplace_back(
         "Content-Security-Policy",

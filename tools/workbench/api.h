@@ -11,9 +11,9 @@
 
 namespace vernier::workbench {
 
-/// What the page can ask for, without a network: files, commands, rows, predictions, terms, history, a board.
-/// What takes reading a file is answered by a process of its own (FileReader), or by a command.
-/// May be called from several threads. tool.
+/// The requests of the page, without a network: files, commands, rows, predictions, terms, history, a board.
+/// A request that needs a file is answered by a separate process (FileReader), or by a command. May be called
+/// from several threads. tool.
 class Api {
  public:
   /// directory: of the project. program: the `vernier` that runs commands. version: shown on the page.

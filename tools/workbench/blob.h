@@ -13,7 +13,7 @@ namespace vernier::workbench {
 /// {"f32": [offset, count]}, {"u32": ...} or {"u8": ...}, the offset from the first byte after the JSON.
 class Blob {
  public:
-  /// What stands in the JSON for these numbers; what is not finite stays so.
+  /// The JSON placeholder for these numbers; values that are not finite are kept.
   nlohmann::ordered_json f32(const std::vector<float>& values);
   nlohmann::ordered_json f32(const Eigen::ArrayXd& values);
   nlohmann::ordered_json u32(const std::vector<std::uint32_t>& values);

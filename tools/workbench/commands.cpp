@@ -13,7 +13,7 @@ namespace {
 
 enum class FieldKind : std::uint8_t { kIn, kInList, kOut, kText, kTextList, kNumber, kFlag, kRegistry };
 
-/// A field of a request and where it stands in the command: behind `option`, or as a word of its own.
+/// A field of a request and its position in the command: after `option`, or as a separate word.
 struct Field {
   const char* key;
   FieldKind kind;

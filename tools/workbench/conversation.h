@@ -13,24 +13,25 @@ using Message = std::vector<std::string>;
 /// The next message of a stream; false at its end, after `patience_s` without a byte (0: waits for ever), and
 /// where more comes than any message has. tool.
 bool read_message(int stream, double patience_s, Message& message);
-/// False where nobody takes it. tool.
+/// False if the other end does not take it. tool.
 bool write_message(int stream, double patience_s, const Message& message);
 
-/// A program that is asked and answers, message by message, on its standard input and output, which are one
-/// stream. It has its own process group and dies with this. tool.
+/// A program that answers messages one by one on its standard input and output, which are one stream. It has
+/// its own process group and ends together with this object. tool.
 class Conversation {
  public:
   /// Throws InputError where it cannot be started.
   Conversation(const std::string& program, const std::vector<std::string>& arguments,
                const std::string& directory);
-  /// Ends it at once.
+  /// Ends it immediately.
   ~Conversation();
   Conversation(const Conversation&) = delete;
   Conversation& operator=(const Conversation&) = delete;
 
   /// False where it ended, or said nothing for patience_s: it is of no use any more.
   bool ask(const Message& question, double patience_s, Message& answer);
-  /// Ends it and says how it had ended: "exit status 70", "signal 11", or "no answer" where it had not.
+  /// Ends it and reports how it had ended: "exit status 70", "signal 11", or "no answer" if it was still
+  /// running.
   std::string end();
 
  private:

@@ -8,8 +8,8 @@
 
 namespace vernier::workbench {
 
-/// All that takes reading a machine, a measurement or a term: it runs in a process of its own, so that a file
-/// that means harm ends that and not the server. tool.
+/// All functions that read a machine, a measurement or a term. They run in a separate process: a harmful file
+/// ends that process and not the server. tool.
 class FileDesk {
  public:
   explicit FileDesk(const Project& project) : project_(project), cache_(project) {}

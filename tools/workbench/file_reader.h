@@ -10,8 +10,8 @@
 
 namespace vernier::workbench {
 
-/// The server's side of a FileDesk in a process of its own (`vernier workbench DIR --reader`): it starts it
-/// when it is needed, hands requests over one by one, and starts another after one that ended. May be called
+/// The server's side of a FileDesk in a separate process (`vernier workbench DIR --reader`). It starts the
+/// process when needed, sends requests one by one, and starts a new process if one has ended. May be called
 /// from several threads. tool.
 class FileReader {
  public:

@@ -8,8 +8,9 @@
 
 namespace vernier::workbench {
 
-/// What was done in a project, in order: kept in `.vernier/history.json` and, without what was undone, as the
-/// shell script `history.sh` that does it again. Commands to a board stand in the script as comments. tool.
+/// The steps of a project, in order. They are kept in `.vernier/history.json` and, without the undone steps,
+/// as the shell script `history.sh`, which repeats them. Commands to a board are comments in the script.
+/// tool.
 class CommandHistory {
  public:
   /// Reads what an earlier session left. Throws InputError where that cannot be read.
@@ -17,8 +18,8 @@ class CommandHistory {
 
   /// result: of the command; its rms_um and check_rms_um are kept.
   void add(const std::string& typed, const PlannedCommand& command, const nlohmann::ordered_json& result);
-  /// The last entry that stands is undone (its files stay, the script leaves it out), or the first undone one
-  /// after it stands again. Throws InputError where there is none.
+  /// Undoes the last entry (its files are kept, the script omits it), or restores the first undone entry
+  /// after it. Throws InputError if no such entry exists.
   void undo();
   void redo();
   /// [{"command", "name", "at", "undone", "outputs", "rms_um", "check_rms_um"}].

@@ -69,7 +69,7 @@ std::string why_not(const ImageView& a, const ImageView& b) {
   return {};
 }
 
-/// Point k of the additive recurrence with an irrational of its own for each dimension (Roberts 2018, R_d).
+/// Point k of the additive recurrence with a different irrational for each dimension (Roberts 2018, R_d).
 double spread(std::uint32_t k, std::uint32_t dimension) {
   static const double root = [] {
     double x = 2;
@@ -99,7 +99,7 @@ CycleInput pose(const ImageView& image, std::uint32_t k) {
   return input;
 }
 
-/// Deviation of each axis at a pose, before limits, axis counts; lags have settled.
+/// Deviation of each axis at a pose, before limits, axis counts; lags have reached their final value.
 std::vector<double> deviation(const ImageView& image, Compensator& compensator, const CycleInput& input) {
   compensator.reset();
   compensator.step(input);

@@ -14,9 +14,9 @@
 
 namespace vernier::workbench {
 
-/// Runs commands of the page as processes of this same program in the project's folder, each in a thread that
-/// waits for it: what the page gets is what the terminal gets, a bad file harms nothing but its own job, and
-/// cancelling ends it at once. tool.
+/// Runs commands of the page as processes of this program in the project's folder, each in a thread that
+/// waits for it. The page gets the same result as a terminal. A bad file affects only its job; cancelling
+/// ends the job immediately. tool.
 class Jobs {
  public:
   /// program: the `vernier` to run. References are kept.

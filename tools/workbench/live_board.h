@@ -9,8 +9,8 @@
 
 namespace vernier::workbench {
 
-/// Watches one board at a time, as `vernier watch` does: a thread of its own asks it kLiveRateHz times a
-/// second, keeps the last pictures, and lets go of the board when nobody has asked for kLetGoS. tool.
+/// Watches one board at a time, as `vernier watch` does. A thread asks the board kLiveRateHz times a second,
+/// keeps the last pictures, and disconnects after kLetGoS without a request. tool.
 class LiveBoard {
  public:
   static constexpr double kLiveRateHz = 20, kLetGoS = 5;

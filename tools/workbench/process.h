@@ -20,13 +20,13 @@ struct ProcessResult {
 struct RunningProcess {
   std::atomic<pid_t> group{0};  // its process group; 0 before and after
   std::atomic<bool> cancelled{false};
-  /// Ends it at once, or as soon as it starts.
+  /// Ends it immediately, or as soon as it starts.
   void cancel();
 };
 
-/// Runs `program` with `arguments` in `directory` and waits for its end. It has no standard input, its own
-/// process group, and dies with this program. `on_line`: called with each line of its standard error.
-/// Output beyond `most_bytes` ends it with exit 70. Throws InputError where it cannot be started. tool.
+/// Runs `program` with `arguments` in `directory` and waits for its end. It has no standard input, a separate
+/// process group, and ends together with this program. `on_line`: called with each line of its standard
+/// error. Output beyond `most_bytes` ends it with exit 70. Throws InputError if it cannot be started. tool.
 ProcessResult run_process(const std::string& program, const std::vector<std::string>& arguments,
                           const std::string& directory, std::size_t most_bytes,
                           const std::function<void(std::string_view)>& on_line, RunningProcess& running);
@@ -35,8 +35,8 @@ ProcessResult run_process(const std::string& program, const std::vector<std::str
 struct StandardStreams {
   int in, out, error;
 };
-/// Starts a program in a process group of its own that dies with this one's thread. Its number; -1 with errno
-/// set. All but `streams` is closed in it. tool.
+/// Starts a program in a separate process group; it ends together with the thread that started it. Returns
+/// its process number; -1 with errno set. All files except `streams` are closed in it. tool.
 pid_t start_process(const std::string& program, const std::vector<std::string>& arguments,
                     const std::string& directory, const StandardStreams& streams);
 

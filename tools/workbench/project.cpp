@@ -100,7 +100,7 @@ fs::path Project::existing(const std::string& name) const {
 
 fs::path Project::writable(const std::string& name) const {
   fs::path path = checked(name);
-  // A command that is given a folder writes files in it, by names of its own.
+  // A command with a folder as argument chooses the names of the files in it.
   std::error_code failed;
   for (fs::directory_iterator at(path, failed), end; !failed && at != end; at.increment(failed))
     refuse_special(at->path(), name + "/" + at->path().filename().string());

@@ -20,7 +20,7 @@ constexpr const char* kContentPolicy =
     "'self'; "
     "frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
-/// Equal, in a time that does not tell where they differ.
+/// Compares in a time that does not depend on the position of a difference.
 bool same_secret(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -91,7 +91,7 @@ struct WorkbenchServer::Inside {
   bool welcome(const httplib::Request& request, httplib::Response& response) const;
   void answer(const httplib::Request& request, httplib::Response& response) const;
   std::string host() const { return "127.0.0.1:" + std::to_string(port); }
-  // Cookies do not know ports: each workbench on this computer has a name of its own.
+  // Cookies do not depend on ports: each workbench on this computer has a different cookie name.
   std::string cookie_name() const { return "vernier_" + std::to_string(port); }
 
   Api& api;
@@ -104,8 +104,7 @@ struct WorkbenchServer::Inside {
 
 bool WorkbenchServer::Inside::is_ours(const httplib::Request& request) const {
   if (request.get_header_value_count("Host") != 1) return false;
-  // localhost is this computer too (RFC 6761, 6.3); any other name may have been bound to its address by a
-  // stranger.
+  // localhost is this computer too (RFC 6761, 6.3); an attacker may have bound any other name to its address.
   const std::string name = request.get_header_value("Host");
   if (name != host() && name != "localhost:" + std::to_string(port)) return false;
   if (!request.has_header("Origin")) return true;
@@ -183,7 +182,7 @@ WorkbenchServer::WorkbenchServer(Api& api, std::uint16_t port) : inside_(std::ma
   server.set_tcp_nodelay(true);
   server.set_pre_routing_handler(
       [inside](const auto& request, auto& response) { return inside->guard(request, response); });
-  // The pre-routing handler may have set a policy of its own (reports).
+  // The pre-routing handler may have set another policy (reports).
   server.set_post_routing_handler([](const httplib::Request&, httplib::Response& response) {
     if (!response.has_header("Content-Security-Policy"))
       response.set_header("Content-Security-Policy", kContentPolicy);

@@ -14,10 +14,10 @@ inline constexpr std::size_t kMostBodyBytes = std::size_t{64} << 20;
 /// 32 random bytes as hexadecimal digits, from the system's random numbers. tool.
 std::string new_token();
 
-/// The page and its API on 127.0.0.1. A request is answered only where all of this holds: it names this very
-/// host and port (no other name that leads here: DNS rebinding), comes from no other origin, and carries the
-/// session's token as a cookie, which the address that was printed turns into a cookie once. What writes must
-/// carry the header X-Vernier too. tool.
+/// The page and its API on 127.0.0.1. A request is answered only under three conditions. It names this host
+/// and port (no other name for it: DNS rebinding), it comes from no other origin, and it carries the
+/// session's token as a cookie. The printed address sets the cookie once. A request that writes must also
+/// carry the header X-Vernier. tool.
 class WorkbenchServer {
  public:
   /// port 0: any free one. Throws InputError where it is taken.

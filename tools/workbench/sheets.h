@@ -7,8 +7,8 @@
 
 namespace vernier::workbench {
 
-/// Is the text a measurement file by its first line: names with units, parted by commas? What is not may be a
-/// spreadsheet. tool.
+/// True if the first line of the text is that of a measurement file: names with units, separated by commas.
+/// Other text may be a spreadsheet. tool.
 bool begins_as_measurement(const std::string& text);
 
 /// How a spreadsheet is understood and what would come of it: {how, separator, decimal, heading_line, columns

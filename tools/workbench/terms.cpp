@@ -36,7 +36,7 @@ Json expression_names(const model::Machine& machine) {
     quantity(AxisQuantity::kPosition, "axis position");
     quantity(AxisQuantity::kSpeed, "speed of the axis");
     quantity(AxisQuantity::kAcceleration, "acceleration of the axis");
-    quantity(AxisQuantity::kSense, "sense of the last motion");
+    quantity(AxisQuantity::kSense, "direction of the last motion");
     quantity(AxisQuantity::kSince, "travel since the last reversal");
   }
   for (const model::Input& input : machine.inputs) add(list, input.name, input.unit, "input");

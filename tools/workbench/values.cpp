@@ -4,7 +4,7 @@
 namespace vernier::workbench {
 
 model::ParameterSet all_parameters(const model::Machine& machine) {
-  // A run that no BaseShift names stands for the rows of the plain one.
+  // A run that no BaseShift names uses the rows of the plain one.
   std::vector<std::string> runs = {""};
   for (const model::BaseShift& shift : machine.base_shifts)
     if (shift.run) runs.push_back(*shift.run);

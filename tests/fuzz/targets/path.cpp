@@ -8,6 +8,7 @@
 
 namespace vernier::fuzz {
 
+using namespace vernier::format;
 using namespace vernier::model;
 using namespace vernier::simulate;
 using namespace vernier::text;

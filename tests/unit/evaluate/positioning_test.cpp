@@ -126,7 +126,7 @@ TEST(Positioning, RefusesWhatItCannotJudge) {
   EXPECT_NE(refused("X[mm],x[mm],dirX\n0,0,1\n1,1,1\n", "X", "x").find("one reading at 0 forward"),
             std::string::npos);
   EXPECT_NE(refused("X[mm],x[mm],dirX\n0,0,1\n0,0,1\n", "X", "x").find("two targets"), std::string::npos);
-  EXPECT_NE(refused("X[mm],x[mm],dirX\n0,0,1\n0,0,2\n", "X", "x").find("a sense of approach is 1 or -1"),
+  EXPECT_NE(refused("X[mm],x[mm],dirX\n0,0,1\n0,0,2\n", "X", "x").find("an approach direction is 1 or -1"),
             std::string::npos);
 }
 

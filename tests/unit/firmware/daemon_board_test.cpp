@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadBoard{"Syntax", "[board]", "[board", "board.toml:1: "},
         BadBoard{"NameOfATable", "[axis.X]", "[`xis.X]", "board.toml:8: "},
         BadBoard{"LetterOfAnotherAlphabet", "unit = \"degC\"", "unit = °C",
-                 "\"°C\": letters beyond ASCII stand in quotes, on one line"},
+                 "\"°C\": letters beyond ASCII must be in quotes, on one line"},
         BadBoard{"LetterAsAName", "high = 600", "hïgh = 600", "board.toml:9: \"hïgh\": "},
         BadBoard{"LetterBehindABackslash", "name = \"test\"", "name = \"\\ä\"", "board.toml:2: "},
         BadBoard{"UnknownSetting", "trial_s", "trail_s", "board.toml:5: board: unknown setting trail_s"},

@@ -50,8 +50,8 @@ TEST(MachineLint, EveryErrorIsSaidAtOnce) {
   <transforms><sixdof n="1" X="X+lXx+ofset+len" Y="Y+lXy" rZ="EC0Y*(Y" rY="B"/></transforms>
 </machine>)");
   some_line_has(lines, "m.xml:4: error: \"0,001\": value must be a number -- decimal comma?");
-  some_line_has(lines, "m.xml:5: warning: \"inch\": nobody knows this unit, of offset -- did you mean in?");
-  some_line_has(lines, "m.xml:6: error: \"5mm\": value must be a number -- a unit stands in unit=");
+  some_line_has(lines, "m.xml:5: warning: \"inch\": unknown unit, of offset -- did you mean in?");
+  some_line_has(lines, "m.xml:6: error: \"5mm\": value must be a number -- a unit is written in unit=");
   some_line_has(lines, "m.xml:8: error: \"offset\": this name stands twice");
   some_line_has(lines,
                 "m.xml:11: error: \"maxcorection\": unknown attribute of <X> -- did you mean maxcorrection?");
@@ -92,7 +92,7 @@ TEST(MachineLint, OddMeaningsAreWarnings) {
   some_line_has(lines, "\"arc\": no transform uses this static");
   some_line_has(lines, "\"X\": maxcorrection of 125 mm -- µm?");
   some_line_has(lines, "\"A\": turns by 3.14 deg only -- radians?");
-  some_line_has(lines, "\"Celsius\": nobody knows this unit");
+  some_line_has(lines, "\"Celsius\": unknown unit");
   some_line_has(lines, "\"T\": no transform uses this input");
   some_line_has(lines, "stations outside the travel");
   some_line_has(lines, "\"BaseShift\": there is none");
