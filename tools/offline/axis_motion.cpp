@@ -109,7 +109,6 @@ int AxisMotion::looks(const ProgramMove& move, double from, double to, double de
   for (std::size_t i = 0; i < machine_.axes.size(); ++i)
     detail = std::max(detail, reached[static_cast<Index>(i)] *
                                   std::max(kPerPeriod / detail_[i].period, kPerStation / detail_[i].station));
-<<<<<<< HEAD
   // Of an arc the positions of its chords are its range, to one chord.
   for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
     const auto axis = static_cast<Index>(i);
@@ -118,10 +117,7 @@ int AxisMotion::looks(const ProgramMove& move, double from, double to, double de
           sharp.to >= low[axis] - reached[axis] / kChords)
         detail = std::max(detail, reached[axis] / sharp.spacing);
   }
-  // A chord of n parts of this one is off by its eighth over n^2.
-=======
   // A chord of n parts of this one has an error of its eighth over n^2.
->>>>>>> words_a
   const double chords = move.arc ? kChords * std::sqrt(bend / deviation_mm) : 0;
   return static_cast<int>(std::clamp(std::max({length / kStep_mm, turn / kStep_deg, chords, detail}),
                                      static_cast<double>(kFewest), static_cast<double>(kMost)));

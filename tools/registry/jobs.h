@@ -11,7 +11,7 @@
 
 namespace vernier::registry {
 
-/// A piece of mass work: one command for one machine of a batch.
+/// A job: one command for one machine of a batch.
 struct Job {
   std::string batch, machine, command;
   std::string state;  // "waiting", "taken", "done", "failed"
