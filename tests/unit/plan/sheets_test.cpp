@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <regex>
 
 #include "tests/unit/plan/confusable.h"
+#include "tools/format/columns.h"
+#include "tools/format/csv_file.h"
 #include "tools/model/machine_reader.h"
 #include "tools/plan/sheets.h"
 
@@ -33,6 +37,62 @@ TEST(PlanCsv, ReadsBackAsTheSameRowsOnceReadingsAreIn) {
     EXPECT_TRUE(back.states.axis[a].isApprox(plan.rows.states.axis[a], 1e-8));
     EXPECT_TRUE((back.states.direction[a] == plan.rows.states.direction[a]).all());
     EXPECT_TRUE(back.states.velocity[a].isApprox(plan.rows.states.velocity[a], 1e-8));
+  }
+}
+
+/// The plan with readings of one form in place of its own, in all rows that can have them.
+Plan with_readings(Plan plan, format::ReadingForm form) {
+  Measurement& rows = plan.rows;
+  const auto count = static_cast<Eigen::Index>(rows.rows());
+  rows.observations.clear();
+  rows.states.normal[2].setOnes();
+  rows.direction = Eigen::Matrix3Xd::Constant(3, count, std::nan(""));
+  rows.other_end.assign(rows.rows(), 0);
+  rows.other_end[0] = kNoRow;
+  for (std::size_t row = 0; row < rows.rows(); ++row)
+    for (const format::ReadingKindEntry& kind : format::kReadingKinds)
+      if (kind.form == form && (form != format::ReadingForm::kDistance || row > 0))
+        rows.observations.push_back({kind.kind, row, 0});
+  return plan;
+}
+
+/// The sheet as it comes back: a reading of 0 (along z for a direction) where all that it needs is given.
+std::string filled(const std::string& sheet, format::ReadingForm form) {
+  format::CsvFile csv = format::parse_csv(sheet, "plan.csv");
+  std::string text;
+  for (const format::CsvColumn& column : csv.columns)
+    text += (text.empty() ? "" : ",") + format::heading(column.name, column.unit);
+  const auto column_of = [&](std::string_view name) {
+    return static_cast<std::size_t>(
+        std::find_if(csv.columns.begin(), csv.columns.end(), [&](const auto& c) { return c.name == name; }) -
+        csv.columns.begin());
+  };
+  for (auto& row : csv.rows) {
+    bool complete = true;
+    for (const format::ColumnGroup* const group : format::columns_beside(form))
+      for (const char* const name : group->list()) complete = complete && !row[column_of(name)].empty();
+    const auto names = format::reading_columns(form).list();
+    for (std::size_t k = 0; k < names.size() && complete; ++k)
+      row[column_of(names[k])] = format::entry_of(form).together && k == 2 ? "1" : "0";
+    text += "\n";
+    for (std::size_t k = 0; k < row.size(); ++k) text += (k > 0 ? "," : "") + row[k];
+  }
+  return text + "\n";
+}
+
+// Every form of reading in the table of tools/format: what a plan asks for, fit reads.
+TEST(PlanCsv, OfEveryFormOfReadingReadsBack) {
+  const Plan lag = plan_of_lag();
+  for (const format::ReadingFormEntry& form : format::kReadingForms) {
+    SCOPED_TRACE(form.meaning);
+    const Plan plan = with_readings(lag, form.form);
+    const Measurement back = parse_measurement(filled(plan_csv(plan), form.form), "plan.csv", plan.machine);
+    ASSERT_EQ(back.observations.size(), plan.rows.observations.size());
+    for (std::size_t i = 0; i < back.observations.size(); ++i) {
+      EXPECT_EQ(back.observations[i].kind, plan.rows.observations[i].kind);
+      EXPECT_EQ(back.observations[i].row, plan.rows.observations[i].row);
+    }
+    EXPECT_TRUE(back.candidates.empty()) << back.candidates.front().name;
   }
 }
 
