@@ -29,7 +29,7 @@ inline constexpr std::array<const char*, 9> kShapeNames = {
 
 /// Something that the residual of one kind of observation does, beyond chance.
 struct Finding {
-  std::string observation;            // x, y, z, rx, ry, rz, length or d
+  std::string observation;            // name of the kind of reading
   std::string column, second_column;  // second: of a product; both empty for a constant
   Shape shape = Shape::kLinear;
   double share_alone = 0;  // of the variance of this kind's residual over fit rows, 0..1, adjusted for

@@ -47,8 +47,8 @@ void add_columns(ordered_json& detail, const model::Machine& machine, const mode
 }
 
 void add_observations(ordered_json& detail, const model::Measurement& m, const Eigen::VectorXd& residual) {
-  ordered_json kinds = ordered_json::array(), row = kinds, kind = kinds, scaled = kinds, measured = kinds,
-               model = kinds;
+  ordered_json kinds = ordered_json::array(), units = kinds, row = kinds, kind = kinds, scaled = kinds,
+               measured = kinds, model = kinds;
   std::array<int, format::kReadingKindCount> slot;
   slot.fill(-1);
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
@@ -57,6 +57,7 @@ void add_observations(ordered_json& detail, const model::Measurement& m, const E
     if (at < 0) {
       at = static_cast<int>(kinds.size());
       kinds.push_back(format::name_of(o.kind));
+      units.push_back(format::is_rotation(o.kind) ? "urad" : "um");
     }
     const double r = residual[static_cast<Eigen::Index>(i)];
     row.push_back(o.row);
@@ -65,8 +66,9 @@ void add_observations(ordered_json& detail, const model::Measurement& m, const E
     measured.push_back(std::round(o.value * 1e6) / 1e6);
     model.push_back(std::round((o.value - r) * 1e6) / 1e6);
   }
-  detail["observations"] = {{"kind", kinds},      {"row", row},           {"kind_index", kind},
-                            {"residual", scaled}, {"measured", measured}, {"model", model}};
+  detail["observations"] = {{"kind", kinds},      {"unit", units},      {"row", row},
+                            {"kind_index", kind}, {"residual", scaled}, {"measured", measured},
+                            {"model", model}};
 }
 
 void add_worst(ordered_json& detail, const model::Measurement& m, const Eigen::VectorXd& residual) {

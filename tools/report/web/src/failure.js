@@ -27,7 +27,7 @@ export function findingList(findings) {
             'small',
             {},
             `${percent(one.share_alone)} of the variance of ${one.observation} alone, ${percent(one.share_after)} beyond the other findings` +
-              `${Number.isFinite(one.rms_um) ? `; rms ${number(one.rms_um, 3)} ${unitOf(one.observation)}` : ''}; chance ${chance(one.p_value)}`,
+              `${Number.isFinite(one.rms_um) ? `; rms ${number(one.rms_um, 3)} ${unitOf(one)}` : ''}; chance ${chance(one.p_value)}`,
           ),
         ),
       ),

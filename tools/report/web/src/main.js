@@ -43,7 +43,7 @@ function worstTable(detail) {
     one.kind,
     role(one),
     number(one.residual, 5),
-    unitOf(one.kind),
+    unitOf(one),
   ]);
   return table(
     'Largest residuals',

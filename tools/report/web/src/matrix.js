@@ -5,12 +5,12 @@ import { number } from './data.js';
 
 const kMostPoints = 8000; // per cell; beyond it every n-th is drawn
 const kBins = 24; // of the mean that is drawn over the points
-const kUnits = { rx: 'µrad', ry: 'µrad', rz: 'µrad' };
-export const unitOf = (kind) => kUnits[kind] ?? 'µm';
+/** As it is printed: the JSON has um or urad. */
+export const unitOf = (one) => (one.unit === 'urad' ? 'µrad' : 'µm');
 
 /** Observations of each kind: {kind, unit, index: [...]}. */
 export function byKind(observations) {
-  const groups = observations.kind.map((kind) => ({ kind, unit: unitOf(kind), index: [] }));
+  const groups = observations.kind.map((kind, k) => ({ kind, unit: unitOf({ unit: observations.unit[k] }), index: [] }));
   for (let i = 0; i < observations.row.length; ++i) {
     if (Number.isFinite(observations.residual[i])) groups[observations.kind_index[i]].index.push(i);
   }
