@@ -394,7 +394,7 @@ Selection Finder::evaluate(const std::vector<std::size_t>& items) const {
 void Finder::ban_hollow_products() {
   for (std::size_t i = 0; i < pool_.size(); ++i) {
     if (!pool_.is_custom(i) || pool_[i].banned) continue;
-    if (pool_.witnesses(i) < thresholds_.witnesses) pool_.ban(i, "witnesses: a few readings carry it");
+    if (pool_.witnesses(i) < thresholds_.witnesses) pool_.ban(i, "witnesses: only a few readings show it");
     for (std::size_t failed = 0; failed < pool_.size() && !pool_[i].banned; ++failed)
       if (pool_[failed].banned && !pool_.is_custom(failed) &&
           pool_.common_share(i, failed) > thresholds_.copy_of_failed)

@@ -19,7 +19,8 @@ struct EnvelopePoint {
 EnvelopePoint envelope_point(const FlankPose& pose, const Cutter& cutter, double v);
 
 /// The paper's overcut R (1 - |sin theta|), theta = atan2(-V.T, V.N) (equation 6, recovered from the formula
-/// that follows it), mm. It is a reading, not a distance: T(u,1) is not at right angles to the axis.
+/// that follows it), mm. This is one interpretation of the formula. The result is no normal distance,
+/// because the paper's vector T(u,1) is not perpendicular to the tool axis.
 double overcut_formula_mm(const FlankPose& pose, const Cutter& cutter, double v);
 
 /// Distance of the envelope point of u at `v` to the true surface, along its outward normal; negative is

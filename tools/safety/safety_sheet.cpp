@@ -45,11 +45,11 @@ const RuleText& text_of(SafetyRule rule) {
       {"residual", "of the measured box",
        "readings that the model misses by so much are not readings of this machine", 0.02},
       {"outlier", "times the residual's spread",
-       "one reading that stands so far from all others has bent the fit", 20},
+       "one reading that differs so much from all others has distorted the fit", 20},
       {"check-rows", "times the nominal machine's",
        "held-out rows must show a gain against no correction at all (95 %)", 1},
       {"disturbed", "of what the machine shows",
-       "something that the model does not hold, as large as the errors of the machine, has bent the fit",
+       "an effect that is not in the model, as large as the errors of the machine, has distorted the fit",
        0.75},
       {"bound", "of the correction", "the error of an image must not exceed its correction", 1},
   }};

@@ -212,7 +212,8 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     sheet.encoding = encoding_of(bytes);
     const std::string text = utf8_of(bytes, sheet.encoding);
     if (text.find('\0') != std::string::npos)
-      throw text::InputError({file, 0}, "", "zero bytes: neither a text nor a workbook (.xlsx)");
+      throw text::InputError({file, 0}, "",
+                             "the file has bytes of value 0: it is neither a text nor a workbook (.xlsx)");
     std::vector<Line> lines = lines_of(text, format.skip, format.comment);
     const char said = said_separator(lines);
     sheet.separator = format.separator != 0 ? format.separator : said != 0 ? said : separator_of_lines(lines);

@@ -65,7 +65,7 @@ TEST(LaserFile, WhatDoesNotAgreeIsRefusedWithItsPlace) {
       {file(kBoth, "0 0 2 0", "4"), "2 runs where the count is 4"},
       {file("", "0 0 2 0", "0"), "no readings"},
       {"X[mm],x[mm]\n1,2\n", "not a file of linear laser runs"},
-      {std::string("a\0b", 3), "zero bytes"},
+      {std::string("a\0b", 3), "bytes of value 0"},
   };
   for (const auto& [text, says] : kBad) EXPECT_NE(read(text).find(says), std::string::npos) << read(text);
   EXPECT_NE(read(file(kBoth), "C").find("do not say"), std::string::npos);
