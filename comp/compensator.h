@@ -152,8 +152,8 @@ class Compensator {
   /// Forgets lags and slew state: the next step starts from zero correction. setup.
   void reset() noexcept;
 
-  /// What the last step began with; a program of more channels than fit gives none. Copies the channels and
-  /// lags that there are. realtime.
+  /// The channels and lags at the start of the last step; empty for a program with more channels than fit.
+  /// Copies only existing channels and lags. realtime.
   void state(EquationState& state) const noexcept;
 
   /// Runs the printed form instead of executing the program: the same corrections to the last bit, in a sixth

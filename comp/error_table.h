@@ -89,9 +89,9 @@ constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position)
   return base;
 }
 
-/// How far `position`, not before its start, lies into the segment, 0..kFractionOne (Q30); held at one beyond
-/// it. Truncates: error < 2^-30 + 2^-31 of the segment, exact at both ends (the verifier accepts no
-/// reciprocal that misses one at the far end). realtime.
+/// Position within the segment as a fraction 0..kFractionOne (Q30), for a position not before its start;
+/// limited to one beyond the end. Truncates: error < 2^-30 + 2^-31 of the segment, exact at both ends (the
+/// verifier accepts no reciprocal that misses one at the far end). realtime.
 constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position) noexcept {
   const std::uint32_t distance =
       static_cast<std::uint32_t>(position) - static_cast<std::uint32_t>(segment.start);

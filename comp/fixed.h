@@ -37,8 +37,7 @@ constexpr Word word_of(std::int64_t value) noexcept { return static_cast<Word>(v
 /// The low 32 bits of a value that the caller has proved to fit (program verifier). realtime.
 constexpr std::int32_t narrow(std::int64_t value) noexcept { return static_cast<std::int32_t>(value); }
 
-/// value where it fits int32, else the nearest end; `saturated` is set (never cleared) where it did not.
-/// realtime.
+/// Returns value if it fits int32, else the nearest limit; then `saturated` is set (never cleared). realtime.
 constexpr std::int32_t saturate(std::int64_t value, bool& saturated) noexcept {
   const std::int64_t limited = clamp<std::int64_t>(value, INT32_MIN, INT32_MAX);
   saturated = saturated || limited != value;

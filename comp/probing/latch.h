@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// Where the axes were at one instant, and what was still missing from their corrections.
+/// Positions of the axes at one instant, and the missing part of their corrections.
 struct LatchSample {
   InstantNs at;
   AxisPosition position[kMaxAxes];

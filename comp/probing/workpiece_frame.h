@@ -8,8 +8,8 @@
 
 namespace vernier {
 
-/// Where a workpiece lies in a machine with axes X, Y, Z: its origin, and how far it is turned about Z. The
-/// cosine and sine are found on the host, so that nothing here computes an angle.
+/// Location of a workpiece in a machine with axes X, Y, Z: its origin and its rotation about Z. The host
+/// computes the cosine and sine: no angle is computed here.
 struct WorkpieceFrame {
   static constexpr std::int32_t kOne = std::int32_t{1} << 30;
 

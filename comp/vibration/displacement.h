@@ -40,7 +40,7 @@ class Displacement {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts at rest. False, and nothing is changed, where a setting is out of range. setup.
+  /// Starts at rest. False, without any change, if a setting is out of range. setup.
   bool start(const DisplacementScale& scale) noexcept;
 
   /// Takes a sample in, LSB; gives the displacement at its instant. A sample beyond +-kLimit is held there, a

@@ -53,8 +53,8 @@ class FeatureWindow {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts an empty window; `weights` stays where it is as long as the window is used (axes share it). False
-  /// where scale or weights are out of range. setup.
+  /// Starts an empty window; `weights` must outlive its use (axes share it). False if scale or weights are
+  /// out of range. setup.
   bool start(const FeatureScale& scale, const SpectralWeights& weights) noexcept;
 
   /// Takes one sample in, LSB. Beyond +-kLimit it is held there and counted. realtime.
