@@ -117,7 +117,7 @@ static_assert(offsetof(InputRecord, name) == 0 && offsetof(InputRecord, unit) ==
               offsetof(InputRecord, reference) == 40 && offsetof(InputRecord, low) == 48 &&
               offsetof(InputRecord, high) == 56);
 
-/// What a live display calls a share: "X of transform 2 (tool): BX*dirX", cut where it is longer.
+/// Name of a share in a live display: "X of transform 2 (tool): BX*dirX", cut if it is longer.
 struct ShareName {
   char text[64];
 };

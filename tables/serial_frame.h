@@ -23,7 +23,7 @@ std::uint32_t write_frame(const std::uint8_t* message, std::uint32_t size, std::
 /// Finds the messages in what a line brings.
 class FrameReader {
  public:
-  /// The next byte; true where it ended a whole message, which stands until the next call. setup.
+  /// Takes the next byte; true if it completed a message, which is valid until the next call. setup.
   bool take(std::uint8_t byte) noexcept;
   const std::uint8_t* message() const noexcept { return bytes_; }
   std::uint32_t size() const noexcept { return size_; }

@@ -66,7 +66,7 @@ struct SlotChange {
 ///                                                          └──── revert, or a reset ──► confirmed A
 class Slots {
  public:
-  /// The newer valid one of two records; nothing confirmed where neither is valid. setup.
+  /// The newer valid one of two records; no confirmed image if neither is valid. setup.
   static Slots load(const SlotRecord& first, const SlotRecord& second) noexcept;
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }
