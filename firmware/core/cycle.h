@@ -13,7 +13,7 @@
 
 namespace vernier {
 
-/// What an axis of the board may do, where that differs from the rule for its kind.
+/// Limits of an axis of the board that differ from the rule for its kind.
 struct AxisSetting {
   bool own = false;  // `limits` count instead of those of the kind
   AxisLimits limits;
@@ -43,12 +43,11 @@ struct TickReport {
   Fault latched;
 };
 
-/// One tick of the firmware: read the devices, step the compensator, write the corrections. Never waits.
-///
-/// What reaches a drive changes by at most the slew limit of its axis from one successful write to the next,
-/// whatever the readings, commands and faults; the speed of the change is bounded by the acceleration of
-/// AxisSetting. While a fault is ramped out the compensator keeps the last good input, so that the correction
-/// only shrinks. The images and the board must outlive the cycle.
+/// One tick of the firmware: reads the devices, steps the compensator, writes the corrections. Never waits.
+/// The value at a drive changes by at most the slew limit of its axis from one successful write to the next,
+/// for all readings, commands and faults; the speed of the change is limited by the acceleration of
+/// AxisSetting. While a fault is ramped out the compensator keeps the last good input: the correction can
+/// only decrease. The images and the board must outlive the cycle.
 class Cycle {
  public:
   /// A board whose devices are those of the image, in its order. view: opened without fault. setup.
@@ -73,14 +72,14 @@ class Cycle {
   Mode mode() const noexcept { return mode_.mode(); }
   bool holding() const noexcept { return mode_.holding(); }
   Fault latched() const noexcept { return mode_.latched(); }
-  /// What the last tick found, latched or not: while checking, what it waits for.
+  /// Fault of the last tick, latched or not; while checking, the condition that is not met yet.
   Fault found() const noexcept { return found_; }
   /// Share of the correction that is in.
   WeightQ16 weight() const noexcept { return mode_.weight(); }
   Health& health() noexcept { return health_; }
   const Health& health() const noexcept { return health_; }
-  /// What the equation wants of a board's axis at full weight, what its output gives of that, and which
-  /// limits (AxisLimitFlag) hold it.
+  /// The correction that the equation requires of a board's axis at full weight, the part that its output
+  /// gives, and the active limits (AxisLimitFlag).
   AxisTravel wanted(std::uint32_t axis) const noexcept { return AxisTravel(drive_[axis].whole); }
   AxisTravel achieved(std::uint32_t axis) const noexcept { return drive_[axis].achieved; }
   std::uint8_t limits(std::uint32_t axis) const noexcept { return drive_[axis].limits; }

@@ -42,7 +42,7 @@ class AtomicWords {
 /// again, which it has to at most once in 2^32 counts.
 class SharedCount {
  public:
-  /// One writer; what it wrote before is seen by who sees the count. realtime.
+  /// One writer. A reader that sees the count also sees all earlier writes. realtime.
   void store(std::uint64_t count) noexcept {
     const auto high = static_cast<std::uint32_t>(count >> 32);
     after_.store(high, std::memory_order_release);
@@ -133,7 +133,7 @@ class History {
   std::unique_ptr<AtomicWords<T>[]> values_;
 };
 
-/// What a tick began with, so that others can work out what each effect added.
+/// Start values of a tick, from which other threads compute the share of each effect.
 struct EquationRecord {
   std::uint32_t programs = 0, reserved = 0;  // HealthRecord::programs: whose state it is
   EquationState state;

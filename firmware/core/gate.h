@@ -33,13 +33,13 @@ class Gate {
   /// Is it the request for a challenge? Its payload then; each can be used once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
   ChallengeReply challenge(LinkAccess access, TimeUs now) noexcept;
-  /// Is it the request to prove who the board is? Everybody may ask for that.
+  /// True for the request to prove the identity of the board. Every caller may send it.
   static bool is_identify(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// Signs the asker's nonce, the nonce of this start and the board's name with the key of the board.
   /// kUnknownOp: the board has no key; kBadLength: the request has no nonce; kNotReady: the library failed.
   /// `reply` is filled in with kDone only. setup.
   LinkStatus identify(const std::uint8_t* request, std::uint32_t size, IdentifyReply& reply) noexcept;
-  /// May a master that knows nothing but registers give commands over this link?
+  /// True if a master that uses registers only may give commands over this link.
   bool lets_plain_commands(LinkAccess access, bool trusted_line) const noexcept {
     return access >= LinkAccess::kCommand && (identity_.keys.empty() || trusted_line);
   }
@@ -63,7 +63,7 @@ class Gate {
   std::uint8_t inner_[kMaxRequestBytes] = {};
 };
 
-/// What a request needs: access of its link, and a signature at all.
+/// Requirements of a request: access of its link, and a signature or not.
 LinkAccess access_needed(LinkOp op) noexcept;
 bool signature_needed(LinkOp op) noexcept;
 

@@ -13,7 +13,7 @@ struct TrustedKey {
   bool retired = false;  // what was confirmed with it still runs; nothing new is taken
 };
 
-/// Who a board is, and whom it trusts.
+/// Identity of a board, and the keys that it trusts.
 struct BoardIdentity {
   static constexpr std::uint32_t kMostKeys = 8;
   Name board, board_class;  // what an image may be signed for

@@ -22,8 +22,8 @@ class Link {
 
   /// Has the request to do with the medium? It is then answered by the store, which may wait for it. setup.
   static bool needs_store(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// Is it, or may it carry (signed), a request for the store or a step of an upload? None while the store is
-  /// at work for one. setup.
+  /// True if it is, or may contain (signed), a request for the store or a step of an upload. Always false
+  /// while the store works on a request. setup.
   static bool may_need_store(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// "Ask again": the reply to a request that comes while the store is at work. setup.
   static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept {
@@ -35,7 +35,8 @@ class Link {
 
   /// The live registers for plain Modbus masters; values: kLiveRegisters. setup.
   void fill_registers(std::uint16_t* values);
-  /// A command from a plain master: refused where it is none or the one before has not been taken. setup.
+  /// A command from a plain master; refused if it is not a command or if the previous one has not been taken.
+  /// setup.
   LinkStatus give(std::uint8_t command);
 
  private:

@@ -26,7 +26,7 @@ class ModeControl {
 
   Mode mode() const noexcept { return mode_; }
   WeightQ16 weight() const noexcept { return weight_; }
-  /// Are the corrections held as they are? Only in Active.
+  /// True if the corrections are held at their values. Only in Active.
   bool holding() const noexcept { return holding_ && mode_ == Mode::kActive; }
   /// The first fault since the last clearing.
   Fault latched() const noexcept { return latched_; }

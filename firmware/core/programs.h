@@ -34,7 +34,7 @@ struct GiveBack {
 /// A place in use; it is free again when this object is destroyed.
 using ProgramRef = std::unique_ptr<LoadedProgram, GiveBack>;
 
-/// How far the trial of an image is. Who may leave a state stands behind it.
+/// State of the trial of an image. The comment of each state names the part that may leave it.
 enum class Trial : std::uint8_t {
   kNone,        // the store, by run_trial()
   kRunning,     // the guardian when its time is over; the store when it is to be kept
@@ -64,7 +64,7 @@ class Programs {
   void run_confirmed(ProgramRef program) noexcept;
   /// An image to be tried, for trial_time from when the guardian gets it. Only in Trial::kNone.
   void run_trial(ProgramRef program, TimeUs trial_time) noexcept;
-  /// The image on trial is to be kept: its time stops. False where none is on trial any more.
+  /// Confirms the image on trial: its time stops. False if no image is on trial any more.
   bool begin_to_keep() noexcept { return change(Trial::kRunning, Trial::kConfirming); }
   /// It is written down that it is kept, or that could not be done. Only after begin_to_keep().
   void kept(bool written) noexcept { trial_.store(written ? Trial::kKept : Trial::kRunning); }

@@ -30,13 +30,13 @@ class Runner {
  public:
   /// The first tick is due one period from now. setup.
   Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept;
-  /// Each tick starts with a sign of `sync`. One that is earlier than half a period is none; where none comes
-  /// for `patience` after the tick was due, the clock starts the ticks until the next sign. setup.
+  /// Each tick starts with a signal of `sync`. A signal earlier than half a period is ignored. If no signal
+  /// comes for `patience` after the tick was due, the clock starts the ticks until the next signal. setup.
   Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience,
          const OverrunLimits& overruns = {}) noexcept;
 
-  /// From now on step() is called in the controller's own cycle: it waits for nothing, each call is one tick
-  /// of the time that the controller counts, however late its thread woke, and none is left out. setup.
+  /// From now on step() is called in the cycle of the controller. It does not wait. Each call is one tick of
+  /// the controller's time, for any delay of its thread, and no tick is skipped. setup.
   void follow_caller() noexcept { follows_ = true; }
   /// Sleeps, then one tick; found: a fault from outside of the tick. Its time is counted from the
   /// construction or set_time(). realtime.

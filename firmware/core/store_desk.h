@@ -9,8 +9,8 @@
 
 namespace vernier {
 
-/// Where a request that the medium has to do with lies between the links, which never wait, and the store,
-/// which may wait for its medium as long as that takes. One at a time.
+/// A request that needs the medium, on its way from the links, which never wait, to the store, which may wait
+/// for its medium without limit. One at a time.
 class StoreDesk {
  public:
   // ---- the links

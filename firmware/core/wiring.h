@@ -40,7 +40,7 @@ class Name {
   std::uint32_t size_ = 0;
 };
 
-/// At most kMost values in a row, in place. What finds no room is left out: who fills one checks before.
+/// At most kMost values in a row, in place. Values without room are dropped: the caller checks before.
 template <class T, std::uint32_t kMost>
 class FixedList {
  public:

@@ -24,11 +24,11 @@ struct WorkBudget {
   bool covers(const Program& program, const ShareProgram& shares) const noexcept;
 };
 
-/// Work that this board does in a quarter of a tick: the rest is for devices, the link and what else its
-/// processor has to do. Measured on sums of products, for some milliseconds, and on jumps through `memory`
-/// (its words are written over), which no cache should hold whole; none: lines cost nothing, as where there
-/// are no caches. The best of several tries counts, as the others were interrupted. Where the clock does not
-/// move, kAnyWork. Before the first tick. setup.
+/// Work that this board does in a quarter of a tick; the rest is for devices, the link and the other tasks of
+/// its processor. Measured for some milliseconds on sums of products, and on jumps through `memory` (its
+/// words are overwritten), which must be larger than the caches. Without memory, cache lines have no cost, as
+/// on a processor without caches. The best of several tries counts, because the others were interrupted.
+/// kAnyWork if the clock does not move. Call before the first tick. setup.
 WorkBudget measured_work_budget(Clock& clock, TimeUs tick, std::span<std::uint32_t> memory = {}) noexcept;
 
 /// Words of `memory` that outgrow what boards have as caches: 16 MB.

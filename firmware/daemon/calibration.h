@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// What an instrument said of an axis while its output held a code.
+/// Reading of an instrument at an axis while its output held a code.
 struct CalibrationPoint {
   std::int64_t code = 0;
   double measured = 0;  // um of a linear axis, arcsec of a rotary one; 0 is without a correction

@@ -9,8 +9,9 @@
 
 namespace vernier {
 
-/// One request at a time from one process to another, in memory that both have: who asks fills it in, makes
-/// the turn odd and waits for the next even one. Whoever dies in between has changed nothing but the request.
+/// One request at a time from one process to another, in shared memory. The client fills it in, makes the
+/// turn number odd and waits for the next even one. A process that dies in between has changed only the
+/// request.
 struct Call {
   static constexpr std::uint32_t kMostBytes = 4096;
   std::atomic<std::uint32_t> turn{0};

@@ -11,7 +11,7 @@ class HatchLink : public CommandLink {
   /// call: outlives the link. setup.
   explicit HatchLink(Call& call) noexcept : call_(call) {}
   HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
-  /// The link's access, of the request that waits; LinkAccess::kRead where none does. setup.
+  /// The link's access, for the waiting request; LinkAccess::kRead without a request. setup.
   LinkAccess access() const noexcept;
 
  private:
