@@ -25,7 +25,7 @@ class CommandHandler {
   }
   /// The live registers for masters that know nothing but registers. setup.
   virtual void fill_registers(std::uint16_t* values) = 0;
-  /// A command from such a master: false where it is none, or cannot be taken now. setup.
+  /// A command from such a master: false if it is not a command, or cannot be taken now. setup.
   virtual bool give(std::uint16_t command) = 0;
 };
 
@@ -37,8 +37,8 @@ class CommandLink {
   /// of one, or does not take its reply. kRefused: the link is broken and has been taken up again, or will be
   /// at the next call; a peer that misbehaves is no fault. setup.
   virtual HalFault serve(CommandHandler& handler, TimeUs wait) noexcept = 0;
-  /// What the operating system can wait on until a request comes: at most `room` handles are put into
-  /// `handles`. Returns how many; 0 where the link has none. setup.
+  /// Handles on which the operating system can wait for a request: at most `room` handles are put into
+  /// `handles`. Returns how many; 0 if the link has no handle. setup.
   virtual std::uint32_t handles(int* handles, std::uint32_t room) const noexcept {
     return static_cast<void>(handles), static_cast<void>(room), 0;
   }

@@ -31,8 +31,8 @@ class CanAxes : public AxisReader {
   static constexpr std::uint32_t kMostFrames = 256;   // taken from the socket in one tick
   static constexpr std::uint32_t kStalledFrames = 3;  // frames with one and the same stamp that are accepted
 
-  /// interface: "can0"; ids: 11 bits, or 29 bits where above 0x7ff, all different, at least one. Null with
-  /// `error` set where the kernel refuses. setup.
+  /// interface: "can0"; ids: 11 bits, or 29 bits above 0x7ff, all different, at least one. Null with `error`
+  /// set if the kernel refuses. setup.
   static std::unique_ptr<CanAxes> open(const std::string& interface, const std::vector<std::uint32_t>& ids,
                                        std::string& error);
   /// Any socket that keeps frames apart and does not block, and gives them as the kernel's can_frame; taken

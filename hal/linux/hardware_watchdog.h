@@ -17,7 +17,7 @@ class HardwareWatchdog {
   HardwareWatchdog& operator=(const HardwareWatchdog&) = delete;
 
   void feed() noexcept;
-  /// An orderly end: it stops, where the driver allows that at all. setup.
+  /// An orderly end: the watchdog stops if the driver allows it. setup.
   void disarm() noexcept;
 
  private:

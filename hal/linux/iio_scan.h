@@ -25,7 +25,7 @@ bool parse_iio_element(std::string_view text, IioElement& element) noexcept;
 /// its sign. An unsigned one of 64 bits is held at the largest int64. realtime.
 std::int64_t iio_value(const unsigned char* storage, const IioElement& element) noexcept;
 
-/// Where an element stands after so many bytes of a scan, elements aligned to their own size.
+/// Offset of an element after so many bytes of a scan; elements are aligned to their size.
 constexpr std::size_t iio_aligned(std::size_t at, std::size_t size) noexcept {
   return (at + size - 1) / size * size;
 }

@@ -48,11 +48,13 @@ class ModbusConversation {
   std::uint32_t waiting() const noexcept { return out_size_ - sent_; }
   void sent(std::uint32_t bytes) noexcept;
 
-  /// The peer lies about lengths, is too slow, or does not take its reply: a connection is to be closed. A
-  /// serial line goes on: what came is thrown away.
+  /// The peer sends a wrong length, is too slow, or does not take its reply: a connection must be closed. A
+  /// serial line continues: the received bytes are discarded.
   bool broken(InstantNs now) noexcept;
-  /// Where many want to be served, the one with the lowest number gives way: first who does not take his
-  /// reply, then who has asked nothing for longest; never who waits for the medium.
+  /// If more clients connect than can be served, the one with the lowest number is removed: first a client
+  /// that does not take its reply, then the client whose last request is oldest; never a client that waits
+  /// for the medium.
+  /// medium.
   std::int64_t worth() const noexcept {
     return waiting() > 0 ? -1 : waits_for_reply_ ? INT64_MAX : last_request_.count;
   }

@@ -41,7 +41,7 @@ class ModbusLine {
   TimeUs wait_;
 };
 
-/// Where a value stands and what it means: value = (number + offset) * scale in the input's unit.
+/// Register of a value and its scale: value = (number + offset) * scale in the input's unit.
 struct ModbusValue {
   /// 32 bits: high word first.
   enum class Type { kInt16, kUint16, kInt32, kFloat32 };

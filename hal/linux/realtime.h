@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// What the operating system granted; for what it did not, the errno.
+/// The settings that the operating system granted; for the others, the errno.
 struct RealtimeGrant {
   int memory_error = 0;    // mlockall
   int schedule_error = 0;  // SCHED_FIFO

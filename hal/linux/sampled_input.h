@@ -13,8 +13,8 @@ class SampledInput : public InputReader {
  public:
   /// Takes a sample; waits for the device. Returns what the next reads will. One thread, not the tick's.
   HalFault sample() noexcept;
-  /// The newest sample, once per tick. kNoReading: the last attempt failed, there was none yet, or none came
-  /// for stale_reads reads. realtime.
+  /// The newest sample, once per tick. kNoReading: the last attempt failed, no sample was taken yet, or no
+  /// new sample came for stale_reads reads. realtime.
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
 
   static constexpr double kPerUnit = 1e6;  // inputs count in millionths of their unit
