@@ -178,7 +178,7 @@ std::string live_line(const registry::LiveState& one, const registry::LiveAge& a
   if (one.received_us != 0) line += fmt::format(", the last {:.0f} s ago", age.age_s);
   if (one.historical) line += ", which had waited in the gateway's store since " + text::utc_text(one.at_us);
   if (age.clock_off)
-    line += fmt::format("; the clock of gateway {} is off by {:+.0f} s", one.gateway, age.clock_s);
+    line += fmt::format("; the clock of gateway {} has an error of {:+.0f} s", one.gateway, age.clock_s);
   return line;
 }
 

@@ -119,7 +119,7 @@ void register_check(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Each check fits the set-up of the instrument anew. Readings count as independent, normal, and as\n"
-      "uncertain as their u says (without u: as the fit's own residual). Exit status 0 done, whatever the\n"
+      "uncertain by their u (without u: as the fit's own residual). Exit status 0 done, whatever the\n"
       "finding; 1 bad input (nothing written); 2 -o was asked, and what has changed is no parameter (the\n"
       "verdict and the history are written, the machine file is not).");
   command->callback([arguments] { run_check(*arguments); });

@@ -312,7 +312,7 @@ void add_conformity(CLI::App& part) {
   command->add_option("--seed", a->seed, "of the trials")->capture_default_str();
   command->add_option("--effects", a->effects,
                       "files with effects of your own, for the names; may be repeated");
-  command->add_flag("--rotary", a->with_rotary, "correct with all axes; default: as the machine file says");
+  command->add_flag("--rotary", a->with_rotary, "correct with all axes; default: as in the machine file");
   command->add_flag("--uncorrected", a->uncorrected,
                     "the machine runs without its correction: that decides the exit status");
   command->add_option("--images", a->images, simulate::kImagesHelp);

@@ -149,9 +149,8 @@ void register_correct(CLI::App& vernier) {
       "the other way: positions as commanded, to those of an ideal machine that would be there");
   command->add_flag("--chords", arguments->chords,
                     "write arcs as straight blocks, for a control that reads no G2 and G3");
-  command->add_flag(
-      "--rotary", arguments->with_rotary,
-      "correct with all axes, tool point and tool direction; default: as the machine file says");
+  command->add_flag("--rotary", arguments->with_rotary,
+                    "correct with all axes, tool point and tool direction; default: as in the machine file");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "What was corrected is marked, and refused a second time. Exit status 0 done, 1 bad input (nothing\n"
