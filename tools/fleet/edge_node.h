@@ -23,7 +23,7 @@ class EdgeNode {
   bool born() const { return born_; }
   /// Data of a device, its birth before it where names or types are new.
   bool data(const std::string& device, SparkplugPayload payload);
-  /// The device is away; nothing where it was never born.
+  /// Publishes that the device is away; no message if it was never born.
   bool death(const std::string& device);
   /// Publishes the death certificate of the node, as its will does, and disconnects.
   void part();

@@ -8,7 +8,7 @@
 
 namespace vernier::fleet {
 
-/// Where a broker is and who asks it.
+/// Address of a broker and the credentials of the client.
 struct Broker {
   std::string address = "tcp://localhost:1883";  // or ssl://HOST:8883
   std::string user, password;                    // empty: none

@@ -41,8 +41,8 @@ class Spool {
   std::uint64_t dropped() const { return dropped_; }
   /// The last number that is no longer here.
   std::uint64_t gone() const { return gone_; }
-  /// The registry has numbers that this spool never gave: the file is an older one, put back. What is here is
-  /// numbered anew, under a fresh id.
+  /// Called if the registry has numbers that this spool never gave: the file is an older, restored one. Its
+  /// records get new numbers under a new id.
   void begin_anew();
   /// The number of this birth, one more at each call (Sparkplug's bdSeq, 0..255).
   std::uint64_t next_birth();
