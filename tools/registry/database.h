@@ -55,7 +55,7 @@ class Transaction {
   bool done_ = false;
 };
 
-/// Throws InputError where a database has tables, and none of the name `ours`: it is something else's.
+/// Throws InputError if a database has tables, but no table `ours`: it belongs to another program.
 void refuse_foreign(Database& database, const std::string& ours);
 
 /// Many rows in as few statements as fit: "INSERT INTO … (…)" + rows + tail. Rows are of one width.

@@ -19,7 +19,7 @@ struct Job {
   std::int64_t attempt = 0, lease_us = 0, ended_us = 0, status = 0;
 };
 
-/// How many jobs of a batch stand where.
+/// Number of jobs of a batch in each state.
 struct JobCounts {
   std::int64_t waiting = 0, taken = 0, done = 0, failed = 0;
 };
@@ -35,7 +35,7 @@ class JobQueue {
   /// command is replaced by the name, as one word of a shell.
   std::int64_t add(const std::string& batch, const std::string& command,
                    const std::vector<std::string>& machines);
-  /// The next job that is free, now this worker's for lease_s; nothing where none is.
+  /// Takes the next free job for this worker for lease_s; `nullopt` if no job is free.
   std::optional<Job> take(const std::string& batch, const std::string& worker, double lease_s,
                           std::int64_t most_attempts);
   /// False: it is no longer this attempt's.

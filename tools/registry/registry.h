@@ -22,7 +22,7 @@ struct FleetMachine {
   std::string board_key{};  // public half of the board's own key, 64 hexadecimal digits; empty: not entered
 };
 
-/// What runs on a machine and where it comes from.
+/// The image that runs on a machine and its origin.
 struct RecordedCalibration {
   std::string machine, model, model_hash, image, data, data_hash, signed_by, checked_against, checked_hash;
   std::int64_t at_us = 0;
@@ -68,11 +68,11 @@ LiveAge live_age(const LiveState& live, std::int64_t now_us, double stale_s);
 const char* name_of(LiveAge::State state);
 inline constexpr double kStaleAfter_s = 30;
 
-/// The fleet's registry: machines, what runs on them, what they said. The same on a server as in a file. All
-/// calls throw DatabaseError. tool.
+/// The fleet's registry: machines, their images, their states. A server and a file have the same contents.
+/// All calls throw DatabaseError. tool.
 class Registry {
  public:
-  /// Makes the tables where there are none. Throws InputError for a registry of a newer program.
+  /// Creates the tables if they do not exist. Throws InputError for a registry of a newer program.
   explicit Registry(std::unique_ptr<Database> database);
   Database& database() { return *database_; }
 
@@ -81,8 +81,8 @@ class Registry {
   std::vector<FleetMachine> machines();
   /// Throws InputError if no machine has that name.
   FleetMachine machine(const std::string& name);
-  /// Enters the key of a machine's board where none is entered. False: another machine's board has this key,
-  /// or one was entered meanwhile.
+  /// Enters the key of a machine's board if no key is entered. False: another machine's board has this key,
+  /// or a key was entered meanwhile.
   bool trust_board_key(const std::string& machine, const std::string& key);
 
   void put(const RecordedCalibration& calibration);

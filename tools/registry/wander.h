@@ -13,9 +13,9 @@ struct WanderSeries {
   std::vector<double> days, weight;
 };
 
-/// How far each machine wanders beside the readings' own scatter, and how long it remembers: an
-/// Ornstein-Uhlenbeck process (over times short beside `days` a random walk). ratio: its variance over that
-/// of a reading; 0: readings are independent.
+/// Wander of each machine in addition to the scatter of the readings, and its correlation time: an
+/// Ornstein-Uhlenbeck process (a random walk over times short compared with `days`). ratio: its variance
+/// divided by that of a reading; 0: readings are independent.
 struct Wander {
   double ratio = 0, days = 0;
   double gain = 0;  // fall of -2 log likelihood against independent readings
