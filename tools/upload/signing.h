@@ -32,7 +32,7 @@ SigningKey new_key();
 /// The texts of the key files. tool.
 std::string secret_key_text(const SigningKey& key);
 std::string public_key_text(const SigningKey& key);
-/// Reads a secret key file; throws InputError where it is none, or others than its owner may read it. tool.
+/// Reads a secret key file; throws InputError if it is not a key, or if other users may read it. tool.
 SigningKey read_secret_key(const std::string& path);
 
 /// The key of a file, else that of VERNIER_KEY, else none. tool.

@@ -6,7 +6,7 @@
 
 namespace vernier::upload {
 
-/// Where a board is: `tcp://HOST[:PORT]`, `rtu://DEVICE[?baud=..&parity=..&unit=..]`,
+/// Address of a board: `tcp://HOST[:PORT]`, `rtu://DEVICE[?baud=..&parity=..&unit=..]`,
 /// `can://INTERFACE?send=ID&receive=ID`, `serial://DEVICE[?baud=..]`.
 struct BoardUrl {
   std::string scheme;  // "tcp", "rtu", "can", "serial"
