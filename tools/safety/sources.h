@@ -18,10 +18,10 @@ struct Source {
   double rms_mm = 0, varying_rms_mm = 0;  // with and without the mean
 };
 
-/// What each source does alone, the others at nominal. Sources that do nothing are left out. tool.
+/// Effect of each source alone, the others at nominal. Sources without effect are not listed. tool.
 std::vector<Source> error_sources(const model::Machine& machine, const model::States& states);
 
-/// Does the symbol stand anywhere in the chain (tables of an axis count)?
+/// True if the symbol is used anywhere in the chain (tables of an axis count).
 bool acts(const model::Machine& machine, const model::Symbol& symbol);
 
 }  // namespace vernier::safety
