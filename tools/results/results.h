@@ -19,9 +19,9 @@ nlohmann::ordered_json compare_json(const model::Machine& machine, const model::
 /// last_line, n_obs, rms_um}. Shows where in a run a model holds (an overshoot arc, a warm-up, a late row).
 nlohmann::ordered_json stretches_json(const model::Measurement& measurement, const Eigen::VectorXd& residual);
 
-/// Where rows stand to the domains of validity of learned terms: {domain, quantity, low, high (trained; null
-/// while open), least, most (of the rows), rows_outside, rows_without_effect}; and as lines for people, where
-/// rows are outside.
+/// Rows inside and outside the domains of validity of learned terms: {domain, quantity, low, high (trained;
+/// null while open), least, most (of the rows), rows_outside, rows_without_effect}; and as lines for people,
+/// if rows are outside.
 nlohmann::ordered_json domains_json(const model::Machine& machine, const model::Measurement& measurement);
 void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
 
