@@ -36,8 +36,8 @@ const char* verdict_words(PartVerdict verdict);
 struct Expectation {
   double value = 0;          // of the machine as it was fitted
   double mean = 0, std = 0;  // over the trials
-  /// 95 % of the trials lie within, as many below as above; where the model lacks something, of the
-  /// wavelength of it that makes each end widest.
+  /// 95 % of the trials are within the interval, as many below as above. If the model has a discrepancy: each
+  /// end is that of the wavelength with the widest interval.
   double low = 0, high = 0;
   double u95 = 0;  // half of that interval
   /// Of conformity; where the model lacks something, of the wavelength that is least favourable to the
@@ -86,8 +86,8 @@ struct PartConformity {
   std::vector<std::string> outside;        // "Z -350..-300": ranges of the part that were not measured
 };
 
-/// Monte Carlo over the covariance that the last fit left in the machine file (JCGM 101:2008): what every
-/// characteristic of the part will be, with and without the machine's correction. Throws InputError where the
+/// Monte Carlo over the covariance that the last fit left in the machine file (JCGM 101:2008): distribution
+/// of every characteristic of the part, with and without the machine's correction. Throws InputError if the
 /// machine was never fitted. tool.
 PartConformity part_conformity(const model::Machine& machine, const PlacedPart& part, const std::string& file,
                                const std::vector<effects::Effect>& catalogue,
