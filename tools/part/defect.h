@@ -14,11 +14,11 @@ struct PartPoint {
   double u = 0, v = 0;
 };
 
-/// Where and along what the tool's displacement is taken. Contact: the cutter is a rigid body, and its
-/// displacement is taken at the height of the point, along the surface's normal there. Tip: the paper's
-/// reading, displacement of the tool tip along N(u,1). In plane: as contact, but only the horizontal part of
-/// the displacement, along the horizontal part of the normal (unit length), which is what a profile at
-/// constant height shows of a wall that is nearly vertical.
+/// Point and direction of the evaluated tool displacement. Contact: the cutter is a rigid body; its
+/// displacement is evaluated at the height of the point, along the surface normal there. Tip: as in the
+/// paper, displacement of the tool tip along N(u,1). In plane: as contact, but only the horizontal part of
+/// the displacement, along the horizontal part of the normal (unit length): the value that a profile at
+/// constant height shows of a nearly vertical wall.
 enum class DefectReading : std::uint8_t { kContact, kTip, kInPlane };
 
 struct DefectOptions {

@@ -27,7 +27,7 @@ double overcut_formula_mm(const FlankPose& pose, const Cutter& cutter, double v)
 double envelope_distance_mm(const RuledSurface& surface, const Cutter& cutter, double u, double v,
                             NormalReading reading = {});
 
-/// The largest value over 0 <= u <= 1 and where it stands.
+/// The largest value over 0 <= u <= 1 and its position.
 struct Worst {
   double value_mm = 0, u = 0;
 };

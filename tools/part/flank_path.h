@@ -15,8 +15,8 @@ struct Cutter {
 };
 
 /// The paths that the paper defines. Analytical: equations 1 to 3, along the top curve. The programs give a
-/// lower curve and the axis by an upper one, and the control sets the tool off at right angles to the lower
-/// curve and the axis (CUT3DC): TP5C1 touches at Z0, TP6C2 at Z11.
+/// lower curve and the axis by an upper one. The control offsets the tool perpendicular to the lower curve
+/// and the axis (CUT3DC): TP5C1 touches at Z0, TP6C2 at Z11.
 enum class ToolPath : std::uint8_t { kAnalytical, kTp5c1, kTp6c2 };
 
 /// Where on the part's height a path touches: Cutter::touch.
@@ -43,8 +43,8 @@ struct FlankPose {
 };
 
 /// Tip = C1 + radius * N - length * R: with N(u,1) the analytical flank path of the paper's equations 1 to 3.
-/// The cutter touches the surface along the whole generatrix only where the surface is not twisted; what it
-/// cuts too much is in tools/part/envelope.h. tool.
+/// The cutter touches the surface along the whole generatrix only if the surface is not twisted; the excess
+/// cut is computed in tools/part/envelope.h. tool.
 FlankPose flank_pose(const RuledSurface& surface, const Cutter& cutter, double u, NormalReading reading = {});
 
 }  // namespace vernier::part
