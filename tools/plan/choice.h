@@ -17,8 +17,9 @@ struct Sides {
   void assume(const std::vector<std::size_t>& chosen);
 };
 
-/// Adds offers (with repeats) to `chosen`, always the one that helps the worst side most, until `least`
-/// are chosen and `reached()` is at least `goal`, or `most` are chosen or no offer helps. tool.
+/// Adds offers (with repeats) to `chosen`, always the one that improves the worst side most. Ends when
+/// `least` are chosen and `reached()` is at least `goal`, when `most` are chosen, or when no offer improves
+/// it. tool.
 void choose_rows(Sides& sides, std::vector<std::size_t>& chosen, std::size_t least, std::size_t most,
                  double goal);
 

@@ -29,11 +29,11 @@ struct FirstPlan {
   bool reached = true;  // the accuracy that was asked for
 };
 
-/// The poses, one by one, that lower the expected uncertainty of the tool point over the work volume and all
-/// its tools most (I-optimal, exchange of none: Fedorov 1972, 2.5), for the parameters that the machine file
-/// frees. What moves the whole is the set-up's and counts for nothing. Measured in the order of a way through
-/// the axes' travels, the first pose repeated, check poses in between. Throws InputError for an axis without
-/// a range, or nothing free. tool.
+/// Chooses the poses one by one that lower most the expected uncertainty of the tool point over the work
+/// volume and all its tools (I-optimal, without exchange: Fedorov 1972, 2.5), for the free parameters of the
+/// machine file. A rigid motion belongs to the set-up and is not counted. The poses are in the order of a
+/// path through the axes' travels; the first pose is repeated, check poses are in between. Throws InputError
+/// for an axis without a range, or without a free parameter. tool.
 FirstPlan first_plan(const model::Machine& machine, const FirstPlanOptions& options = {});
 
 /// Expanded uncertainty (k = 2) of the tool point over the work volume, um, after readings at any poses, in

@@ -56,8 +56,8 @@ struct Knowledge {
   std::array<bool, 3> reads{true, true, true};  // x, y, z
 };
 
-/// Where the machine has to be accurate: a part's features, else where its axes work (`<volume>`), with all
-/// tools of the file.
+/// Region of the required accuracy: a part's features, else the working ranges of the axes (`<volume>`), with
+/// all tools of the file.
 struct AccuracyAim {
   std::string words;  // "the volume"
   std::optional<tolerance::PlacedPart> part;
