@@ -60,8 +60,8 @@ struct BallbarFile {
   std::vector<std::string> notes;  // what was assumed, one sentence each
 };
 
-/// The file's printed result `feature` of analysis `analysis` of that version ("" for none); nothing where it
-/// has none. tool.
+/// The file's printed result `feature` of analysis `analysis` of that version ("" for no version); `nullopt`
+/// if the file has no such result. tool.
 std::optional<double> printed_result(const BallbarFile& file, const std::string& analysis,
                                      const std::string& version, const std::string& feature);
 

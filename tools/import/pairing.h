@@ -37,11 +37,11 @@ struct Pairing {
   std::optional<double> rms_mm;  // of the paired points after the best rigid motion
 };
 
-/// Which dwell each point was measured in, where the trigger is missing or points were lost: the alignment of
-/// both sequences whose ways between neighbours (which no frame changes) and times agree best, dwells and
-/// points left out where nothing fits. Order is kept. Then one clock and one rigid motion for all: pairs that
-/// do not obey them are taken apart again. Throws InputError where neither times nor stands are given and the
-/// numbers differ. tool.
+/// Finds the dwell of each point if the trigger is missing or points were lost. Aligns both sequences so that
+/// distances between neighbours (which no frame changes) and times agree best. Dwells and points without a
+/// partner are skipped; the order is kept. Then one clock and one rigid motion are fitted for all; pairs that
+/// do not fit are separated again. Throws InputError if neither times nor nominal tool points are given and
+/// the numbers differ. tool.
 Pairing pair_points(const PairingInput& input);
 
 }  // namespace vernier::importer

@@ -20,7 +20,7 @@ struct RepairReport {
 /// tool.
 RepairReport repair_and_judge(const BallbarFile& file);
 
-/// What was changed and what it gained, for programs and for people. tool.
+/// The changes and their gain, for programs and for people. tool.
 nlohmann::ordered_json repair_json(const RepairReport& report);
 void print_repair(std::FILE* out, const RepairReport& report);
 

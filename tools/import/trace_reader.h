@@ -18,7 +18,7 @@ struct TraceSetup {
   int direction_of_zero = +1;  // direction of "Direction": 0
 };
 
-/// A circle of a path: its plane, first axis first ("YZ"), and where its first reading lies.
+/// A circle of a path: its plane, first axis first ("YZ"), and the angle of its first reading.
 struct TraceCircle {
   std::string plane;
   double start_deg = 180;
