@@ -9,8 +9,8 @@
 
 namespace vernier::sheet {
 
-/// The unit of the formats that a word means in any usual spelling: "µm", "micron", "(°C)", "Grad", "inch",
-/// "mm/Min.", "U/min"; brackets around it do not count. Nothing where it is no unit. tool.
+/// The unit (of the formats) of a word in any usual spelling: "µm", "micron", "(°C)", "Grad", "inch",
+/// "mm/Min.", "U/min"; brackets around it are ignored. `nullopt` if it is not a unit. tool.
 std::optional<std::string> unit_meant(std::string_view word);
 
 /// A heading: its words without the unit, and the unit in it: "X [mm]", "X(mm)", "X / mm", "Temp. in °C".
@@ -32,7 +32,7 @@ struct SheetTable {
   std::optional<std::size_t> upper_row;  // of headings in two lines the first
 };
 
-/// Finds the parts: the first row that is mostly numbers begins the data. Throws InputError where none does.
+/// Finds the parts: the first row that is mostly numbers begins the data. Throws InputError if no row does.
 /// tool.
 SheetTable parts_of_sheet(const Sheet& sheet);
 
