@@ -58,8 +58,8 @@ MachinePlan plan_machine(const std::string& type, std::vector<PlannedAxis> axes,
                          const std::optional<std::vector<std::string>>& tool_order,
                          const std::optional<std::vector<std::string>>& work_order);
 
-/// A robot: its rows, and axes as many as they have (none: J1, J2 … of ±180 deg, prismatic 0 to 500 mm).
-/// Throws InputError where their numbers differ. tool.
+/// A robot: its rows, and the same number of axes (empty: J1, J2 … of ±180 deg, prismatic 0 to 500 mm).
+/// Throws InputError if the numbers differ. tool.
 MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& rows);
 
 /// Positions that divide a range at round numbers into four to seven parts: stations of its table. tool.
