@@ -32,7 +32,7 @@ struct LintTable {
   const LintColumn* find(const std::string& name) const;
 };
 
-/// What names mean in a measurement file: of a machine, or of any where none is given (X Y Z A B C U V W J1
+/// Meanings of names in a measurement file: of a machine, or without a machine of any (X Y Z A B C U V W J1
 /// …).
 class LintNames {
  public:
@@ -48,7 +48,7 @@ class LintNames {
   }
   /// Is a column of this table a reading (format::is_reading)?
   bool is_reading(const LintTable& table, const LintColumn& column) const;
-  /// The unit that a column of this name needs, as a base unit; "" none; "?" any.
+  /// The unit that a column of this name needs, as a base unit; "" without a unit; "?" any.
   std::string needed_unit(const std::string& name) const;
   /// All names that mean something.
   std::vector<std::string> known() const;
