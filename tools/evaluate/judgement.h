@@ -8,9 +8,9 @@
 
 namespace vernier::evaluate {
 
-/// Decision rule of ISO 14253-1: a tolerance is met where the value with its expanded uncertainty stays
-/// within, not met where it is beyond even without it. Numbers that differ by rounding (1e-12 of the
-/// tolerance) are equal.
+/// Decision rule of ISO 14253-1: a tolerance is met if the value with its expanded uncertainty is within it,
+/// and not met if the value without its uncertainty is beyond it. Numbers that differ by rounding (1e-12 of
+/// the tolerance) are equal.
 enum class Conformity { kMet, kNotMet, kUndecided };
 /// One unit for all three. Throws std::logic_error where one is not finite.
 Conformity conformity(double value, double tolerance, double expanded_uncertainty);

@@ -24,7 +24,7 @@ struct PositioningWords {
 /// measured.
 std::optional<double> characteristic(const PositioningResult& result, const std::string& name);
 
-/// An entry of `characteristics` as a judgement; nothing where it has no tolerance.
+/// An entry of `characteristics` as a judgement; `nullopt` if it has no tolerance.
 std::optional<JudgedValue> judged_of(const nlohmann::ordered_json& characteristic);
 
 /// {axis, unit, factor, targets[…], characteristics[{name, value, tolerance, uncertainty, conformity}],

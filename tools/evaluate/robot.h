@@ -48,9 +48,9 @@ std::pair<double, double> spread_interval(double spread, double freedom);
 /// varies as RP_l then does. tool. Source: ISO 9283:1998, 7.2.1, 7.2.2; the interval by the delta method.
 std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings);
 
-/// Turns and shifts what was measured so that the barycentres of the commanded poses come nearest to them
-/// (least squares, Kabsch 1976): for an instrument whose frame is not the robot's. Throws InputError where
-/// the poses do not fix a frame (fewer than three, on one line). tool.
+/// Rotates and shifts the measured poses until their barycentres are nearest to the commanded poses (least
+/// squares, Kabsch 1976): for an instrument whose frame is not that of the robot. Throws InputError if the
+/// poses do not determine a frame (fewer than three, on one line). tool.
 void align_to_commanded(std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate
