@@ -28,7 +28,7 @@ class Conversation {
   Conversation(const Conversation&) = delete;
   Conversation& operator=(const Conversation&) = delete;
 
-  /// False where it ended, or said nothing for patience_s: it is of no use any more.
+  /// False if it ended, or gave no answer for patience_s: it cannot be used any more.
   bool ask(const Message& question, double patience_s, Message& answer);
   /// Ends it and reports how it had ended: "exit status 70", "signal 11", or "no answer" if it was still
   /// running.

@@ -21,7 +21,8 @@ std::vector<ExcludedRow> excluded_rows(const std::string& text);
 std::string exclude_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines, const std::string& reason);
 
-/// The text with the excluded rows on these lines back in. Throws InputError with the line where none is.
+/// The text with the excluded rows on these lines restored. Throws InputError with the line if it has no
+/// excluded row.
 std::string restore_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines);
 

@@ -20,8 +20,8 @@ struct ProjectFile {
   std::int64_t modified_s = 0;  // since 1970
 };
 
-/// May a file of a project be called so? One to three parts between '/', each of 1 to 120 bytes, without
-/// control characters, '\' and ':', not starting with '.', '-', '~' or a blank. tool.
+/// True if the name is allowed for a file of a project: one to three parts between '/', each of 1 to 120
+/// bytes, without control characters, '\' and ':', not starting with '.', '-', '~' or a blank. tool.
 bool is_project_name(std::string_view name);
 
 /// Throws InputError with the name where `path` is a symbolic link, a device or a pipe. tool.
@@ -43,8 +43,8 @@ class Project {
   std::filesystem::path writable(const std::string& name) const;
   /// Writes a file; a reader sees the old one or the whole new one.
   void save(const std::string& name, const std::string& bytes) const;
-  /// What lies in the folder and one level below, by name; hidden files and links are left out, and what
-  /// comes after the first 2000.
+  /// Files in the folder and one level below, by name; without hidden files and links, and only the first
+  /// 2000.
   std::vector<ProjectFile> list() const;
 
  private:

@@ -31,8 +31,8 @@ struct ApiReply {
 ApiReply json_reply(const nlohmann::ordered_json& json, int status = 200);
 ApiReply blob_reply(std::string bytes);
 
-/// What `answer` gives; where it throws: bad input is 422 with {"message"}, our own fault 500. The project's
-/// folder is left out of messages. tool.
+/// The result of `answer`. If it throws: bad input is 422 with {"message"}, an internal fault is 500. The
+/// project's folder is removed from messages. tool.
 ApiReply reply_of(const Project& project, const std::function<ApiReply()>& answer);
 
 /// A body that holds a JSON object. This and what follows throws InputError with the word.

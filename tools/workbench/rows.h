@@ -55,8 +55,8 @@ std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, 
 /// model, per observation, um or urad. add: a candidate's `add` string. tool.
 std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 
-/// Free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention, prior) as the
-/// fit that wrote the file left them; null where there was none, or where the value was changed since.
+/// Free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention, prior) are those
+/// of the fit that wrote the file; null without a fit, or if the value was changed since.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
 }  // namespace vernier::workbench
