@@ -75,7 +75,7 @@ std::span<const ColumnGroup> column_groups();
 
 /// One of them by its name; nullptr: no column of the format has it. Names are case-sensitive.
 const ColumnGroup* find_column(std::string_view name);
-/// The columns that hold readings of a form; those that stand beside them.
+/// The columns that hold readings of a form; the columns that belong to them.
 const ColumnGroup& reading_columns(ReadingForm form);
 std::vector<const ColumnGroup*> columns_beside(ReadingForm form);
 
@@ -150,13 +150,14 @@ std::string words_of(std::span<const char* const> names);
 /// "x y z rx …": the columns of all readings, for messages.
 std::string reading_column_names();
 
-/// Is a column a reading in a file with this header? A column of the first version is, by its name. One of a
-/// later version is only with what belongs to it: `from` beside `distance`, an angle's unit for `ix` and
-/// `iy`, all of `ax ay az` without a unit. `find`: a column of the header; nullptr: it has none of this name,
-/// or the machine file uses the name for an input.
+/// True if a column is a reading in a file with this header. A column of the first version is a reading by
+/// its name. A column of a later version is a reading only with its companions: `from` with `distance`, an
+/// angle's unit for `ix` and `iy`, all of `ax ay az` without a unit. `find`: a column of the header; nullptr:
+/// the header has no column of this name, or the machine file uses the name for an input.
 bool is_reading(const CsvColumn& column, const std::function<const CsvColumn*(std::string_view)>& find);
 
-/// Does an expression read a quantity of this name (t, feed, nx …)? Then nothing else may have the name.
+/// True if an expression reads a quantity of this name (t, feed, nx …). Then the name must not be used
+/// otherwise.
 bool is_name_of_terms(std::string_view name);
 
 /// The reading that holds a rotary axis' angle: rx, ry, rz of A, B, C (ISO 841); nullopt for other axes.

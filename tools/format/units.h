@@ -45,7 +45,7 @@ std::optional<Unit> find_unit(std::string_view name);
 /// ^2, a middle dot left out. tool.
 std::string usual_spelling(std::string_view unit);
 
-/// The name that find_unit has for it; the text itself where it has none. tool.
+/// The name that find_unit has for it; the text itself if find_unit does not know it. tool.
 std::string canonical_unit(std::string_view unit);
 
 /// All names, for messages.
