@@ -266,7 +266,7 @@ void read_key(BoardFile& board, const toml::table& table) {
   if (name.empty()) settings.fail("name is missing: whose key it is");
   if (file.empty()) settings.fail("file is missing: the public key of `vernier keys`");
   if (role != "all" && role != "command" && role != "upload" && role != "retired")
-    settings.fail("role: '" + role + "' is none of all, command, upload, retired");
+    settings.fail("role: '" + role + "' is not one of all, command, upload, retired");
   key.name = std::string_view(name);
   board.key_files.push_back(beside(board.path, file));
   key.key = read_public_key(board.key_files.back());
@@ -351,7 +351,7 @@ LinkRights rights_of(SignalSource& link) {
   const bool loopback = link.kind == "modbus-tcp" && link.text("address", "127.0.0.1").starts_with("127.");
   const std::string access = link.text("access", loopback ? "upload" : "read");
   if (access != "read" && access != "command" && access != "upload")
-    link.fail("access: '" + access + "' is none of read, command, upload");
+    link.fail("access: '" + access + "' is not one of read, command, upload");
   rights.access = access == "read"      ? LinkAccess::kRead
                   : access == "command" ? LinkAccess::kCommand
                                         : LinkAccess::kUpload;

@@ -176,7 +176,7 @@ std::unique_ptr<BoardKey> key_of_board(const std::string& store) {
     std::fprintf(stderr, "vernierd: key of this board: %s\n", key->text().c_str());
     return key;
   } catch (const BoardError& error) {
-    std::fprintf(stderr, "vernierd: note: this board cannot prove who it is: %s\n", error.what.c_str());
+    std::fprintf(stderr, "vernierd: note: this board cannot prove its identity: %s\n", error.what.c_str());
     return nullptr;
   }
 }

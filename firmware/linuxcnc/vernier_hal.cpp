@@ -108,7 +108,7 @@ bool introduce(Hatch& hatch, const Introduction& introduction) {
           stderr);
       return true;
     case Attached::kResumed:
-      std::fputs("vernier-hal: the component goes on with what it runs\n", stderr);
+      std::fputs("vernier-hal: the component continues with its running image\n", stderr);
       return true;
     case Attached::kImageRefused:
       std::fprintf(stderr, "vernier-hal: the image is not used: %s\n", text);
