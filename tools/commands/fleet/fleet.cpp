@@ -256,7 +256,7 @@ void run_check(const CheckArguments& arguments) {
 
 void add_machine_kinds(CLI::App& fleet) {
   const auto add = std::make_shared<AddArguments>();
-  CLI::App* command = fleet.add_subcommand("add", "enter a machine, or change what is entered of it");
+  CLI::App* command = fleet.add_subcommand("add", "enter a machine, or change its entry");
   command->add_option("MACHINE", add->name, "its name; also the device of its topics")->required();
   add_registry(*command, add->registry);
   command->add_option("--url", add->url, "its board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE");
@@ -318,14 +318,13 @@ void add_forget(CLI::App& fleet) {
 void add_record_kinds(CLI::App& fleet) {
   const auto record = std::make_shared<RecordArguments>();
   CLI::App* command = fleet.add_subcommand(
-      "record",
-      "write down what runs on a machine: model, image, data, who signed, what it was checked against");
+      "record", "record what runs on a machine: model, image, data, signer, data of its check");
   command->add_option("MACHINE", record->machine, "its name in the registry")->required();
   add_registry(*command, record->registry);
   command->add_option("--model", record->model, "machine file (XML)")->required();
   command->add_option("--image", record->image, "directory that `vernier compile` wrote");
   command->add_option("--data", record->data, "measurement files that the model was fitted to");
-  command->add_option("--signed-by", record->signed_by, "who answers for it")->required();
+  command->add_option("--signed-by", record->signed_by, "person responsible for it")->required();
   command->add_option("--against", record->against, "measurement files that it was checked against");
   command->footer("Files are written down by name and BLAKE2b-256. Exit status 0 done, 1 bad input.");
   command->callback([record] { run_record(*record); });

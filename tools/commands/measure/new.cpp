@@ -172,13 +172,15 @@ void register_new(CLI::App& vernier) {
                       "also a measurement file to be filled in: CSV, or a workbook (.xlsx)");
   command
       ->add_option("--errors", arguments->errors,
-                   "what a fit may find: all; positioning (along each axis, what an interferometer or a dial "
+                   "parameters that a fit may find: all; positioning (along each axis, what an "
+                   "interferometer or a dial "
                    "gauge sees)")
       ->check(CLI::IsMember({"all", "positioning"}))
       ->capture_default_str();
   command
-      ->add_option("--reading", arguments->reading,
-                   "what the survey reads: " + format::survey_words("or") + " (" + reading_help() + ")")
+      ->add_option(
+          "--reading", arguments->reading,
+          "quantities that the survey reads: " + format::survey_words("or") + " (" + reading_help() + ")")
       ->capture_default_str();
   command->add_option("--tool", arguments->tool,
                       "tool point in the frame of the last axis that carries it, mm: 0,0,-120");
@@ -193,7 +195,7 @@ void register_new(CLI::App& vernier) {
                       "robot: its rows as CSV, theta[deg],d[mm],a[mm],alpha[deg] (type R or P)");
   command
       ->add_option("--joint", arguments->joints,
-                   "robot: a row, theta,d,a,alpha (P, before it where it slides); again for each")
+                   "robot: a row, theta,d,a,alpha (P, before it for a prismatic joint); repeat for each")
       ->allow_extra_args(false);
   command->add_option("--urdf", arguments->urdf,
                       "robot: its description (URDF); rows, names and limits of the joints come from it");

@@ -125,7 +125,7 @@ void register_diagnose(CLI::App& vernier) {
       "absorb. Verdict: missing-effect, ambiguous, unexplained, instrument or consistent. Check rows test "
       "the model, "
       "they\n"
-      "enter nothing. Exit status 0 whatever the finding, 1 bad input.");
+      "enter nothing. Exit status 0 for every finding, 1 bad input.");
   command->callback([arguments] { run_diagnose(*arguments); });
 }
 

@@ -199,15 +199,17 @@ void register_fit(CLI::App& vernier) {
       "--free", arguments->free,
       "patterns of free parameters in addition to those of the file: statics, table.X.rY, BaseShift, "
       "scalefactor.X; may be repeated");
-  command->add_option("--hold", arguments->hold, "patterns of what is held, after --free; may be repeated");
+  command->add_option("--hold", arguments->hold,
+                      "patterns of fixed parameters, after --free; may be repeated");
   command->add_option("--prior", arguments->priors,
                       "NAME=STD: hold parameters near nominal as if measured there; may be repeated");
   command->add_option("--solver", arguments->solver, "normal-equations, or ceres as a cross-check")
       ->check(CLI::IsMember({"normal-equations", "ceres"}))
       ->capture_default_str();
   command->footer(
-      "Weighted least squares (1/u^2) on rows with role fit. What the readings leave open is as near\n"
-      "to nominal as it can be, in units of each parameter's scale, and said (tools/docs/fit.md). Exit "
+      "Weighted least squares (1/u^2) on rows with role fit. Parameters that the readings do not determine "
+      "are as near\n"
+      "to nominal as possible, in units of each parameter's scale, and are listed (tools/docs/fit.md). Exit "
       "status 0 done,\n"
       "1 bad input, 2 the fit did not converge or the readings are not of this machine: nothing written.");
   command->callback([arguments] { run_fit(*arguments); });

@@ -238,9 +238,9 @@ void register_improve(CLI::App& vernier) {
   command->footer(
       "Only effects of a verdict missing-effect are added. Each step writes its fitted machine file; the "
       "last line\n"
-      "of figures is what the measurement would have read with the 1 kHz correction running. Exit status 0 "
+      "of figures contains the readings of the measurement with the 1 kHz correction running. Exit status 0 "
       "done\n"
-      "(whatever was found), 1 bad input, 2 the readings are not those of this machine or the fit did not\n"
+      "(for every finding), 1 bad input, 2 the readings are not those of this machine or the fit did not\n"
       "converge: nothing written.");
   command->callback([arguments] { Improver(*arguments).run(); });
 }

@@ -107,7 +107,7 @@ std::string why_not(const plan::AccuracyPlan& plan, double asked_um) {
 void print_accuracy(std::FILE* out, const plan::AccuracyAim& aim, const plan::AccuracyPlan& plan,
                     double asked_um) {
   if (plan.states.count == 0) {
-    fmt::print(out, "U95 over {} is {:.3g} um already{}: nothing to measure\n", aim.words, plan.now_um,
+    fmt::print(out, "U95 over {} is {:.3g} um already{}: no measurement is needed\n", aim.words, plan.now_um,
                asked_um > 0 ? fmt::format(", {:g} asked", asked_um) : "");
     return;
   }

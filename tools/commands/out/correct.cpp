@@ -134,7 +134,7 @@ void register_correct(CLI::App& vernier) {
       ->required();
   command->add_option("-o,--output", arguments->output, "the same, corrected")->required();
   command->add_option("--at", arguments->at,
-                      "inputs, and where the axes stand before a program begins: \"T=25,X=0,Z=100\"");
+                      "inputs, and positions of the axes before a program begins: \"T=25,X=0,Z=100\"");
   command->add_option("--zero", arguments->zero,
                       "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
   command->add_option("--tool", arguments->tool,

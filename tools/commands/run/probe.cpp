@@ -25,12 +25,13 @@ struct TableArguments {
 void add_table(CLI::App& command, TableArguments& arguments) {
   command.add_option("file", arguments.file, "CSV of touches")->required()->type_name("FILE");
   command
-      .add_option("--column", arguments.columns, "what a column is: \"mean_up_um=upper[um]\"; again for each")
+      .add_option("--column", arguments.columns,
+                  "meaning of a column: \"mean_up_um=upper[um]\"; again for each")
       ->allow_extra_args(false);
   command.add_option("--where", arguments.where, "only rows with this: \"group=A\"")->allow_extra_args(false);
   command
       .add_option("--outliers", arguments.outlier_level,
-                  "chance at which a good set loses a touch; 0: none is left out")
+                  "probability that a good set loses a touch; 0: no touch is excluded")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
   command.add_option("--json", arguments.json, "result for programs; - is standard output");
