@@ -238,7 +238,7 @@ class Judge {
     if (fails("readings") || fails("sensitivity")) {
       answer_.verdict = CheckVerdict::kTooLittle;
       answer_.explanation =
-          "The readings determine the set-up of the instrument and nothing else. Measure more points, "
+          "The readings determine only the set-up of the instrument. Measure more points, "
           "further "
           "apart.";
       return;
