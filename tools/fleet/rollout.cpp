@@ -61,7 +61,8 @@ class RolloutCall {
   void stages() {
     for (const auto& [machine, state] : states_)
       if (state.state == "taken-back")
-        return stand("this rollout stands since " + machine + " (" + state.said + "): --go-on lets it go on");
+        return stand("this rollout is stopped since " + machine + " (" + state.said +
+                     "): --go-on continues it");
     look_again();
     std::size_t away = 0;
     for (std::size_t i = 0; i < machines_.size() && end_.stood.empty(); ++i) {
@@ -101,7 +102,7 @@ class RolloutCall {
         continue;
       }
       write(machine, look.away ? "away" : "not-in-effect", "was kept, but now: " + look.why);
-      stand(machine.name + ": was kept, but now: " + look.why + ": the rollout stands");
+      stand(machine.name + ": was kept, but now: " + look.why + ": the rollout stops");
     }
   }
 
@@ -144,9 +145,9 @@ class RolloutCall {
     write(machine, name_of(end.kind), end.why);
     if (end.kind == TrialEnd::Kind::kKept) kept_(machine);
     if (end.kind == TrialEnd::Kind::kTakenBack)
-      stand(machine.name + ": " + end.why + ": taken back, and the rollout stands");
+      stand(machine.name + ": " + end.why + ": reverted, and the rollout stops");
     else if (end.kind != TrialEnd::Kind::kKept && end.kind != TrialEnd::Kind::kAway)
-      stand(machine.name + ": " + end.why + ": the rollout stands");
+      stand(machine.name + ": " + end.why + ": the rollout stops");
     return end.kind != TrialEnd::Kind::kAway;
   }
 
