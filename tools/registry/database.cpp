@@ -30,7 +30,7 @@ void refuse_foreign(Database& database, const std::string& ours) {
   if (found.empty() || !database.run(own, {ours}).empty()) return;
   throw text::InputError(
       {}, database.name(),
-      "holds tables of something else (" + found[0][0].value_or("") + "): nothing is written");
+      "holds tables of another program (" + found[0][0].value_or("") + "): nothing is written");
 }
 
 void insert_rows(Database& database, const std::string& head, const std::vector<Row>& rows,
