@@ -94,7 +94,8 @@ std::vector<std::string> remarks(const residual::BeforeAfter& result) {
     list.push_back(fmt::format("left out, at poses that only one has: {} rows before, {} after",
                                result.unmatched_before, result.unmatched_after));
   if (result.corrected_before > 0)
-    list.push_back(fmt::format("{} rows of `before` say that a correction was on", result.corrected_before));
+    list.push_back(
+        fmt::format("{} rows of `before` state that a correction was on", result.corrected_before));
   return list;
 }
 
