@@ -81,7 +81,7 @@ class Namer {
   std::pair<std::string, std::string> name(const std::function<bool(const model::Expr&)>& is, bool hats,
                                            std::optional<std::size_t> axis) const {
     const std::optional<PlacedTerm> term = find_term(is, hats, axis);
-    if (!term) return {effects::custom_effect().id, "what no term uses"};
+    if (!term) return {effects::custom_effect().id, "used by no term"};
     const effects::Effect* effect = effect_of(*term);
     const std::string id = effect != nullptr ? effect->id : effects::custom_effect().id;
     return {id, label(id, *term)};
