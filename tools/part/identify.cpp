@@ -205,7 +205,7 @@ Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
   const PartProblem problem(machine, part, options);
   const text::Place place{part.file, 0};
   if (problem.free().empty())
-    throw text::InputError({machine.machine.file, 0}, "static", "nothing is free to be fitted");
+    throw text::InputError({machine.machine.file, 0}, "static", "no static is free");
   if (static_cast<Eigen::Index>(part.points.size()) < problem.size())
     throw text::InputError(place, std::to_string(part.points.size()) + " points",
                            "fewer points than unknowns");
