@@ -59,7 +59,7 @@ class AccuracyPlanner {
         own_.push_back(static_cast<Index>(i));
     if (own_.empty())
       throw text::InputError({knowledge.machine.file, 0}, knowledge.machine.name,
-                             "the machine file frees nothing that could be measured");
+                             "the machine file has no free parameter that could be measured");
     aim_ = aim_rows(knowledge, aim, own_);
     size_ = static_cast<Index>(knowledge.parameters.size()) + 9;
     weight_ = MatrixXd::Zero(size_, size_);
@@ -293,7 +293,7 @@ Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& m
   if (!knowledge.reads[0] && !knowledge.reads[1] && !knowledge.reads[2])
     throw text::InputError({measurement.files.empty() ? "" : measurement.files[0], 0},
                            format::words_of(format::columns::kPoint),
-                           "a plan for accuracy is one of readings of the tool point; this has none");
+                           "a plan for accuracy needs readings of the tool point; this file has none");
   const fit::NoiseModel& noise = fitted.noise;
   const double unit_mm = usual_reading_mm(measurement);
   const double own = std::sqrt(noise.own * noise.own + noise.pose * noise.pose + noise.drift * noise.drift);

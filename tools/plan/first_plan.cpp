@@ -33,7 +33,7 @@ class FirstPlanner {
           .push_back(static_cast<Index>(i));
     if (own_.empty())
       throw text::InputError({machine.file, 0}, machine.name,
-                             "the machine file frees nothing that could be measured");
+                             "the machine file has no free parameter that could be measured");
     const MatrixXd all(model::linearise(machine, rows, parameters).jacobian);
     // In units of what each parameter may plausibly be: what moves the tool point by so much, rms.
     scale_ = Eigen::VectorXd::Ones(all.cols());
