@@ -81,7 +81,7 @@ void compare(const std::string& place, const std::vector<BallbarFeature>& featur
     if (const auto why = computed.why.find(feature.name); why != computed.why.end()) {
       result.why = why->second;
     } else if (!result.computed) {
-      result.why = "not known here, or the file lacks what it is computed from";
+      result.why = "not known here, or the file lacks its input data";
     }
     results.push_back(result);
   }

@@ -354,7 +354,7 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     if (deviation && !axes.contains(column.name) && alone_measured.contains(column.name))
       column.to_target = true;
     else if (deviation && (column.name.empty() || !axes.contains(column.name)))
-      leave(column, "a deviation of which axis? Say it: --deviation \"X=" + table.headings[k].text + "\"");
+      leave(column, "a deviation of which axis? Give it: --deviation \"X=" + table.headings[k].text + "\"");
     else if (deviation && measured.contains(text::in_small_letters(column.name)))
       leave(column, "the measured position is there as " + text::in_small_letters(column.name));
     else if (column.name == kSensePrefix && moved.size() == 1)
@@ -449,8 +449,9 @@ void settle_senses(const sheet::Sheet& sheet, const std::vector<std::size_t>& ro
       if (cell == "0" || cell == "2") cell = "-1";
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (const std::string& cell = cells[i]; !cell.empty() && cell != "0" && cell != "1" && cell != "-1")
-      throw text::InputError({sheet.file, rows[i]}, cell,
-                             "a sense is 1 or -1 (0: nothing moved), or a word such as forward or back");
+      throw text::InputError(
+          {sheet.file, rows[i]}, cell,
+          "an approach direction is 1 or -1 (0: no motion), or a word such as forward or back");
 }
 
 /// The angle that a rotary axis turns by, as the measurement file names it.
@@ -458,7 +459,7 @@ std::string angle_of(const std::string& axis, const text::Place& place) {
   if (auto angle = format::angle_about(axis)) return *angle;
   throw text::InputError(
       place, axis,
-      "a deviation in degrees: about which direction does it turn? Say it: --column \"rz[deg]=HEADING\" "
+      "a deviation in degrees: about which direction is it? Give it: --column \"rz[deg]=HEADING\" "
       "with what was measured");
 }
 
@@ -602,7 +603,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
     }
     columns[at] = wish.column;
     if (columns[at].unit.empty()) columns[at].unit = table.headings[at].unit;
-    columns[at].why = wish.place.file.empty() ? "as said" : "by the profile";
+    columns[at].why = wish.place.file.empty() ? "as given" : "by the profile";
   }
   settle_axis(sheet, table, columns, guess);
   settle_display(table, columns, guess);
@@ -640,11 +641,12 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   }
   const text::Place heading{sheet.file, sheet.line[table.heading_row]};
   if (!without.empty())
-    throw text::InputError(heading, "", "no unit: say it for all (--unit mm) or for each, such as" + without);
+    throw text::InputError(heading, "",
+                           "no unit: give it for all (--unit mm) or for each, such as" + without);
   if (!measured)
     throw text::InputError(heading, "",
                            "nothing measured among the columns (" + format::reading_column_names() +
-                               ", or a deviation of an axis): say which it is, such as --column "
+                               ", or a deviation of an axis): assign one, such as --column "
                                "\"x[mm]=HEADING\" or --deviation \"X[um]=HEADING\"; --preview shows what "
                                "was understood");
   for (std::size_t k = 0; k < columns.size(); ++k)

@@ -154,7 +154,7 @@ void number_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
     if (!numbered) one.run = std::to_string(++count[one.sense]);
     if (!seen.emplace(one.run, one.sense).second)
       throw text::InputError({sheet.file, sheet.line[table.heading_row]}, table.headings[one.column].text,
-                             "this run stands twice in this sense");
+                             "this run occurs twice in this direction");
   }
 }
 
