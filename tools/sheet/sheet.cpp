@@ -154,7 +154,7 @@ void guess_decimal(Sheet& sheet) {
             (comma < point ? "point" : "comma") + " in line " +
             std::to_string((comma < point ? at_point : at_comma).line) + " (" +
             (comma < point ? point_word : comma_word) +
-            "): say which one is meant (--decimal comma or point), the other cells are then refused");
+            "): give the decimal sign (--decimal comma or point), the other cells are then refused");
   // Where each sign could part thousands as well ("1,234") the one that is there is taken for the decimal
   // sign.
   sheet.decimal_comma = comma > 0 || (point == 0 && either_comma > either_point);
