@@ -133,7 +133,7 @@ void place_all(MachinePlan& plan, bool tool_given, bool work_given) {
   for (const auto* side : {&plan.tool_side, &plan.work_side})
     for (std::size_t k = 0; k < side->size(); ++k)
       if (std::count(side->begin(), side->end(), (*side)[k]) > 1)
-        throw text::InputError("\"" + plan.axes[(*side)[k]].name + "\": this axis stands twice on its side");
+        throw text::InputError("\"" + plan.axes[(*side)[k]].name + "\": this axis occurs twice on its side");
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ std::string remarks(const model::Machine& machine, const format::SurveyReading& 
          "# More columns are welcome, in any place: " +
          format::heading(format::columns::kUncertainty) + " standard uncertainty of the reading, " +
          format::heading(format::columns::kTime) + " time,\n# " + format::heading(format::columns::kFeed) +
-         ", T_name[degC] a temperature, load[%], whatever was logged; `vernier diagnose` asks them what "
+         ", T_name[degC] a temperature, load[%], any logged quantity; `vernier diagnose` asks them what "
          "they\n"
          "# explain.\n"
          "# `vernier lint` reports errors in the file, `vernier import table` reads a spreadsheet "

@@ -168,8 +168,8 @@ class Tree {
     }
     if (ends.empty()) throw text::InputError({file_, 1}, "robot", "no joint of it moves");
     if (ends.size() > 1)
-      throw text::InputError(fmt::format("{}: several links end the arm, say which with --tip: {}", file_,
-                                         text::joined(ends, ", ")));
+      throw text::InputError(fmt::format("{}: the arm has several end links, choose one with --tip: {}",
+                                         file_, text::joined(ends, ", ")));
     return ends.front();
   }
 
