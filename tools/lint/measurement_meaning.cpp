@@ -102,7 +102,7 @@ class Meaning {
     const char* const unit = turns ? "deg" : "mm";
     if (most - least < 1e-9)
       findings_.warn(table_.header_line, column.name,
-                     fmt::format("axis {} never moves: it stands at {} {} in all rows", column.name,
+                     fmt::format("axis {} never moves: it is at {} {} in all rows", column.name,
                                  text::number_text(least), unit),
                      "its errors cannot be distinguished from those of the set-up");
     if (machine_ == nullptr) return;
@@ -151,8 +151,7 @@ class Meaning {
         check += word == format::kCheckRole ? 1 : 0;
       }
     if (check == table_.rows.size())
-      findings_.warn(table_.header_line, columns::kRole,
-                     "all rows are check rows: nothing is left for a fit");
+      findings_.warn(table_.header_line, columns::kRole, "all rows are check rows: no row remains for a fit");
     if (check == 0)
       findings_.remark(table_.header_line, columns::kRole, "no check rows: the fit will not be tested",
                        "give some rows the role check, spread over the volume");
@@ -255,7 +254,7 @@ class Meaning {
                 " --deviation \"X[mm]=x\" … adds them to the positions";
     if (!meaning.empty())
       findings_.warn(table_.header_line, columns::kPoint.front(),
-                     fmt::format("what was measured spreads over {:.4g} of what the machine was sent", ratio),
+                     fmt::format("the measured values spread over {:.4g} of the commanded positions", ratio),
                      meaning);
   }
 
