@@ -169,7 +169,7 @@ class Translator {
         target[at] += value;
       else
         throw text::InputError(place_, word.text,
-                               "a step from where the axis stands, which is not known: --at");
+                               "a step from an unknown position of the axis: give it with --at");
       reached.push_back(*axis);
     }
     return target;
@@ -186,7 +186,7 @@ class Translator {
       if (known_[i] == 0)
         throw text::InputError(
             place_, std::string(1, letters_[i]),
-            "where this axis stands is not known yet: name it in the first move, or with --at");
+            "the position of this axis is not known yet: name it in the first move, or with --at");
     if (arc && !start_known)
       throw text::InputError(place_, words.front().text, "an arc from a place that is not known: --at");
     if (arc) move.arc = arc_of(words, arc_reading(), move.from, move.to, place_);
