@@ -193,7 +193,7 @@ std::string word_of(const Field& field, const nlohmann::json& value, const Proje
       std::string text = text_of(field, value);
       const std::vector<std::string> words = text::words_in(field.words, " ");
       if (!words.empty() && std::find(words.begin(), words.end(), text) == words.end())
-        refuse(field, "is none of " + std::string(field.words));
+        refuse(field, "is not one of " + std::string(field.words));
       return text;
     }
   }
