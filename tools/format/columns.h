@@ -119,7 +119,8 @@ inline constexpr std::array kAxisColumns = {
                     Dimension::kAngularAcceleration, "mm/s^2", true,
                     "acceleration of the axis at the reading", "0"},
     AxisColumnEntry{AxisQuantity::kCorrection, "correction", Dimension::kLength, Dimension::kAngle, "um",
-                    false, "what a board added to the commanded position of the axis in this row", "0"},
+                    false, "correction that a board added to the commanded position of the axis in this row",
+                    "0"},
 };
 
 constexpr const AxisColumnEntry& entry_of(AxisQuantity quantity) {
