@@ -146,7 +146,7 @@ class Progress {
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// fraction 0..1, and what is being done now.
+  /// fraction 0..1, and the present step.
   void update(double fraction, const std::string& step = {});
 
  private:

@@ -16,8 +16,8 @@ void require_known_commands(const CLI::App& vernier, const std::vector<std::stri
 /// Suggestion for an unknown option in a parser's message: "did you mean --json?"; else empty. tool.
 std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error);
 
-/// Makes every option of a number take finite decimals only, and every count only what is not negative: the
-/// parser itself reads "nan", "0x1f" and -1, and no range catches nan. tool.
+/// Makes every option of a number accept finite decimals only, and every count only values that are not
+/// negative. The parser accepts "nan", "0x1f" and -1, and no range excludes nan. tool.
 void take_plain_numbers(CLI::App& vernier);
 
 /// Throws InputError if a measurement is given instead of a machine file, or the reverse, with the corrected

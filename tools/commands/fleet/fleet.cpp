@@ -83,7 +83,7 @@ void run_add(const AddArguments& arguments) {
   if (arguments.url && !arguments.url->empty()) upload::parse_url(*arguments.url);
   registry::Registry registry = make_registry(arguments.registry);
   registry::FleetMachine machine{arguments.name, {}, {}, 0, text::now_us()};
-  // What is entered of it and not said anew stays.
+  // Entries that are not given again are kept.
   for (const registry::FleetMachine& known : registry.machines())
     if (known.name == arguments.name) machine = known;
   if (arguments.url) machine.url = *arguments.url;
@@ -215,7 +215,7 @@ void run_record(const RecordArguments& arguments) {
   registry::RecordedCalibration one;
   one.machine = arguments.machine;
   one.model = arguments.model;
-  model::read_machine(one.model);  // what is no machine file is refused here
+  model::read_machine(one.model);  // refuses a file that is not a machine file
   one.model_hash = hash_of_files({arguments.model});
   if (!arguments.image.empty()) {
     const auto image = compile::load_image_dir(arguments.image);

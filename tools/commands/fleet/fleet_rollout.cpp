@@ -33,7 +33,7 @@ std::string folder_for(std::string pattern, const std::string& machine) {
   return pattern;
 }
 
-/// Who the board of a machine must be. Without a name in the registry nothing can be proved of it.
+/// Required identity of the board of a machine. Without a name in the registry no identity can be proved.
 upload::BoardClaim claim_of(const registry::FleetMachine& one) {
   if (one.board.empty())
     throw text::InputError({}, one.name,
@@ -125,7 +125,7 @@ text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet
   return assurance;
 }
 
-/// Exit status 0 only where this is true, or no board was asked.
+/// Exit status 0 only if this is true, or if no board was asked.
 bool tell(const RolloutArguments& arguments, registry::Registry& registry, const fleet::RolloutEnd* end) {
   Json all = Json::array();
   const std::vector<fleet::RolloutState> states = fleet::rollout_states(registry, arguments.options.name);
@@ -173,7 +173,7 @@ void run_rollout(const RolloutArguments& arguments) {
     throw text::LimitNotMet("not every machine of this rollout keeps its image and has it in effect");
 }
 
-/// Without its registry a rollout stops: nothing that it did could be written down.
+/// Without its registry a rollout stops, because its steps could not be recorded.
 void run_or_stand(const RolloutArguments& arguments) {
   try {
     run_rollout(arguments);

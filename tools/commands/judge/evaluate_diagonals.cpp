@@ -102,7 +102,7 @@ void print(std::FILE* out, const Json& json) {
   }
 }
 
-/// What the machine's values are judged by.
+/// Acceptance rule of the machine's values.
 text::Assurance assurance_of(const Json& machine) {
   std::vector<evaluate::JudgedValue> all;
   for (const Json& one : machine)

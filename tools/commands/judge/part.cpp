@@ -182,11 +182,11 @@ void run_s_shape(const Arguments& arguments) {
   if (arguments.tolerance_mm > 0) result["tolerance"] = judged(arguments, job, result["defect"]);
   const part::PathOptions path{job.options.cutter, arguments.step_mm, arguments.feed_mm_min,
                                arguments.solution};
-  // What is not free in this run is free in the file all the same.
+  // Parameters that are fixed in this run remain free in the file.
   model::Machine written = model::parse_machine(machine_text, arguments.machine);
   for (std::size_t i = 0; i < written.statics.size(); ++i)
     written.statics[i].value = job.machine.machine.statics[i].value;
-  // All texts first: a failure leaves nothing behind.
+  // Makes all texts first: after a failure no file is written.
   std::vector<std::pair<std::string, std::string>> files = {
       {"defect.csv", part::defect_csv(job.points, job.defect)},
       {"machine.xml", model::update_machine_text(machine_text, written, true)},

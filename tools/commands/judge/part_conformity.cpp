@@ -74,7 +74,7 @@ Json characteristic_json(const tolerance::CharacteristicResult& one, const toler
   return json;
 }
 
-/// Does the part conform, of what was asked? Every characteristic with a tolerance, and the fit's findings.
+/// Tests whether the part conforms: every characteristic with a tolerance, and the findings of the fit.
 text::Assurance assurance_of(const model::Machine& machine, const tolerance::PartConformity& result,
                              const ConformityArguments& arguments) {
   text::Assurance word(text::AssuranceKind::kConformity);

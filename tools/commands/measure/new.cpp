@@ -82,7 +82,8 @@ create::MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App&
     plan = create::plan_machine(arguments.type, std::move(axes), order("--tool-side", arguments.tool_side),
                                 order("--work-side", arguments.work_side));
   }
-  // A tool of some length in the usual direction: without one, angles of the last axis would do nothing.
+  // A tool of some length in the usual direction: without a length, angles of the last axis would have no
+  // effect.
   plan.tool = {0, 0, plan.arm.empty() ? -100.0 : 100.0};
   if (!arguments.tool.empty()) plan.tool = point_of(arguments.tool, ',', "--tool");
   for (const std::string& words : arguments.centres) {

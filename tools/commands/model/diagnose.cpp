@@ -68,7 +68,7 @@ void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
   }
 }
 
-/// What the machine of the last step leaves of the readings.
+/// Residuals of the machine of the last step.
 void write_residuals(const DiagnoseArguments& arguments, const diagnose::Diagnosis& diagnosis) {
   const model::Machine machine = model::parse_machine(diagnosis.machine_text, arguments.survey.machine);
   const model::Measurement m = model::read_measurement(

@@ -34,7 +34,7 @@ struct FitArguments {
   double loss_scale = 3;
 };
 
-/// What the readings left open, largest reach first.
+/// Combinations that the readings do not determine, largest reach first.
 void print_decisions(std::FILE* out, const fit::FitResult& result) {
   const std::vector<fit::Decision> decisions = fit::decisions_of(result);
   if (decisions.empty()) return;
@@ -52,7 +52,7 @@ void print_stages(std::FILE* out, const fit::FitResult& result) {
   }
 }
 
-/// The combination that the data see least, where it is weak enough to matter.
+/// The combination with the least information in the data, if it is weak enough to matter.
 void print_weakest(std::FILE* out, const fit::FitResult& result) {
   constexpr double kWeak = 1e-2;
   for (const fit::Observability::Weak& weak : result.observability.weakest) {
@@ -74,7 +74,7 @@ void print_findings(std::FILE* out, const fit::FitResult& result) {
     fmt::print(out, "found: {} ({})\n", one.text, one.code);
 }
 
-/// Thermometers whose readings are none of a workshop.
+/// Thermometers whose readings are not plausible in a workshop.
 void print_odd_inputs(std::FILE* out, const model::Machine& machine) {
   for (const model::FitRecord::Range& range : machine.fitted->measured) {
     const auto input = machine.find_input(range.name);

@@ -38,7 +38,7 @@ std::size_t axis_named(const model::Machine& machine, const std::string& name) {
   return *axis;
 }
 
-/// What is written runs on a machine as an image does.
+/// The written files run on a machine as an image does.
 void require_safe(const model::Machine& machine, const ExchangeArguments& arguments) {
   const safety::SafetySheet sheet = safety::safety_sheet(machine, safety::rules_named(arguments.accept));
   if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());

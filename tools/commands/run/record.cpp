@@ -30,7 +30,7 @@ std::string unit_of(const std::string& input, const std::optional<model::Machine
   return "[" + machine->inputs[*found].unit + "]";
 }
 
-// Columns of FORMATS section 2; a measured tool point is added by whoever measures.
+// Columns of FORMATS section 2; the measured tool point is added later by the user.
 std::string header(const upload::BoardInfo& info, const std::optional<model::Machine>& machine) {
   using format::AxisQuantity;
   std::string text = format::heading(format::columns::kTime);

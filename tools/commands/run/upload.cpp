@@ -67,8 +67,8 @@ void require_safe(const std::string& directory) {
   if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
 }
 
-/// An image must be newer than all that the board has ever tried. Where this computer's clock is behind them,
-/// it is signed right after the newest one, when that is wanted: the board's floor itself is never lowered.
+/// An image must be newer than all images that the board has ever tried. If the clock of this computer is
+/// behind them, it is signed right after the newest one on request. The limit of the board is never lowered.
 std::uint64_t time_of_signing(const Arguments& arguments, const SlotsReply& slots) {
   const auto now = static_cast<std::uint64_t>(text::now_us());
   if (now > slots.newest_issued) return now;
