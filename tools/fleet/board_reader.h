@@ -18,7 +18,7 @@ class BoardReader {
   /// Opens the board. Throws InputError if it is not available, LimitNotMet if it is another board than
   /// requested.
   explicit BoardReader(const GatewayBoard& board);
-  /// What the board does just now: names of tools/docs/fleet.md. Throws as upload::Client.
+  /// Present state of the board: names of tools/docs/fleet.md. Throws as upload::Client.
   std::vector<Metric> read();
 
  private:

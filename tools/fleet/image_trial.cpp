@@ -48,7 +48,7 @@ const char* name_of(TrialEnd::Kind kind) {
     case Kind::kAway:
       return "away";
     case Kind::kInterrupted:
-      return "waiting";  // who interrupts has not judged
+      return "waiting";  // an interrupted call has no result
   }
   return "unknown";
 }

@@ -130,7 +130,7 @@ void serve_metrics(const std::string& registry, const std::string& address, cons
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
-  // Connections that ask nothing hold a thread no longer than this, and not the last one.
+  // Idle connections hold a thread for this time at most, and never the last thread.
   constexpr int kPatience_s = 1, kThreads = 32;
   server.set_read_timeout(kPatience_s);
   server.set_keep_alive_timeout(kPatience_s);

@@ -70,7 +70,7 @@ class RolloutCall {
       if (stop_) return stand("interrupted");
       if (!is_kept(machines_[i]) && !bring_to(machines_[i])) ++away;
     }
-    // Who stopped elsewhere must not be called kept on the word of an earlier look.
+    // A machine that stopped elsewhere must not be reported as kept because of an earlier look.
     if (!end_.stood.empty() && !stop_) return look_again();
     if (away > 0) stand(fmt::format("{} boards were away: call it again", away));
   }
@@ -106,7 +106,7 @@ class RolloutCall {
     }
   }
 
-  /// Enters the board's own key where none is entered. Throws LimitNotMet where another machine has this key.
+  /// Enters the board's key if no key is entered. Throws LimitNotMet if another machine has this key.
   void learn_key(RolloutMachine& machine) {
     if (machine.claim.key) return;
     upload::Client board(upload::open_transport(upload::parse_url(machine.url)));

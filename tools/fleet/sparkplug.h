@@ -35,9 +35,9 @@ struct SparkplugPayload {
 std::string encode(const SparkplugPayload& payload);
 std::optional<SparkplugPayload> decode(std::string_view bytes);
 
-/// A whole number, whichever integer type it came as; nothing for other values.
+/// A whole number of any integer type; `nullopt` for other values.
 std::optional<std::uint64_t> count_of(const Metric* metric);
-/// A text; nothing for other values.
+/// A text; `nullopt` for other values.
 std::optional<std::string> text_of(const Metric* metric);
 
 enum class SparkplugKind : std::uint8_t { kNBirth, kNDeath, kNData, kNCmd, kDBirth, kDDeath, kDData, kDCmd };
@@ -60,7 +60,8 @@ std::optional<bool> online_of(std::string_view state);
 /// True if a topic can contain this name: not empty, no + / #, printable.
 bool fits_a_topic(std::string_view name);
 
-/// Names of the metrics by which a gateway and the registry agree on what is stored (tools/docs/fleet.md).
+/// Names of the metrics with which a gateway and the registry agree on the stored records
+/// (tools/docs/fleet.md).
 inline constexpr std::string_view kSpoolMetric = "Vernier/Spool", kNumberMetric = "Vernier/Number",
                                   kAfterMetric = "Vernier/After", kStoredMetric = "Vernier/Stored",
                                   kResendMetric = "Vernier/Resend", kRebirthMetric = "Node Control/Rebirth",

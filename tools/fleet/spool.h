@@ -18,8 +18,9 @@ struct SpoolRecord {
   std::string payload;
 };
 
-/// What a gateway has taken and no registry has confirmed yet, in a file: bounded, durable, numbered. A
-/// record leaves it when the registry has stored it, or, counted, when there is no room. tool.
+/// Data that a gateway has read and no registry has confirmed yet, in a file: bounded, durable, numbered. A
+/// record leaves it when the registry has stored it. It is also removed, and counted, when the file is full.
+/// tool.
 class Spool {
  public:
   /// owner: the gateway; the file of another gateway (a copied medium) gets a new id. most: number of records
@@ -28,8 +29,7 @@ class Spool {
 
   /// Of this spool among all: fresh where the file was made, so that numbers never mean two things.
   const std::string& id() const { return id_; }
-  /// Writes records down with numbers, and forgets those up to stored(); all of it or nothing. Throws
-  /// DatabaseError.
+  /// Writes records with numbers, and removes those up to stored(), in one transaction. Throws DatabaseError.
   void take(std::vector<SpoolRecord>& records);
   /// The records after `number`, at most `most`, in order.
   std::vector<SpoolRecord> after(std::uint64_t number, std::size_t most);
