@@ -40,8 +40,8 @@ class JobQueue {
                           std::int64_t most_attempts);
   /// False: it is no longer this attempt's.
   bool renew(const Job& job, double lease_s);
-  /// Writes down how it ended (status 0: done); false: it is no longer this attempt's, and nothing was
-  /// written.
+  /// Records the end of a job (status 0: done); false: the job no longer belongs to this attempt, and no
+  /// entry was written.
   bool finish(const Job& job, std::int64_t status, const std::string& said);
   /// Is anything of the batch left that is not done or failed?
   bool is_open(const std::string& batch);
@@ -62,9 +62,9 @@ struct WorkOptions {
   std::int64_t most_attempts = 3;  // a command that takes its worker with it is not tried for ever
 };
 
-/// Takes jobs and runs their commands with the shell, one after the other, until none of the batch is open or
-/// `stop`; a command that runs then is ended and its job given back. `ended` hears of every job. How many
-/// were done. The registry may be away for a while. tool.
+/// Takes jobs and runs their commands with the shell, one after the other, until no job of the batch is open
+/// or `stop` is set. At `stop` a running command is ended and its job returned. `ended` is called for every
+/// job. Returns the number of finished jobs. The registry may be unavailable for a while. tool.
 std::int64_t work(const WorkOptions& options, const std::atomic<bool>& stop,
                   const std::function<void(const Job&, const JobCounts&)>& ended);
 

@@ -9,7 +9,7 @@
 
 namespace vernier::registry {
 
-/// The lock of a machine has gone to another caller: nothing more may be done to the machine.
+/// Another caller has the lock of a machine: no further step on the machine is allowed.
 class LockLost : public text::LimitNotMet {
  public:
   using text::LimitNotMet::LimitNotMet;
@@ -21,7 +21,8 @@ class LockLost : public text::LimitNotMet {
 class MachineLocks {
  public:
   /// Takes the locks of all machines, or of none. purpose: for people, e.g. "rollout spring". lease_s: 1 s at
-  /// least. Throws LimitNotMet naming the machine that another caller holds, and until when at the longest.
+  /// least. Throws LimitNotMet naming the machine that another caller has locked, and the latest end of that
+  /// lock.
   MachineLocks(Registry& registry, std::vector<std::string> machines, std::string purpose, double lease_s);
   /// Releases the machines that are still locked.
   ~MachineLocks();

@@ -14,7 +14,7 @@ namespace vernier::registry {
 /// A machine of the fleet.
 struct FleetMachine {
   std::string name;  // also the device of its topics
-  std::string url;   // of its board; empty: none
+  std::string url;   // of its board; empty: no board
   std::string note;
   double check_days = 0;  // a check is due so long after the last one; 0: never
   std::int64_t added_us = 0;
@@ -42,7 +42,7 @@ struct FleetReading {
   double value = 0, std = 0;
 };
 
-/// What the registry last heard of a machine. `at_us` is the gateway's clock; `received_us` is the
+/// The last state of a machine in the registry. `at_us` is the gateway's clock; `received_us` is the
 /// registry's.
 struct LiveState {
   std::string machine, gateway, mode, fault, image;
@@ -96,7 +96,8 @@ class Registry {
   std::vector<FleetReading> readings(std::int64_t since_us);
 
   std::vector<LiveState> live();
-  /// Deletes samples that were taken before; how many. What was stored once is not taken again for that.
+  /// Deletes samples that were taken before a time; returns their number. A sample that was stored once is
+  /// not taken again.
   std::int64_t forget_samples(std::int64_t before_us);
 
  private:
