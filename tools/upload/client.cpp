@@ -352,7 +352,7 @@ std::vector<BoardShare> Client::shares() {
       const double counts = info_.axes[share.axis].rotary ? kCountsPerDeg : kNmPerMm;
       shares.push_back({share.axis, share_names_[shares.size()], share.correction / counts});
     }
-    if (shares.size() == before) break;  // nothing more came, or the program changed meanwhile
+    if (shares.size() == before) break;  // no further share came, or the program changed meanwhile
   } while (shares.size() < count);
   return shares;
 }

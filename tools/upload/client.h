@@ -24,15 +24,16 @@ struct BoardSignal {
   bool rotary = false, rollover = false;
 };
 
-/// What a board is.
+/// Properties of a board.
 struct BoardInfo {
   HelloReply hello;
-  std::string board;  // its name; empty: it has none
+  std::string board;  // its name; empty: no name
   std::vector<BoardSignal> axes;
   std::vector<std::string> inputs;
 };
 
-/// One tick as the board told it, in the units of the machine file: mm or deg, mm or deg, the input's unit.
+/// One tick as the board reported it, in the units of the machine file: mm or deg, mm or deg, the input's
+/// unit.
 struct BoardTick {
   std::uint64_t number = 0;
   double time_s = 0, feed_mm_per_min = 0;
@@ -53,7 +54,7 @@ struct BoardHistory {
 
 /// The correction that the board computes, and the part of it that is applied; mm or deg.
 struct BoardState {
-  std::uint64_t fingerprint = 0;  // of the image that runs; 0: none
+  std::uint64_t fingerprint = 0;  // of the running image; 0: no image
   ImageState image = ImageState::kNone;
   double since_s = 0;  // the board's t when it was taken over
   double weight = 0;   // share of every correction that is in
@@ -74,7 +75,7 @@ struct BoardShare {
   double correction = 0;
 };
 
-/// What a board has counted on its probe's line until a touch.
+/// Counters of a board for its probe's line until a touch.
 struct TouchTotals {
   std::uint32_t lost_edges = 0, lost_touches = 0, spikes = 0, missing = 0;
 };
@@ -84,7 +85,7 @@ struct BoardTouch {
   std::uint64_t number = 0;
   double time_s = 0;
   bool has_position =
-      false;  // false: an edge was lost, or the samples around it; nothing below `totals` is there
+      false;  // false: an edge was lost, or the samples around it; the fields below `totals` are not valid
   TouchTotals totals;
   int bounces = 0;
   std::vector<double> position, compensated, uncertainty;  // by axis

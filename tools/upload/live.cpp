@@ -55,7 +55,7 @@ std::string times_text(const char* name, const std::int64_t (&ns)[4]) {
                      us(2), us(3));
 }
 
-// The largest first: what a person looks for.
+// The largest first.
 std::string shares_text(const BoardInfo& info, std::vector<BoardShare> shares) {
   constexpr std::size_t kMostLines = 12;  // of a screen
   std::erase_if(shares, [](const BoardShare& share) { return share.correction == 0; });

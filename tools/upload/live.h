@@ -7,7 +7,7 @@
 
 namespace vernier::upload {
 
-/// What a board does just now, for programs: mode, fault, axes, inputs, counters, latency, slots. tool.
+/// Present state of a board, for programs: mode, fault, axes, inputs, counters, latency, slots. tool.
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
                                  const SlotsReply& slots, const std::vector<BoardShare>& shares,
                                  const BoardState& state);

@@ -35,7 +35,7 @@ std::string public_key_text(const SigningKey& key);
 /// Reads a secret key file; throws InputError if it is not a key, or if other users may read it. tool.
 SigningKey read_secret_key(const std::string& path);
 
-/// The key of a file, else that of VERNIER_KEY, else none. tool.
+/// The key of a file, else that of VERNIER_KEY, else no key. tool.
 std::optional<SigningKey> given_key(const std::string& path);
 
 /// The upload of an image: header and image, signed. issued: microseconds since 1970; security, board: see
