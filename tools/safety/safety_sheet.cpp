@@ -94,8 +94,7 @@ class Judge {
     return *sources_;
   }
 
-  /// What each axis would be moved by: the linear axes where there are any, else all (least squares, mm and
-  /// deg).
+  /// Effect on each axis: the linear axes if there are any, else all (least squares, mm and deg).
   std::vector<model::Column> offsets() const {
     if (!kinematics::linear_axes(machine_).empty())
       return kinematics::first_order_offset(machine_, poses_.states);
@@ -186,7 +185,7 @@ class Judge {
     sheet_.stale = reach.stale();
   }
 
-  /// What there is to correct with this tool, and what the noise of a good fit may leave of nothing.
+  /// Size of the correction with this tool, and the share that the noise of a good fit may leave.
   static double correction_rms_mm(const model::Machine& machine, const model::States& states) {
     const Eigen::Matrix3Xd d = model::deviation(machine, states);
     const Eigen::Matrix3Xd off = d.colwise() - d.rowwise().mean();

@@ -14,7 +14,7 @@ struct Source {
   std::string name;  // `alpha`, `table.X.rY`, `scalefactor.X`
   bool is_table = false;
   Eigen::Vector3d mean_mm =
-      Eigen::Vector3d::Zero();            // of what it alone does to the tool point, over the states
+      Eigen::Vector3d::Zero();            // of its separate effect on the tool point, over the states
   double rms_mm = 0, varying_rms_mm = 0;  // with and without the mean
 };
 
