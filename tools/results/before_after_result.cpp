@@ -82,7 +82,7 @@ std::string sentence(const residual::BeforeAfter& result) {
   return "It cannot be decided if the correction helped: " + how + ", which holds 0.";
 }
 
-/// How the two were compared, and what a reader should mind.
+/// Method of the comparison, and remarks for the reader.
 std::vector<std::string> remarks(const residual::BeforeAfter& result) {
   std::vector<std::string> list;
   if (result.paired)
@@ -106,7 +106,7 @@ std::string name_of(const residual::ReductionGroup& group) {
 }
 
 std::vector<std::string> cells(const residual::ReductionGroup& group) {
-  // What the set-up took away is 0 to the digits of its fit.
+  // A component that the set-up removed is 0 to the digits of its fit.
   const auto shown = [](double value) { return std::abs(value) < 1e-5 ? 0 : value; };
   const auto two = [&](double before, double after) {
     return fmt::format("{:.4g} -> {:.4g}", shown(before), shown(after));

@@ -11,7 +11,7 @@
 
 namespace vernier::results {
 
-/// One run of a circular test as it lies in a measurement: which observations, at which angles.
+/// One run of a circular test in a measurement: its observations and their angles.
 struct CircleRun {
   std::string label;
   int direction = +1;

@@ -26,10 +26,10 @@ nlohmann::ordered_json domains_json(const model::Machine& machine, const model::
 void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
 
 /// A noise model: {own_um, pose_um, run_um, drift_um, drift_time, drift_time_unit, support, sentence}.
-/// Parts in um, in arcsec where no length was read.
+/// Components in um, in arcsec if no length was read.
 nlohmann::ordered_json noise_json(const fit::NoiseModel& noise, const fit::NoiseUnit& unit);
 
-/// A number for people: four significant digits, "-" for none.
+/// A number for people: four significant digits, "-" without a value.
 std::string number_or_dash(const std::optional<double>& value, const char* unit);
 
 }  // namespace vernier::results
