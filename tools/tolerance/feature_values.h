@@ -9,7 +9,7 @@
 
 namespace vernier::tolerance {
 
-/// What the deviations of a part's points are taken from.
+/// Reference of the deviations of a part's points.
 enum class PartFrame : std::uint8_t {
   kPart,     // the features themselves: all of them, or those marked as datums, by least squares
   kMachine,  // the machine's own coordinates
