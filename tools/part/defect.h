@@ -40,9 +40,9 @@ std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const s
 /// Indices of the statics of `by` and of the Jacobian of a part, in the order of the machine file.
 std::vector<std::size_t> free_statics(const model::Machine& machine);
 
-/// What the errors of a machine do to the part, at N points.
+/// Effect of the errors of a machine on the part, at N points.
 struct PartDefect {
-  std::vector<JointPose> joints;  // where the machine stands when the point is cut
+  std::vector<JointPose> joints;  // machine positions when the point is cut
   Eigen::Matrix3Xd position,
       normal;                 // nominal surface, workpiece coordinates; normal of the reading: unit, outward
   Eigen::VectorXd defect_mm;  // along the normal, positive: material left; exact, not linearised

@@ -25,8 +25,8 @@ constexpr double touch_of(ToolPath path) {
   return path == ToolPath::kAnalytical ? 1 : path == ToolPath::kTp5c1 ? 0 : kLowerOfTp6c2;
 }
 
-/// How the normal of the path is taken. The paper prints N = +-(R x T), which has no unit length, since
-/// T(u,1) is up to 16 deg away from a right angle to R; and it does not say on which side.
+/// Definition of the normal of the path. The paper prints N = +-(R x T), which has no unit length, since
+/// T(u,1) is up to 16 deg away from a right angle to R; it does not give the side.
 struct NormalReading {
   bool unit = true;
   bool outward = true;

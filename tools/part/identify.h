@@ -23,7 +23,7 @@ struct IdentifyOptions {
 struct IdentifiedError {
   std::string name, unit;
   double value = 0;
-  std::optional<double> std;  // nothing where the points do not determine it
+  std::optional<double> std;  // nullopt if the points do not determine it
 };
 
 struct Identification {

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kDrawn = 521;  // points of a curve: one a pixel or so
+constexpr std::size_t kDrawn = 521;  // points of a curve: about one per pixel
 
 std::vector<double> along() {
   std::vector<double> u;

@@ -19,10 +19,11 @@ struct RecordedPath {
 /// and word. tool.
 RecordedPath read_recorded(const std::string& text, const std::string& file, const JointPose& zero = {});
 
-/// What a recorded path leaves on the part at a point, along the surface's normal, positive: material left.
+/// Material that a recorded path leaves on the part at a point, along the surface's normal, positive:
+/// material left.
 struct RecordedPoint {
   double recorded_mm = 0;  // by the recorded positions
-  double path_mm = 0;      // by the path that they ought to follow: what a cylinder cannot cut
+  double path_mm = 0;      // of the ideal path: material that a cylinder cannot cut
   std::size_t sample = 0;  // that cut it
 
   double controller_mm() const { return recorded_mm - path_mm; }
@@ -43,7 +44,7 @@ RecordedDeviations recorded_deviations(const BHeadMachine& machine, const Record
 /// `file`, `points`, and of each kind of deviation the least, the largest and the rms.
 nlohmann::ordered_json recorded_json(const RecordedDeviations& deviations);
 
-/// One row a point: where it is, the deviations, the defect of the machine, and all together.
+/// One row per point: its position, the deviations, the defect of the machine, and their sum.
 std::string recorded_csv(const std::vector<PartPoint>& points, const PartDefect& defect,
                          const RecordedDeviations& deviations);
 

@@ -27,7 +27,7 @@ SurfacePoint surface_point(const RuledSurface& surface, double u, double v);
 struct SurfaceFoot {
   double u = 0, v = 0;
   double distance_mm = 0;   // along the outward normal; negative: within the material (overcut)
-  double across_mm = 0;     // what the distance does not explain: the foot is beyond an end of the curve
+  double across_mm = 0;     // offset of the foot point beyond an end of the curve
   bool beyond_end = false;  // u was held at 0 or 1
 };
 
