@@ -27,7 +27,7 @@ using Eigen::MatrixXd;
 
 /// Poses to choose from: over the volume, and where accuracy is wanted.
 constexpr std::size_t kOverVolume = 500, kAtAim = 300;
-/// Standard deviation of a set-up that nothing is known of, mm and rad: as far as it matters anything.
+/// Standard deviation of an unknown set-up, mm and rad: large enough to have no influence.
 constexpr double kAnywhere = 10;
 /// Readings with this much less noise show the part of the uncertainty that no number of readings reduces.
 constexpr double kFarBetter = 1e-3;
@@ -270,7 +270,7 @@ class AccuracyPlanner {
   std::vector<Index> own_;
   AimRows aim_;
   Index size_ = 0;           // parameters, six of a new set-up, three of the run
-  MatrixXd weight_, prior_;  // what a covariance does at the aim; before the first reading
+  MatrixXd weight_, prior_;  // weight of a covariance at the aim; state before the first reading
   model::States offered_;
   MatrixXd jacobian_, covariance_;
 };

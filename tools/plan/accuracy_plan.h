@@ -13,7 +13,7 @@ namespace vernier::plan {
 /// of the plain BaseShift if the file has a free one, else in a new set-up. Throws InputError if the
 /// measurement has no x, y or z. tool.
 Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& measurement);
-/// From the machine file alone, a new set-up. Throws InputError where it was never fitted. tool.
+/// From the machine file alone, with a new set-up. Throws InputError if it was never fitted. tool.
 Knowledge knowledge_of(const model::Machine& fitted);
 
 /// Chooses the next poses one by one until the required U95 is reached. Each pose lowers most the mean square

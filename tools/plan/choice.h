@@ -11,7 +11,7 @@ namespace vernier::plan {
 struct Sides {
   std::vector<Discrimination> side;
   std::vector<double> needed;
-  /// Non-centrality over what is needed, of the worst of the first `count` entries.
+  /// Non-centrality divided by the required value, of the worst of the first `count` entries.
   double reached(std::size_t count) const;
   double reached() const { return reached(side.size()); }
   void assume(const std::vector<std::size_t>& chosen);

@@ -188,8 +188,8 @@ class FirstPlanner {
   std::vector<Index> shifts_, own_;
   Eigen::VectorXd scale_;
   MatrixXd jacobian_;    // of the poses offered, three rows each, in units of the scales
-  MatrixXd weight_;      // what a covariance of the parameters makes of the tool point, mm^2
-  MatrixXd covariance_;  // of the parameters, after what was chosen
+  MatrixXd weight_;      // maps a covariance of the parameters to the tool point, mm^2
+  MatrixXd covariance_;  // of the parameters, after the chosen poses
 };
 
 }  // namespace

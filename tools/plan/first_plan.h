@@ -10,7 +10,7 @@ namespace vernier::plan {
 
 struct FirstPlanOptions {
   /// Expanded uncertainty (k = 2) of the tool point over the work volume at which the plan is long enough,
-  /// um; none: that of one reading.
+  /// um; nullopt: that of one reading.
   std::optional<double> accuracy_um;
   double reading_um = 5;     // standard uncertainty of a coordinate that will be read
   double expected_um = 100;  // by how much a parameter may plausibly move the tool point, rms over the volume
@@ -25,8 +25,8 @@ struct FirstPlan {
   std::size_t references = 0;          // of them: the first pose again, that a drift shows
   double before_um = 0, after_um = 0;  // expanded uncertainty over the volume, without and with the fit poses
   double random_um = 0;                // the same from as many poses at random
-  double least_um = 0;  // from all poses that could be chosen: what the readings cannot go below
-  bool reached = true;  // the accuracy that was asked for
+  double least_um = 0;                 // from all possible poses: lower limit of such readings
+  bool reached = true;                 // the accuracy that was asked for
 };
 
 /// Chooses the poses one by one that lower most the expected uncertainty of the tool point over the work

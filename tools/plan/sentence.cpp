@@ -208,7 +208,8 @@ std::string Explanation::sentence() const {
     if (!contrast.usable) continue;
     const Answer answers = answer(contrast);
     const double score = std::abs(answers.a - answers.b) / (1 + std::abs(answers.a) + std::abs(answers.b));
-    constexpr double kWorthSaying = 0.05;  // of what both say: less no reading shows
+    constexpr double kWorthSaying =
+        0.05;  // share of the prediction: a smaller one is not visible in a reading
     if (score < std::max(best + 1e-6, kWorthSaying)) continue;
     best = score;
     where = contrast.where;
