@@ -48,7 +48,7 @@ struct DiagnosticsSetup {
   double feed_mm_min = 1000;  // scales the servo mismatch only
   double reversal_gap_deg =
       12;  // samples nearer than this to 0/90/180/270 deg are left out (reversal spikes)
-  double pitch_a_mm = 0, pitch_b_mm = 0;  // of the cyclic errors that are fitted along; 0: none
+  double pitch_a_mm = 0, pitch_b_mm = 0;  // of the cyclic errors that are fitted as well; 0: not fitted
 };
 
 /// Radial deviation in um per unit of each diagnostic, at that angle and sense. tool.

@@ -25,7 +25,7 @@ struct LaserReading {
   double deviation_um = 0;
 };
 
-/// The file as it stands.
+/// The unchanged contents of the file.
 struct LaserText {
   std::map<std::string, std::string> said;  // key in small letters: value
   std::vector<double> targets_mm;
@@ -129,7 +129,7 @@ class LaserReader {
   LaserText read_;
 };
 
-/// 1 or -1 by the order of the targets in their lines, 0 where that is neither.
+/// 1 or -1 by the order of the targets in their lines, 0 for any other order.
 int listed_sense(const std::vector<LaserReading>& run, const std::vector<double>& targets_mm) {
   bool up = true, down = true;
   for (std::size_t i = 1; i < run.size(); ++i) {
@@ -158,7 +158,7 @@ void check_counts(const LaserText& read, const std::string& file) {
   }
 }
 
-/// The axis said by a person, else the one that the file names: "X", "X-AXIS", "Axis X".
+/// The axis given by the user, else the axis of the file: "X", "X-AXIS", "Axis X".
 std::string axis_of(const LaserText& read, const std::string& said, const std::string& file) {
   std::string found = said;
   const auto own = read.said.find("axis");

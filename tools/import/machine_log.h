@@ -10,8 +10,8 @@
 namespace vernier::importer {
 
 struct LogOptions {
-  double dwell_s = 0.5;     // shorter standstills are none
-  double still = 0.01;      // mm or deg: an axis that stays within stands still
+  double dwell_s = 0.5;     // shorter standstills are ignored
+  double still = 0.01;      // mm or deg: an axis that stays within it is at rest
   double tolerance_mm = 2;  // ways of machine and nominal machine between two points
 };
 

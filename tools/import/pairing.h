@@ -15,8 +15,8 @@ struct Dwell {
   double middle_s() const { return (begin_s + end_s) / 2; }
 };
 
-/// Stretches of at least `least_s` in which every axis stays within its tolerance of where it stood at their
-/// beginning. time: s, rising; axes: rows x axes; tolerance: one an axis, same unit. tool.
+/// Stretches of at least `least_s` in which every axis stays within its tolerance of its position at their
+/// beginning. time: s, rising; axes: rows x axes; tolerance: one per axis, same unit. tool.
 std::vector<Dwell> find_dwells(const Eigen::VectorXd& time, const Eigen::MatrixXd& axes,
                                const Eigen::VectorXd& tolerance, double least_s);
 
@@ -24,7 +24,7 @@ struct PairingInput {
   std::vector<Dwell> dwells;
   /// Tool point of the nominal machine in each dwell, mm (3 x dwells); empty: distances are not used.
   Eigen::Matrix3Xd stand;
-  Eigen::Matrix3Xd point;  // what the instrument measured, mm, in its frame (3 x points), in its order
+  Eigen::Matrix3Xd point;  // measured by the instrument, mm, in its frame (3 x points), in its order
   std::optional<Eigen::VectorXd> time;  // of each point by the instrument's clock, s
   double distance_tolerance_mm = 2;  // by how much machine and nominal machine may differ between two points
 };

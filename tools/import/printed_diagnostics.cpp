@@ -32,7 +32,7 @@ std::size_t diagnostic(const std::string& name) {
   return static_cast<std::size_t>(found - kDiagnosticsNames.begin());
 }
 
-// What the named terms together do to the radius over all samples, um.
+// Joint effect of the named terms on the radius over all samples, um.
 double effect_um(const std::vector<DiagnosticsSample>& samples, const DiagnosticsSetup& setup,
                  const DiagnosticsResult& found, const std::vector<std::string>& terms) {
   Extent extent;

@@ -12,8 +12,8 @@ namespace vernier::importer {
 
 inline constexpr const char* kDiagnosticsAnalysis = "RENISHAW_DIAGNOSTICS";
 
-/// What was computed, by what it was computed from and the printed name; and about which names something is
-/// to be said: why one cannot be computed, or may differ.
+/// Computed results, with the data and the printed name for each; and remarks on names: why one cannot be
+/// computed, or may differ.
 struct RecomputedResults {
   std::map<std::string, std::map<std::string, double>> values;
   std::map<std::string, std::string> why;

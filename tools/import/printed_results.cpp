@@ -75,7 +75,7 @@ void compare(const std::string& place, const std::vector<BallbarFeature>& featur
       if (found == values.end()) continue;
       result.computed = found->second;
       result.from = from;
-      // Half a digit, and a little for the rounding of a number that lies just between two.
+      // Half a digit, plus a small amount for the rounding of a number just between two.
       result.equal = std::abs(found->second - feature.value) <= 0.5001 * last_digit(feature.unit);
     }
     if (const auto why = computed.why.find(feature.name); why != computed.why.end()) {

@@ -26,8 +26,8 @@ namespace columns = format::columns;
 
 const std::string kSensePrefix = format::entry_of(format::AxisQuantity::kSense).prefix;
 
-/// Names of the measurement file that are taken as they are written. Numbers under a name of a later version
-/// of the format may be a person's own.
+/// Names of the measurement file that are accepted as they are written. Numbers under a name of a later
+/// version of the format may be a user's column.
 bool is_known_name(const std::string& name) {
   const format::ColumnGroup* const column = format::find_column(name);
   return column != nullptr && (!column->later || column->words);
@@ -170,7 +170,7 @@ class Guess {
   const SheetWishes& wishes_;
 };
 
-/// Index of the column that a person names; none: npos.
+/// Index of the column that a user names; npos if none is named.
 std::size_t find_heading(const sheet::SheetTable& table, const std::string& words) {
   for (const bool by_text : {true, false})
     for (std::size_t k = 0; k < table.headings.size(); ++k)
@@ -261,7 +261,7 @@ std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
   return moved;
 }
 
-/// Where no heading names an axis and the titles do, a target or an actual position is along that one.
+/// If no heading names an axis and the titles do, a target or an actual position belongs to that axis.
 void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
                  const Guess& guess) {
   std::set<std::string> axes;
@@ -290,8 +290,8 @@ void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
   }
 }
 
-/// Two that were measured along an axis without a target: the position that the machine shows is what it was
-/// sent to, where another instrument read.
+/// Two measured positions along an axis without a target: the position shown by the machine counts as
+/// commanded if another instrument measured.
 void settle_display(const sheet::SheetTable& table, std::vector<SheetColumn>& columns, const Guess& guess) {
   std::map<std::string, std::size_t> count;
   for (const SheetColumn& column : columns)
@@ -321,7 +321,8 @@ void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           says_nominal_less_actual(table.headings[k].name, true);
 }
 
-/// Deviations and senses that name no axis belong to the only one; what stays open is left out and said.
+/// Deviations and directions without an axis belong to the only axis; columns that remain open are omitted
+/// and reported.
 void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
             const Guess& guess) {
   std::set<std::string> axes, measured;
@@ -387,7 +388,7 @@ void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& 
   }
 }
 
-/// A unit to say for a column that has none: the format's, of an axis mm.
+/// Suggested unit for a column without one: that of the format, for an axis mm.
 std::string unit_to_say(const std::string& name) {
   const std::string unit = format::column_unit(name);
   return unit.empty() ? "mm" : unit;
@@ -420,7 +421,7 @@ std::vector<format::Dimension> quantities_of(const SheetColumn& column, const Gu
   return list;
 }
 
-/// A length in bar, an angle in seconds of time: refused, with what the column needs.
+/// A length in bar, or an angle in seconds of time, is refused with the required unit.
 void check_quantity(const SheetColumn& column, const Guess& guess, const std::string& heading,
                     const text::Place& place) {
   if (column.use == SheetColumn::Use::kLeft || column.words || column.unit.empty()) return;

@@ -19,7 +19,7 @@ void finish_tracker(ImportTable& table);
 /// nominal point is on the surface: the nominal point moves out along the normal. Throws InputError. tool.
 void finish_probe(ImportTable& table, double radius_mm);
 
-/// Gives every `every`-th row the role check, the others fit. Throws InputError where there is a role
+/// Gives every `every`-th row the role check, the others fit. Throws InputError if the table has roles
 /// already.
 void set_roles(ImportTable& table, std::size_t every);
 

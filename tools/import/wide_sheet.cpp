@@ -184,7 +184,7 @@ std::string unit_in(const std::string& title) {
   return sheet::parse_heading(title).unit;
 }
 
-/// What the readings are, as a heading of one column that the import understands.
+/// Kind of the readings, as a heading of one column that the import understands.
 sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                    const std::vector<RunColumn>& runs,
                                    const std::vector<std::size_t>& others) {
