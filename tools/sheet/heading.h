@@ -17,18 +17,18 @@ std::optional<std::string> unit_meant(std::string_view word);
 struct Heading {
   std::string text;          // as written
   std::string name;          // without unit
-  std::string unit;          // of the formats; empty: none written
-  std::string unknown_unit;  // what stands where a unit should and is none
+  std::string unit;          // of the formats; empty: no unit is written
+  std::string unknown_unit;  // text at the place of a unit that is not a unit
 };
 Heading parse_heading(std::string_view cell);
 
 /// A sheet by its parts: title lines, headings (one line or two, a line of units below), data.
 struct SheetTable {
-  std::vector<Heading> headings;  // one a column; named "1", "2" … where the sheet has no heading
+  std::vector<Heading> headings;  // one per column; named "1", "2" … without a heading
   bool has_headings = false;
   std::size_t heading_row = 0;  // index into the sheet's rows, where has_headings
   std::size_t first_data = 0;
-  std::size_t units_row = 0;             // index, 0: none
+  std::size_t units_row = 0;             // index, 0: no such row
   std::optional<std::size_t> upper_row;  // of headings in two lines the first
 };
 
