@@ -18,7 +18,7 @@ double number_in(const std::string& text, const text::Place& place, const std::s
   return *number;
 }
 
-/// The cells of one column in mm or deg; nothing where the table has no such column.
+/// The cells of one column in mm or deg; empty if the table has no such column.
 std::optional<std::vector<double>> column(const format::CsvFile& csv, const std::string& name,
                                           format::Dimension dimension) {
   for (std::size_t k = 0; k < csv.columns.size(); ++k) {

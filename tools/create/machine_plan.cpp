@@ -13,7 +13,7 @@
 namespace vernier::create {
 namespace {
 
-/// No direction given and none in the name; an axis of a robot needs none.
+/// No direction is given and the name has none; an axis of a robot needs no direction.
 constexpr char kNoDirection = '?';
 
 char direction_in(const std::string& name) {
