@@ -10,7 +10,7 @@
 
 namespace vernier::lint {
 
-/// A column of a measurement file, whatever is wrong with it.
+/// A column of a measurement file, also if it has errors.
 struct LintColumn {
   std::string name, unit;
   bool label = false;         // words, not numbers

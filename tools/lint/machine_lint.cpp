@@ -201,7 +201,7 @@ std::string meaning_of(const Problem& problem, const std::string& text) {
   return "";
 }
 
-/// What the transforms use.
+/// Names that the transforms use.
 struct Used {
   std::set<std::size_t> statics, axes, inputs, table_values;  // table_values: axis * 6 + column
   bool feed = false;
@@ -223,7 +223,7 @@ Used used_by(const model::Machine& machine) {
   return used;
 }
 
-/// What a broken term would have used: names in the text of the transforms.
+/// Names that a broken term would have used, from the text of the transforms.
 void add_words(Used& used, const model::Machine& machine, const std::string& text) {
   std::string word;
   for (std::size_t at = std::min(text.find("<transforms"), text.size()); at <= text.size(); ++at) {

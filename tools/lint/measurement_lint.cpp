@@ -210,7 +210,7 @@ class Look {
     return true;
   }
 
-  /// What the header lacks.
+  /// Columns that are missing in the header.
   void look_for_columns() {
     const bool any = std::any_of(table_.columns.begin(), table_.columns.end(),
                                  [&](const LintColumn& c) { return names_.is_reading(table_, c); });
