@@ -12,7 +12,7 @@ namespace vernier::evaluate {
 /// and not met if the value without its uncertainty is beyond it. Numbers that differ by rounding (1e-12 of
 /// the tolerance) are equal.
 enum class Conformity { kMet, kNotMet, kUndecided };
-/// One unit for all three. Throws std::logic_error where one is not finite.
+/// One unit for all three. Throws std::logic_error if one is not finite.
 Conformity conformity(double value, double tolerance, double expanded_uncertainty);
 /// "met", "not met", "not decided (within the uncertainty)".
 const char* conformity_text(Conformity conformity);

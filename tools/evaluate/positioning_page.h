@@ -20,7 +20,7 @@ struct PositioningWords {
   std::map<std::string, double> tolerance, uncertainty;     // by A E M R B, in the unit of the axis; U95
 };
 
-/// The characteristic of that letter: A, A+, A-, E, E+, E-, R, R+, R-, B, M, mean B. Nothing for one not
+/// The characteristic of that letter: A, A+, A-, E, E+, E-, R, R+, R-, B, M, mean B. `nullopt` if not
 /// measured.
 std::optional<double> characteristic(const PositioningResult& result, const std::string& name);
 

@@ -17,7 +17,7 @@ struct PoseReading {
   Eigen::Vector3d commanded_mm, measured_mm;
   std::optional<Eigen::Vector3d> commanded_deg, measured_deg;
   double u_mm = 0;  // standard uncertainty of a measured coordinate; 0: not known
-  double time_s = std::numeric_limits<double>::quiet_NaN();  // not a number where it is not known
+  double time_s = std::numeric_limits<double>::quiet_NaN();  // not a number if it is not known
 };
 
 /// What ISO 9283:1998, 7.2 computes at one pose. mm, deg.
@@ -36,7 +36,7 @@ struct PoseResult {
   std::optional<Eigen::Vector3d> accuracy_deg, repeatability_deg;  // AP_a b c; RP_a b c: 3 S of each
 };
 
-/// The visits of each pose, poses and visits in their order. What is pointed to is in `readings`. tool.
+/// The visits of each pose, poses and visits in their order. The pointers refer to `readings`. tool.
 std::vector<std::vector<const PoseReading*>> visits_by_pose(const std::vector<PoseReading>& readings);
 
 /// 95 % interval of a standard deviation, or a multiple of one, with so many degrees of freedom. tool.

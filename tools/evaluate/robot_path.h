@@ -21,8 +21,8 @@ struct PathResult {
 /// length, a station that a cycle does not cross. tool.
 PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations);
 
-/// Rows of a measurement file with columns px py pz (commanded) and x y z (measured), mm; run, u, t where
-/// they are there. check rows count too; a row without a reading is left out. Throws InputError. tool.
+/// Rows of a measurement file with columns px py pz (commanded) and x y z (measured), mm; run, u, t if
+/// present. check rows count too; a row without a reading is skipped. Throws InputError. tool.
 std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file);
 
 }  // namespace vernier::evaluate
