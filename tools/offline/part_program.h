@@ -8,7 +8,7 @@
 
 namespace vernier::offline {
 
-/// Part of a cutting move in which no axis turns round; of a rapid move nothing.
+/// Part of a cutting move in which no axis reverses; empty for a rapid move.
 struct ProgramStretch {
   std::size_t line = 0;
   bool rapid = false;

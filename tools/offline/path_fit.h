@@ -18,7 +18,7 @@ struct ArcGuide {
 struct PathPiece {
   Eigen::Index to = 0;  // the point that it ends in; it begins where the piece before ended
   std::optional<Eigen::Vector2d> centre;
-  bool whole = false;  // a whole turn: ends where it began in its plane
+  bool whole = false;  // a full turn: ends at its start point in its plane
 };
 
 /// Finds few blocks from the first point to the last: each block is as long as possible, with all points
