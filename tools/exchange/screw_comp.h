@@ -8,7 +8,8 @@
 
 namespace vernier::exchange {
 
-/// One line of a screw-compensation file. A trim is what the controller adds to the command: a correction.
+/// One line of a screw-compensation file. A trim is the value that the controller adds to the command: a
+/// correction.
 struct ScrewPoint {
   double nominal = 0;  // mm or deg
   double forward_trim = 0, reverse_trim = 0;
@@ -37,7 +38,7 @@ struct ScrewTable {
 ScrewTable screw_table(const model::Machine& machine, std::size_t axis, const model::States& at,
                        double tolerance_um);
 
-/// Text of a file: three numbers a line, nothing else (the controller stops reading at any other line).
+/// Text of a file: only lines of three numbers (the controller stops reading at any other line).
 std::string screw_text(const std::vector<ScrewPoint>& points, ScrewType type);
 
 /// Reads a file. Throws InputError with file, line and word: not three numbers, positions that do not
