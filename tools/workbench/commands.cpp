@@ -36,7 +36,7 @@ const std::vector<Allowed>& allowed() {
   const Field machine{"machine", K::kIn, "", true}, rows{"measurements", K::kInList, "", true},
       output{"output", K::kOut, "-o", true}, report{"output", K::kOut, "-o"},
       url{"to", K::kText, "--to", true},
-      // What a board added to rows that name its image: the project's compiled images.
+      // Corrections of a board in rows that name its image: from the project's compiled images.
       images{"images", K::kFlag, "--images=."}, header{"header", K::kTextList, "--header"};
   static const std::vector<Allowed> kAll = {
       {"new",

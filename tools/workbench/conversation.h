@@ -20,7 +20,7 @@ bool write_message(int stream, double patience_s, const Message& message);
 /// its own process group and ends together with this object. tool.
 class Conversation {
  public:
-  /// Throws InputError where it cannot be started.
+  /// Throws InputError if it cannot be started.
   Conversation(const std::string& program, const std::vector<std::string>& arguments,
                const std::string& directory);
   /// Ends it immediately.

@@ -98,7 +98,7 @@ std::string restore_rows(const std::string& text, const std::string& file,
   });
   if (restored != lines.size())
     throw text::InputError({file, lines.back()}, std::to_string(lines.back()), "beyond the end of the file");
-  format::parse_csv(result, file);  // what is written can be read
+  format::parse_csv(result, file);  // tests that the output can be read
   return result;
 }
 

@@ -8,7 +8,7 @@
 
 namespace vernier::workbench {
 
-/// What a file of a project is, by its name.
+/// Kind of a file of a project, by its name.
 enum class FileKind : std::uint8_t { kMachine, kMeasurement, kInstrument, kReport, kImage, kKey, kOther };
 /// As the page writes it: "machine" ...
 const char* kind_name(FileKind kind);
@@ -27,8 +27,8 @@ bool is_project_name(std::string_view name);
 /// Throws InputError with the name where `path` is a symbolic link, a device or a pipe. tool.
 void refuse_special(const std::filesystem::path& path, const std::string& name);
 
-/// A folder that the workbench reads and writes, and nothing outside of it: names are checked as above, and
-/// no part of a name may be a symbolic link, a device or a pipe. tool.
+/// The folder that the workbench reads and writes; it accesses no file outside. Names are checked as above,
+/// and no part of a name may be a symbolic link, a device or a pipe. tool.
 class Project {
  public:
   /// Throws InputError where `directory` is no folder.

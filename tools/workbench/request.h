@@ -12,12 +12,12 @@
 
 namespace vernier::workbench {
 
-/// A request of the page that has proved where it comes from.
+/// A request of the page whose origin was verified.
 struct ApiRequest {
   std::string method, path;  // "GET", "/api/rows"
   std::multimap<std::string, std::string> query;
   std::string body;
-  /// The value of a query word, empty where it is absent.
+  /// The value of a query word, empty if it is absent.
   std::string word(const std::string& name) const;
   std::vector<std::string> words(const std::string& name) const;
 };
