@@ -9,15 +9,15 @@ namespace vernier::text {
 /// fails. tool.
 void write_file(const std::string& path, const std::string& text);
 
-/// Makes the folder `path` for outputs, with those above it; one that is there is good. Throws InputError
-/// with the path where it cannot. tool.
+/// Makes the folder `path` for outputs, with those above it; an existing folder is accepted. Throws
+/// InputError with the path if that fails. tool.
 void make_folder(const std::string& path);
 
 /// Tests before a long job whether write_file(path) can write: no output is then incomplete at its end.
 /// Throws InputError as write_file does. tool.
 void require_place(const std::string& path);
 
-/// The whole of a file. Throws InputError where it cannot be read. tool.
+/// The whole of a file. Throws InputError if it cannot be read. tool.
 std::string read_file(const std::string& path);
 
 }  // namespace vernier::text
