@@ -41,10 +41,10 @@ inline constexpr const char* kClock = "clock";
 inline constexpr const char* kBlock = "block";
 }  // namespace columns
 
-/// What a column is for.
+/// Purpose of a column.
 enum class ColumnUse : std::uint8_t {
   kReading,      // holds a reading
-  kBeside,       // what a reading needs in its row: a centre, a normal
+  kBeside,       // needed by a reading in its row: a centre, a normal
   kUncertainty,  // of the readings of the row
   kMotion,       // state of the machine along its path
   kLabel         // groups the rows
@@ -63,14 +63,14 @@ struct ColumnGroup {
   /// with another unit, the column is a user's column.
   bool later = false;
   bool filled = false;              // no cell may be empty
-  bool in_terms = false;            // expressions read it by this name, so nothing else may have it
+  bool in_terms = false;            // expressions read it by this name: the name is reserved
   const char* or_unit = nullptr;    // a second dimension that it may have
   const char* if_absent = nullptr;  // what holds without the column
 
   std::span<const char* const> list() const { return std::span(names).first(count); }
 };
 
-/// All columns that have a meaning whatever the machine.
+/// All columns that have a meaning for every machine.
 std::span<const ColumnGroup> column_groups();
 
 /// One of them by its name; nullptr: no column of the format has it. Names are case-sensitive.
@@ -142,7 +142,7 @@ struct AxisColumnName {
   AxisQuantity quantity;
   std::string axis;
 };
-/// Which quantity of which axis a name is; nullopt: of none. The axis of that very name comes first.
+/// Axis and quantity of a name; nullopt: no axis. An axis with exactly this name comes first.
 std::optional<AxisColumnName> axis_column_named(std::string_view name,
                                                 const std::function<bool(const std::string&)>& is_axis);
 

@@ -132,7 +132,7 @@ constexpr bool is_inclination(ReadingKind kind) { return form_of(kind) == Readin
 /// The kind of that name; nullopt: no kind has it.
 std::optional<ReadingKind> kind_named(std::string_view name);
 
-/// What a sentence calls the residual of a kind: "X error", "rotation error about Z", "length error".
+/// Name of the residual of a kind in a sentence: "X error", "rotation error about Z", "length error".
 std::string subject_of(ReadingKind kind);
 
 /// A reading as `vernier new --reading` names it: one form, or several that one instrument reads together.
