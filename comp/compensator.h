@@ -28,7 +28,7 @@ struct CycleInput {
   VisitCount visit;
 };
 
-/// What a channel reads from the CycleInput.
+/// Source of a channel in the CycleInput.
 enum class ChannelKind : std::uint8_t {
   kPosition = 0,
   kVelocity = 1,
@@ -120,7 +120,7 @@ std::int32_t channel_value(const Channel& channel, std::int64_t value) noexcept;
 
 struct ShareProgram;
 
-/// What a tick began with: from it the tick can be executed again elsewhere.
+/// Start values of a tick, with which the tick can be executed again elsewhere.
 struct EquationState {
   static constexpr std::uint32_t kMostChannels = 256;  // of a program whose shares can be shown
   std::uint32_t channel_count = 0, starting = 0;

@@ -10,9 +10,8 @@ namespace vernier {
 /// One as a fraction of a segment (Q30), reached at the far end of a segment.
 constexpr std::int32_t kFractionOne = std::int32_t{1} << 30;
 
-/// The stretch between two neighbouring stations of a table, in counts of the position's register.
-/// Nodes stand at the segment's ends: station i is the start of segment i, the last station the end of the
-/// last.
+/// The stretch between two neighbouring stations of a table, in counts of the position's register. Its ends
+/// are nodes: station i is the start of segment i, the last station the end of the last segment.
 struct Segment {
   std::int32_t start;    // position of the station at the near end
   std::uint32_t length;  // to the next station, > 0
@@ -114,7 +113,7 @@ constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fractio
   return c[0] + narrow(round_shift(first * fraction, 30));
 }
 
-/// Values of kColumns columns of one record. Recursion so that nothing is left of the loop. realtime.
+/// Values of kColumns columns of one record. Recursion, so that the compiler removes the loop. realtime.
 template <unsigned kDegree, unsigned kColumns>
 constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::int32_t* out) noexcept {
   static_assert(kDegree == 1 || kDegree == 3);

@@ -17,7 +17,7 @@ struct SpectralWeights {
   std::uint32_t window = 0;
   std::uint32_t pairs = 0;                   // odd m below n/2: each serves m and n - m
   std::int32_t weight[kMaxWindow / 4] = {};  // of m = 1, 3, 5 ...
-  std::int32_t middle = 0;                   // of m = n/2 where that is odd, else 0
+  std::int32_t middle = 0;                   // of m = n/2 if that is odd, else 0
 };
 
 /// Computes the weights for a window of n samples, in integers: the same bits on every target, each within
