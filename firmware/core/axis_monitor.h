@@ -26,9 +26,9 @@ class AxisMonitor {
   /// tick: time between two readings; gives_motion: the readings carry the motion state. setup.
   AxisMonitor(const AxisLimits& limits, TimeUs tick, bool gives_motion) noexcept;
 
-  /// One reading, or none (present false); counts into health. A reading that jumps is a fault once and the
-  /// measure of the next ones. elapsed: since the call before, so that a late tick is no jump and makes no
-  /// false speed. realtime.
+  /// Takes one reading, or a missing one (present false); counts into health. A reading that jumps is a fault
+  /// once and the reference of the next ones. elapsed: since the previous call; with it a late tick gives no
+  /// jump and no wrong speed. realtime.
   Fault take(bool present, const AxisReading& reading, Health& health, TicksQ8 elapsed = kOneTick) noexcept;
 
   bool known() const noexcept { return known_; }

@@ -38,7 +38,7 @@ struct CycleLimits {
 
 /// What came out of a tick.
 struct TickReport {
-  CycleOutput output;  // what the compensator wanted, by axis of the image
+  CycleOutput output;  // result of the compensator, by axis of the image
   Mode mode;
   Fault latched;
 };
@@ -60,9 +60,10 @@ class Cycle {
   TickReport tick(TimeUs time, Command command, Fault outer = Fault::kNone,
                   TicksQ8 elapsed = kOneTick) noexcept;
 
-  /// Goes on with another program from the next tick, without a step: corrections move from where they are,
-  /// within the limits of their axes; axes that the new one does not correct go to zero. next: bound to this
-  /// board's wiring (bind), lives until the next use() returns. Returns the program until now. realtime.
+  /// Continues with another program from the next tick, without a step. Corrections move from their present
+  /// values, within the limits of their axes; axes that the new program does not correct go to zero. next:
+  /// bound to this board's wiring (bind), lives until the next use() returns. Returns the previous program.
+  /// realtime.
   BoundProgram* use(BoundProgram& next) noexcept;
 
   /// Share of the correction of a board's axis that is applied, 0..1; changes within the limits. realtime.
@@ -83,7 +84,7 @@ class Cycle {
   AxisTravel wanted(std::uint32_t axis) const noexcept { return AxisTravel(drive_[axis].whole); }
   AxisTravel achieved(std::uint32_t axis) const noexcept { return drive_[axis].achieved; }
   std::uint8_t limits(std::uint32_t axis) const noexcept { return drive_[axis].limits; }
-  /// Most that the correction of a board's axis changes by in a tick, counts; 0 while nothing has moved it.
+  /// Largest change of the correction of a board's axis in a tick, counts; 0 before the first change.
   std::int64_t slew(std::uint32_t axis) const noexcept { return drive_[axis].slew; }
   /// The correction that a board's axis was given last.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
@@ -92,7 +93,7 @@ class Cycle {
   InputMicro input_value(std::uint32_t input) const noexcept { return inputs_[input]; }
   const PathReading& path() const noexcept { return path_; }
   const BoundProgram& program() const noexcept { return *now_; }
-  /// What the last tick began with. realtime.
+  /// Start values of the last tick. realtime.
   void equation_state(EquationState& state) const noexcept { now_->compensator.state(state); }
 
  private:
@@ -109,7 +110,7 @@ class Cycle {
   void judge_limits(std::uint32_t axis) noexcept;
   void count(const CycleOutput& output) noexcept;
 
-  /// What is to reach a drive, by board's axis.
+  /// The value for a drive, by board's axis.
   struct Drive {
     std::int64_t wanted = 0;  // counts, within the board's limit
     std::int64_t whole = 0;   // the same at full weight, before that limit
@@ -127,7 +128,7 @@ class Cycle {
   BoundProgram* now_;
   ModeControl mode_;
   Fault found_ = Fault::kNone;
-  Health health_, idle_health_;                     // of what a program needs; of the rest
+  Health health_, idle_health_;                     // of the inputs that a program needs; of the others
   std::uint32_t axis_count_ = 0, input_count_ = 0;  // of the board
   bool uses_axis_[kMaxAxes] = {}, uses_input_[kMaxInputs] = {}, linear_[kMaxAxes] = {};
   AxisMonitor axes_[kMaxAxes];

@@ -38,8 +38,8 @@ class AtomicWords {
 };
 
 /// A number that one thread counts up and others read, without an atomic of 64 bits, which small targets do
-/// not have: its high half stands before and after the low one, and a reader that sees two of them reads
-/// again, which it has to at most once in 2^32 counts.
+/// not have. Its high half is stored before and after the low one. A reader that sees two different halves
+/// reads again, at most once in 2^32 counts.
 class SharedCount {
  public:
   /// One writer. A reader that sees the count also sees all earlier writes. realtime.

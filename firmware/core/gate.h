@@ -22,7 +22,7 @@ class Gate {
   Gate(const BoardIdentity& identity, const Nonce& nonce, IdentityKey* own_key = nullptr) noexcept
       : identity_(identity), nonce_(nonce), own_key_(own_key) {}
 
-  /// The request that may be carried out, or why none may. It lives until the next call.
+  /// The request that may be executed, or the reason of a refusal. It lives until the next call.
   struct Opened {
     LinkStatus status;
     const std::uint8_t* request;
@@ -45,11 +45,11 @@ class Gate {
   }
 
  private:
-  /// Challenges that are open at a time; whoever asks for more drops the oldest, and has to sign again.
+  /// Largest number of open challenges; a further challenge removes the oldest, whose client must sign again.
   static constexpr std::uint32_t kMostOpen = 32;
   static constexpr TimeUs kOpenFor{10'000'000};
   struct Challenge {
-    std::uint32_t counter = 0;  // 0: none
+    std::uint32_t counter = 0;  // 0: no challenge
     TimeUs given;
   };
   Challenge* find(std::uint32_t counter, TimeUs now) noexcept;

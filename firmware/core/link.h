@@ -51,7 +51,7 @@ class Link {
   LinkStatus slots(Writer& out, TimeUs now) const;
   LinkStatus read(Reader& in, Writer& out);
   LinkStatus weight(Reader& in);
-  /// What the tick runs.
+  /// The program of the tick.
   struct Running {
     std::uint64_t fingerprint = 0;
     ImageState image = ImageState::kNone;

@@ -43,11 +43,11 @@ enum class Trial : std::uint8_t {
   kOver,        // the store, when the record says that the image was reverted
 };
 
-/// The programs of a board: which one the tick runs, which one it goes back to. Three parties use it, none of
-/// which waits for another:
-///   the store checks images and has them run or tried;
+/// The programs of a board: the running one, and the one to which the board returns. Three parties use it;
+/// none of them waits for another:
+///   the store checks images and starts them or their trial;
 ///   the guardian hands them to the tick and ends trials on time, from memory alone;
-///   the links look at the one that runs.
+///   the links read the running one.
 class Programs {
  public:
   /// One that runs, one that the board goes back to, one that comes in.
@@ -76,7 +76,7 @@ class Programs {
   void given_up() noexcept { trial_.store(Trial::kNone); }
 
   // ---- the guardian
-  /// Hands over what is to run and ends a trial whose time is over. now: of the clock of run_trial(). Never
+  /// Hands over the next program and ends a trial whose time is over. now: of the clock of run_trial(). Never
   /// waits.
   void guard(TimeUs now) noexcept;
 
@@ -86,7 +86,7 @@ class Programs {
   void look_away() noexcept { looked_at_.store(nullptr); }
 
   Trial trial() const noexcept { return trial_.load(); }
-  /// Left of the trial that runs; `whole` where it has not begun.
+  /// Remaining time of the trial; `whole` if it has not begun.
   TimeUs trial_left(TimeUs now, TimeUs whole) const noexcept;
 
  private:
@@ -108,8 +108,8 @@ class Programs {
   std::atomic<LoadedProgram*> confirmed_in_{nullptr}, trial_in_{nullptr};
   std::atomic<const LoadedProgram*> seen_{nullptr}, looked_at_{nullptr};
   std::uint32_t taken_over_ = 0;
-  SharedCount until_us_;  // of the trial; 0: none has begun. The guardian's
-  // The guardian's. A program is in none, one or several of these.
+  SharedCount until_us_;  // of the trial; 0: no trial. Used by the guardian
+  // Used by the guardian. A program is in none, one or several of these.
   LoadedProgram *running_ = nullptr, *offered_ = nullptr, *wanted_ = nullptr, *kept_ = nullptr,
                 *tried_ = nullptr;
   LoadedProgram empty_[2];  // removes all corrections if no image can be restored

@@ -14,7 +14,7 @@ namespace vernier {
 struct OverrunLimits {
   std::uint32_t in_a_row = 10;
   std::uint32_t lost_share_q16 = 65536 / 20;  // of the ticks, that may be left out for ever
-  std::uint32_t lost_at_once = 200;  // beyond that share: a stop of 0.2 s is none, two in a second are
+  std::uint32_t lost_at_once = 200;           // limit: a stop of 0.2 s is accepted, two in a second are not
 };
 
 /// How the ticks of a runner went, ns.

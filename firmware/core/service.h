@@ -19,7 +19,7 @@
 
 namespace vernier {
 
-/// What a board's daemon is made with.
+/// Settings of a board's daemon.
 struct ServiceOptions {
   Wiring wiring;
   CycleLimits limits;
@@ -39,7 +39,7 @@ struct ServiceOptions {
   std::uint32_t touches_kept = Exchange::kTouches;
 };
 
-/// What a link of the board may be used for.
+/// Rights of a link of the board.
 struct LinkRights {
   LinkAccess access = LinkAccess::kUpload;
   bool plain_commands = false;  // commands by register, which cannot be signed, though the board has keys
@@ -54,7 +54,7 @@ class Service : private CommandHandler {
   /// board, store: outlive the service. setup.
   Service(ServiceOptions options, const Board& board, SlotStore& store);
 
-  /// Checks what the store holds and offers it to the first tick. setup.
+  /// Checks the image of the store and offers it to the first tick. setup.
   UploadResult boot();
   /// As boot(), but runs an unsigned image given at the start of the board; the store is not changed. setup.
   UploadResult boot_with(std::span<const std::uint8_t> image);
@@ -62,7 +62,7 @@ class Service : private CommandHandler {
   /// Sleeps until the next tick is due and runs it. realtime.
   TickReport tick() noexcept;
 
-  /// From the next tick on the correction is taken out and nothing brings it in again. realtime.
+  /// From the next tick on the correction is removed and cannot be applied again. realtime.
   void end() noexcept { ending_ = true; }
 
   /// Share of all corrections, on top of those that the links give to axes. realtime.
@@ -99,7 +99,7 @@ class Service : private CommandHandler {
  private:
   // A percentile walks a whole histogram; one of the six is brought up to date every so many ticks.
   static constexpr std::uint32_t kTicksPerPercentile = 64;
-  // Ten pictures a second of what an equation began with, for who asks what each effect adds.
+  // Ten times a second the start values of an equation, for clients that read the shares of the effects.
   static constexpr std::uint32_t kTicksPerEquation = 100;
 
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;

@@ -15,7 +15,7 @@ using PublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
 bool signature_fits(std::span<const std::uint8_t> head, std::span<const std::uint8_t> rest,
                     const std::uint8_t* signature, const PublicKey& key);
 
-/// The first `size` bytes of a head that is laid out in memory as it is signed.
+/// The first `size` bytes of a head that has the signed layout in memory.
 template <class Head>
 std::span<const std::uint8_t> bytes_of_head(const Head& head, std::uint32_t size = sizeof(Head)) {
   return {reinterpret_cast<const std::uint8_t*>(&head), size};

@@ -31,7 +31,8 @@ class StoreDesk {
     state_.store(State::kAsked, std::memory_order_release);
     return ticket_;
   }
-  /// Bytes of the reply; CommandHandler::kLater while it is worked on, 0 where it gave way to another.
+  /// Bytes of the reply; CommandHandler::kLater while the request is executed, 0 if it was replaced by
+  /// another.
   std::uint32_t collect(std::uint32_t ticket, std::uint8_t* reply) noexcept {
     if (ticket != ticket_) return 0;
     const State state = state_.load(std::memory_order_acquire);

@@ -22,7 +22,7 @@ struct UploadResult {
   BindFault bind = BindFault::kNone;
   Name offender;  // the name that does not fit
 };
-/// A line of text in place; what is longer is cut.
+/// A line of text in place; longer text is cut.
 struct Line {
   char text[160] = {};
   const char* c_str() const noexcept { return text; }
@@ -33,7 +33,7 @@ Line describe(const UploadResult& result) noexcept;
 
 /// Which images the store holds, as others see it.
 struct SlotsRecord {
-  std::uint64_t confirmed_fingerprint = 0, trial_fingerprint = 0;  // 0: none
+  std::uint64_t confirmed_fingerprint = 0, trial_fingerprint = 0;  // 0: no image
   std::uint64_t issued = 0, newest_issued = 0;  // of the confirmed image, and of all that were ever tried
   std::uint8_t confirmed = kNoSlot, trial = kNoSlot, reserved[2] = {};
   std::uint32_t security = 0;

@@ -14,7 +14,7 @@ constexpr std::uint64_t kAnyWork = UINT64_MAX;
 /// Shares are computed outside the tick, for a display. They may need this many times the work of a tick.
 constexpr std::uint64_t kShareWorkFactor = 20;
 
-/// What a board does in its share of a tick.
+/// Work of a board in its share of a tick.
 struct WorkBudget {
   std::uint64_t work = kAnyWork;  // comp/verify.h, work_of
   std::uint64_t of_line = 0;      // work that a line of memory costs which no cache holds (lines_of)

@@ -18,7 +18,7 @@ class WakeUp;
 struct DeviceFinding {
   std::string device;                    // "axis.X.output  pwm"
   std::string missing;                   // empty: it is there
-  std::function<std::string()> attempt;  // tries it once more; what is missing, or empty
+  std::function<std::string()> attempt;  // tries it once more; the missing item, or empty
   bool is_file = false;                  // a file that is read; else a device
 };
 

@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// What the operating system granted a realtime run, for the report.
+/// Settings that the operating system granted to a realtime run, for the report.
 struct GrantReport {
   bool fifo = false, locked = false, awake = false;
 };

@@ -33,7 +33,7 @@ void answer_call(Call& call) noexcept;
 /// setup.
 bool make_call(Call& call, std::int32_t peer, const std::atomic<bool>& stop) noexcept;
 
-/// What the component's store is asked, which vernier-hal keeps (hal/slot_store.h).
+/// Requests to the component's store, which vernier-hal keeps (hal/slot_store.h).
 enum class StoreOp : std::uint32_t {
   kReadRecord,
   kWriteRecord,
@@ -42,14 +42,14 @@ enum class StoreOp : std::uint32_t {
   kFinishImage,
   kReadGiven
 };
-/// What the component is asked by vernier-hal's links (hal/command_link.h). place: the link's access.
+/// Requests of vernier-hal's links to the component (hal/command_link.h). place: the link's access.
 enum class LinkCall : std::uint32_t { kAnswer, kLater, kRegisters, kCommand };
 
 /// Data that vernier-hal sends about itself when it connects.
 struct Introduction {
   std::int32_t pid = 0;
   std::uint32_t capacity = 0;     // of a slot
-  std::uint32_t given_bytes = 0;  // of an image to start with; 0: what the store holds
+  std::uint32_t given_bytes = 0;  // of an image to start with; 0: the image of the store
   std::uint32_t keys = 0;
   PublicKey key[BoardIdentity::kMostKeys] = {};
   Name board, board_class;
@@ -58,13 +58,13 @@ struct Introduction {
 };
 static_assert(sizeof(Introduction) <= Call::kMostBytes);
 
-/// What the component makes of it.
+/// Result of the component.
 enum class Attached : std::int32_t {
   kStarted = 0,       // the image runs
-  kResumed = 1,       // it goes on with what it runs
+  kResumed = 1,       // it continues with its running image
   kImageRefused = 2,  // bytes: why
   kOtherStore = 3,    // it has been started with another store or other keys, and keeps them
-  kEmpty = 4,         // the store has no image, and none was given
+  kEmpty = 4,         // the store has no image, and no image was given
 };
 
 /// The memory that component and vernier-hal share. Neither waits for the other in a tick: the component has

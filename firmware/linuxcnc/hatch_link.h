@@ -18,7 +18,7 @@ class HatchLink : public CommandLink {
   Call& call_;
 };
 
-/// vernier-hal's side: hands what a link asks on to the component.
+/// vernier-hal's side: passes the requests of a link to the component.
 class HatchHandler : public CommandHandler {
  public:
   /// hatch, stop: outlive the handler. setup.

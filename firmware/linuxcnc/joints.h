@@ -29,7 +29,7 @@ class Joints : public AxisReader, public CorrectionWriter {
   void read(double seconds) noexcept;
   /// Corrections to the commands, and off the feedback as they were added. realtime.
   void write() noexcept;
-  /// Most that a joint's correction may change by in a tick, counts; 0: not at all. realtime.
+  /// Largest change of a joint's correction in a tick, counts; 0: no change. realtime.
   void set_slew(std::uint32_t joint, std::int64_t counts) noexcept { joints_[joint].slew = counts; }
   bool all_homed() const noexcept { return all_homed_; }
   /// True if the correction would move a joint (or any joint) past its limit. It is limited then. realtime.
