@@ -31,7 +31,7 @@ class AxisReader {
   /// A tick of the firmware begins: readings that came in until now are those of this tick, and stay the same
   /// until the next call. Never waits. realtime.
   virtual void begin_tick() noexcept {}
-  /// Newest reading of an axis. kNoReading: none since the last tick. realtime.
+  /// Newest reading of an axis. kNoReading: no reading since the last tick. realtime.
   virtual HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept = 0;
   /// Feed and curvature, as far as the controller knows them. realtime.
   virtual HalFault read_path(PathReading& reading) noexcept = 0;

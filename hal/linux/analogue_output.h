@@ -32,7 +32,7 @@ class AnalogueOutput : public CorrectionWriter {
   /// Has the device to itself from now on; false where another process, or another output, does. setup.
   bool lock() noexcept { return attribute_.lock(); }
 
-  /// The correction that the device holds. kNoReading: the driver does not say. setup.
+  /// The correction that the device holds. kNoReading: the driver does not report it. setup.
   HalFault read_back(AxisTravel& correction) noexcept;
   /// Reads the code of the device and writes the same code again, which moves nothing. kNoReading: the driver
   /// does not give the code; it was not written. setup.

@@ -17,8 +17,8 @@ struct CanCounts {
   std::uint64_t duplicates = 0;  // the counter of the frame before
   std::uint64_t late = 0;        // a counter before that of the newest frame
   std::uint64_t lost = 0;        // counters that were left out
-  std::uint64_t restarts = 0;    // the counter began anew
-  std::uint64_t invalid = 0;     // frames that say so themselves
+  std::uint64_t restarts = 0;    // the counter restarted
+  std::uint64_t invalid = 0;     // frames that are marked as invalid
   std::uint64_t stalled = 0;     // frames whose stamp has stood still
   std::uint64_t bus_errors = 0;  // error frames: bus off, restarted
   std::uint64_t broken = 0;      // ticks in which the socket failed (interface down or gone)

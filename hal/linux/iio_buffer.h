@@ -21,8 +21,8 @@ struct IioBufferSettings {
   std::string directory;  // of the device in sysfs
   std::string device;     // "/dev/iio:device0"
   std::vector<IioChannel> channels;
-  std::string trigger;    // written to trigger/current_trigger; empty: as it stands, or none
-  std::string frequency;  // written to sampling_frequency; empty: as it stands
+  std::string trigger;    // written to trigger/current_trigger; empty: not changed
+  std::string frequency;  // written to sampling_frequency; empty: not changed
 };
 
 /// What came out of the buffer so far; all only go up.

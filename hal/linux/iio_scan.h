@@ -17,8 +17,8 @@ struct IioElement {
   std::uint32_t bytes() const noexcept { return storage_bits / 8 * repeat; }
 };
 
-/// Reads "le:s16/16>>0", "be:u24/32X2>>8" and the like. False where it is something else, or has no storage
-/// of 8, 16, 32 or 64 bits that holds its bits. setup.
+/// Reads "le:s16/16>>0", "be:u24/32X2>>8" and the like. False for other text, or if its storage is not 8, 16,
+/// 32 or 64 bits or does not hold its bits. setup.
 bool parse_iio_element(std::string_view text, IioElement& element) noexcept;
 
 /// Value of a channel whose storage begins here: turned to the host's order, shifted, cut to its bits, with

@@ -43,7 +43,7 @@ class ModbusConversation {
   /// Answers the request that is complete, if one is, or goes on with one whose reply takes its time.
   void work(CommandHandler& handler, InstantNs now) noexcept;
 
-  /// What is to be sent, and how much of it was.
+  /// Bytes to be sent, and number of bytes sent.
   const std::uint8_t* out() const noexcept { return out_ + sent_; }
   std::uint32_t waiting() const noexcept { return out_size_ - sent_; }
   void sent(std::uint32_t bytes) noexcept;
@@ -77,7 +77,7 @@ class ModbusConversation {
   InstantNs frame_time_, frame_began_, reply_began_, last_request_, last_byte_;
   std::uint8_t in_[kMostFrame] = {}, out_[kMostFrame] = {};
   std::uint32_t used_ = 0, out_size_ = 0, sent_ = 0;
-  std::uint8_t mailbox_[2 * kMostMailbox] = {};  // what the peer wrote
+  std::uint8_t mailbox_[2 * kMostMailbox] = {};  // written by the peer
   std::uint8_t reply_[256] = {};
   std::uint32_t reply_size_ = 0, ticket_ = 0;
   bool waits_for_reply_ = false, senseless_ = false;

@@ -17,7 +17,7 @@ namespace vernier {
 /// within half a second of its first byte, or whose reply is not taken within a second.
 class ModbusServer : public CommandLink {
  public:
-  /// address: numeric, "127.0.0.1"; port 0 takes any free one. Null with `error` set where it cannot listen.
+  /// address: numeric, "127.0.0.1"; port 0 takes any free one. Null with `error` set if it cannot listen.
   /// setup.
   static std::unique_ptr<ModbusServer> tcp(const std::string& address, int port, const ModbusLayout& layout,
                                            std::string& error);

@@ -34,7 +34,7 @@ class AnalogueChain {
   bool saturates(AxisTravel correction_nm) const {
     return wanted_code(correction_nm) != code_for(correction_nm);
   }
-  /// What the drive adds to its axis, nm.
+  /// Value that the drive adds to its axis, nm.
   double offset_nm(std::int64_t code) const { return static_cast<double>(code - zero_code_) * step_nm_; }
 
  private:
