@@ -26,8 +26,8 @@ JointPose between(const JointPose& a, const JointPose& b, double share) {
           mix(a.c_deg, b.c_deg)};
 }
 
-/// Start of the cutter's cylinder along the normal of a point, mm. Not a number if it is not above its tip
-/// within reach.
+/// Position of the cutter's cylinder along the normal of a point, mm. Not a number if it is out of reach or
+/// below the tip.
 double reached_mm(const ToolPose& tool, double radius_mm, const SurfacePoint& at) {
   const Vector3d from = at.position - tool.tip;
   const Vector3d off = from - tool.axis * tool.axis.dot(from),
