@@ -217,7 +217,7 @@ class Planner {
     const std::size_t least = options_.points.value_or(kLeastPoints);
     std::vector<std::size_t> chosen;
     double goal = 1;
-    constexpr int kRounds = 4;  // largest number of rounds for the loss by the real order
+    constexpr int kRounds = 4;  // of selection; each one compensates the loss by the real order
     for (int round = 0; round < kRounds; ++round) {
       choose_rows(sides, chosen, least, most, goal);
       exchange_rows(sides, chosen);
