@@ -316,7 +316,7 @@ class Meaning {
       if (values[row] > high + kWild * width || values[row] < low - kWild * width)
         findings_.add_of_kind(
             "wild " + column.name, LintWeight::kWarning, line(row), column.cell[row],
-            fmt::format("{} is outside its column by {:.3g} times the spread of the column", column.name,
+            fmt::format("{} differs from its column by {:.3g} times the spread of the column", column.name,
                         (values[row] > high ? values[row] - high : low - values[row]) / width),
             "a slip, a lost point or a number for \"no reading\"? Leave the cell empty");
   }
