@@ -93,7 +93,7 @@ struct Deviation {
 struct Correction {
   std::int32_t counts = 0;
 };
-/// The only place where a deviation turns into a correction. -INT32_MIN becomes INT32_MAX. realtime.
+/// The only place that converts a deviation to a correction. -INT32_MIN becomes INT32_MAX. realtime.
 constexpr Correction correction_for(Deviation deviation) noexcept {
   return Correction{deviation.counts == INT32_MIN ? INT32_MAX : -deviation.counts};
 }

@@ -80,7 +80,7 @@ struct Equation {
   constexpr std::uint32_t register_count() const { return first_result() + result_count; }
 };
 
-/// Number of results of an instruction; 0 where its table is not there.
+/// Number of results of an instruction; 0 if its table does not exist.
 constexpr std::uint32_t results_of(const Instruction& step, View<ErrorTable> tables) noexcept {
   if (step.op == OpCode::kSineCosine) return 2;
   if (step.op != OpCode::kLookUp) return 1;

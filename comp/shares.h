@@ -31,8 +31,9 @@ struct ShareProgram {
   View<Share> shares;
 };
 
-/// Proves of a share program what verify_program proves of a program. program: verified; ranges: room for
-/// kMaxRegisters, holds the ranges of the program's registers, gets those of the shares behind them. setup.
+/// Proves for a share program the properties that verify_program proves for a program. program: verified;
+/// ranges: room for kMaxRegisters, contains the ranges of the program's registers, gets those of the shares
+/// after them. setup.
 ProgramFault verify_shares(const ShareProgram& shares, const Program& program, ValueRange* ranges) noexcept;
 
 /// The shares of a tick's correction, before its limits and ramps: one entry per share, in their order. The

@@ -43,8 +43,8 @@ class Displacement {
   /// Starts at rest. False, without any change, if a setting is out of range. setup.
   bool start(const DisplacementScale& scale) noexcept;
 
-  /// Takes a sample in, LSB; gives the displacement at its instant. A sample beyond +-kLimit is held there, a
-  /// displacement beyond int32 too; both are counted. realtime.
+  /// Takes a sample, LSB; returns the displacement at its instant. A sample beyond +-kLimit is limited to it,
+  /// a displacement beyond int32 too; both are counted. realtime.
   LengthNm step(std::int32_t sample) noexcept;
 
   std::uint32_t held() const noexcept { return held_; }

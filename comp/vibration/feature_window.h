@@ -57,7 +57,7 @@ class FeatureWindow {
   /// out of range. setup.
   bool start(const FeatureScale& scale, const SpectralWeights& weights) noexcept;
 
-  /// Takes one sample in, LSB. Beyond +-kLimit it is held there and counted. realtime.
+  /// Takes one sample, LSB. Beyond +-kLimit it is limited and counted. realtime.
   void push(std::int32_t sample) noexcept;
 
   /// n samples have come since start. realtime.
