@@ -98,7 +98,7 @@ class Slots {
 
 /// Converts a valid record of version 1 to this version; no record if it is not valid. setup.
 SlotRecord upgraded(const SlotRecordV1& record) noexcept;
-/// Is it a record that a board may follow: magic, checksum, slots that exist and differ. setup.
+/// True for a record that a board may use: magic, checksum, slots that exist and differ. setup.
 bool is_valid(const SlotRecord& record) noexcept;
 
 }  // namespace vernier
