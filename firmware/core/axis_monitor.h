@@ -19,7 +19,7 @@ struct AxisLimits {
   bool rollover = false;                 // whole turns are no travel
 };
 
-/// Watches the readings of one axis and, where the controller gives positions only, derives its motion.
+/// Watches the readings of one axis. Derives its motion if the controller gives positions only.
 class AxisMonitor {
  public:
   AxisMonitor() = default;
@@ -32,7 +32,7 @@ class AxisMonitor {
   Fault take(bool present, const AxisReading& reading, Health& health, TicksQ8 elapsed = kOneTick) noexcept;
 
   bool known() const noexcept { return known_; }
-  /// The newest good state; held while readings are missing.
+  /// The newest good state; kept while readings are missing.
   const AxisInput& state() const noexcept { return state_; }
 
  private:

@@ -73,7 +73,7 @@ class Published {
     value_.put(value);
     turn_.store(turn + 2, std::memory_order_release);
   }
-  /// False where the writer was quicker so many times in a row. setup.
+  /// False if the writer was faster so many times in a row. setup.
   bool read(T& value, int tries = 1000) const noexcept {
     for (int i = 0; i < tries; ++i) {
       const std::uint32_t before = turn_.load(std::memory_order_acquire);
@@ -117,7 +117,7 @@ class History {
     const std::uint64_t count = begun_.load();
     return count > size_ ? count - size_ : 0;
   }
-  /// False where value `index` is not there yet, or not any more. setup.
+  /// False if value `index` is not there yet, or not any more. setup.
   bool read(std::uint64_t index, T& value) const noexcept {
     if (index >= count()) return false;
     const T copy = values_[static_cast<std::uint32_t>(index) & (size_ - 1)].get();

@@ -68,7 +68,7 @@ class FeatureInputs : public InputReader {
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
 
  private:
-  /// A signal's window with what its samples are made of.
+  /// A signal's window with the sources of its samples.
   struct Signal {
     FeatureRequest from;
     std::uint64_t inverse = 0;  // 2^63 / lsb, cut

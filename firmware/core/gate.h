@@ -30,7 +30,7 @@ class Gate {
   };
   /// now: of any clock, the same as challenge()'s.
   Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, TimeUs now) noexcept;
-  /// Is it the request for a challenge? Its payload then; each can be used once.
+  /// The payload of a request for a challenge, else empty; each can be used once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
   ChallengeReply challenge(LinkAccess access, TimeUs now) noexcept;
   /// True for the request to prove the identity of the board. Every caller may send it.

@@ -12,15 +12,15 @@ namespace vernier {
 /// counts as hostile until it is checked.
 class Link {
  public:
-  /// All outlive the link. identity: what HelloReply names. setup.
+  /// All outlive the link. identity: reported by HelloReply. setup.
   Link(Exchange& exchange, Uploader& uploader, const Wiring& wiring, TimeUs tick,
        const BoardIdentity& identity);
 
   /// Answers one request. request: any bytes; reply: room for kMaxReplyBytes. Returns the bytes of the reply,
-  /// 0 where the request is too short to be answered. now: as the uploader's. setup.
+  /// 0 if the request is too short for an answer. now: as the uploader's. setup.
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
 
-  /// Has the request to do with the medium? It is then answered by the store, which may wait for it. setup.
+  /// True if the request needs the medium. The store then answers it and may wait for the medium. setup.
   static bool needs_store(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// True if it is, or may contain (signed), a request for the store or a step of an upload. Always false
   /// while the store works on a request. setup.

@@ -15,7 +15,7 @@ constexpr std::int32_t kRampTicks = 256;
 static_assert(kFullWeight.count % kRampTicks == 0);
 
 /// The state machine of the modes. Each tick: before() with the faults of reading, the weight for the
-/// compensator, after() with what came out.
+/// compensator, after() with the result.
 class ModeControl {
  public:
   /// complete: every device has answered at least once and now. realtime.

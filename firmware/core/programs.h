@@ -10,8 +10,8 @@
 
 namespace vernier {
 
-/// A place for one upload: its header, its image, and what that is bound to. The bytes are in memory that was
-/// taken when the board was made.
+/// A place for one upload: its header, its image, and its bound program. The bytes are in memory that is
+/// taken when the board is made.
 struct LoadedProgram {
   UploadHeader header{};
   std::unique_ptr<std::uint64_t[]> words;
@@ -57,7 +57,7 @@ class Programs {
   Programs(Exchange& exchange, std::uint32_t places, std::uint32_t image_bytes);
 
   // ---- the store
-  /// Null where every place is in use.
+  /// Null if every place is in use.
   ProgramRef take() noexcept;
   std::uint32_t image_bytes() const noexcept { return image_bytes_; }
   /// The confirmed image, when the board starts.
@@ -70,7 +70,7 @@ class Programs {
   void kept(bool written) noexcept { trial_.store(written ? Trial::kKept : Trial::kRunning); }
   /// The image on trial is reverted with the guardian's next round.
   bool give_up() noexcept;
-  /// Has give_up() been asked for and not been done yet?
+  /// True if give_up() was called and is not executed yet.
   bool giving_up() const noexcept { return to_give_up_.load() && trial_.load() == Trial::kRunning; }
   /// The revert of the last trial is recorded. Only in Trial::kOver.
   void given_up() noexcept { trial_.store(Trial::kNone); }

@@ -47,7 +47,7 @@ class Runner {
   TimeUs time() const noexcept { return time_; }
   /// The moment at which the last tick read its axes.
   InstantNs woke() const noexcept { return last_; }
-  /// Do the ticks follow the controller's sync?
+  /// True if the ticks follow the controller's sync.
   bool in_step() const noexcept { return in_step_; }
   /// Times that the sync was lost; only goes up.
   std::uint64_t lost_syncs() const noexcept { return lost_syncs_; }

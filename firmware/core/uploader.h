@@ -85,7 +85,7 @@ class Uploader {
   /// The store's contents; a trial that is over is not listed, even if the medium does not record the end
   /// yet.
   SlotsRecord record() const noexcept;
-  /// Is there a confirmed image that could not be loaded, and no other runs in its place?
+  /// True if a confirmed image could not be loaded and no other runs instead.
   bool image_lost() const noexcept { return image_lost_.load(); }
   /// Remaining time of the trial; 0 without a trial.
   TimeUs trial_left(TimeUs now) const noexcept;

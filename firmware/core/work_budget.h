@@ -31,7 +31,7 @@ struct WorkBudget {
 /// kAnyWork if the clock does not move. Call before the first tick. setup.
 WorkBudget measured_work_budget(Clock& clock, TimeUs tick, std::span<std::uint32_t> memory = {}) noexcept;
 
-/// Words of `memory` that outgrow what boards have as caches: 16 MB.
+/// Words of `memory` that exceed the caches of boards: 16 MB.
 constexpr std::size_t kWordsBeyondCaches = std::size_t{1} << 22;
 
 }  // namespace vernier

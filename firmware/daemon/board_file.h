@@ -20,7 +20,7 @@ struct SignalSource {
   std::string where;                         // "board.toml:12: axis.X.output"
 
   [[noreturn]] void fail(const std::string& what) const;  // throws BoardError
-  /// Throws BoardError where the file has a setting that is not among `names`, apart from kind.
+  /// Throws BoardError if the file has a setting that is not among `names`, apart from kind.
   void only(std::initializer_list<const char*> names) const;
   const std::string& text(const std::string& name) const;  // throws BoardError where absent
   double number(const std::string& name) const;            // the same

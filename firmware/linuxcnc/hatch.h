@@ -20,7 +20,7 @@ struct Call {
   std::uint8_t bytes[kMostBytes] = {};
 };
 
-/// Is a process there, and not only waiting for its parent? setup.
+/// True if a process exists, and is not only waiting for its parent. setup.
 bool process_lives(std::int32_t pid) noexcept;
 /// Waits at most `wait` for a request. setup.
 bool wait_for_call(Call& call, TimeUs wait) noexcept;
@@ -29,7 +29,7 @@ inline bool is_asked(const Call& call) noexcept {
 }
 /// The request is answered: result, size and bytes are in the call. setup.
 void answer_call(Call& call) noexcept;
-/// Waits until the call is answered; false, and the call withdrawn, where `peer` is gone or `stop` is set.
+/// Waits until the call is answered. False, and the call is withdrawn, if `peer` has ended or `stop` is set.
 /// setup.
 bool make_call(Call& call, std::int32_t peer, const std::atomic<bool>& stop) noexcept;
 

@@ -28,7 +28,7 @@ struct Pins {
   hal_u32_t *execution, *execution_max;  // ns
 };
 
-/// Exports the pins of a component. Null where HAL refuses one. setup.
+/// Exports the pins of a component. Null if HAL refuses one. setup.
 Pins* make_pins(int component, const Wiring& wiring) noexcept;
 
 }  // namespace vernier
