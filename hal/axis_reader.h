@@ -35,8 +35,8 @@ class AxisReader {
   virtual HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept = 0;
   /// Feed and curvature, as far as the controller knows them. realtime.
   virtual HalFault read_path(PathReading& reading) noexcept = 0;
-  /// Does the controller itself give velocity, acceleration, sense and since? If not, only position is filled
-  /// and the firmware derives the rest. setup.
+  /// True if the controller itself gives velocity, acceleration, direction and since. If not, only position
+  /// is filled and the firmware derives the rest. setup.
   virtual bool gives_motion() const noexcept = 0;
 };
 

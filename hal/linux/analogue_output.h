@@ -29,7 +29,7 @@ class AnalogueOutput : public CorrectionWriter {
 
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 
-  /// Has the device to itself from now on; false where another process, or another output, does. setup.
+  /// Takes the device for exclusive use; false if another process, or another output, has it. setup.
   bool lock() noexcept { return attribute_.lock(); }
 
   /// The correction that the device holds. kNoReading: the driver does not report it. setup.

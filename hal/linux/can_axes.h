@@ -42,7 +42,7 @@ class CanAxes : public AxisReader {
   CanAxes(const CanAxes&) = delete;
   CanAxes& operator=(const CanAxes&) = delete;
 
-  /// Takes what has come since the last call, at most kMostFrames, without waiting. realtime.
+  /// Takes the frames since the last call, at most kMostFrames, without waiting. realtime.
   void begin_tick() noexcept override;
   /// kNoReading: no new, valid frame of this axis since the tick before. realtime.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;

@@ -8,7 +8,7 @@
 
 namespace vernier {
 
-/// An identifier as the kernel writes it: 11 bits, or 29 with their flag where above 0x7ff.
+/// An identifier as the kernel writes it: 11 bits, or 29 with their flag above 0x7ff.
 canid_t can_identifier(std::uint32_t id) noexcept;
 
 /// Binds a socket to an interface ("can0"). address: its other fields (identifiers of ISO-TP). Closes the

@@ -50,7 +50,7 @@ class IioBuffer : public InputReader {
   IioBuffer(const IioBuffer&) = delete;
   IioBuffer& operator=(const IioBuffer&) = delete;
 
-  /// Takes what has come, without waiting, and steps to the next scan. realtime: one or two system calls.
+  /// Takes the received scans, without waiting, and steps to the next one. realtime: one or two system calls.
   void begin_tick() noexcept override;
   /// kNoReading: no scan for this tick. realtime.
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;

@@ -21,8 +21,8 @@ struct IioElement {
 /// 32 or 64 bits or does not hold its bits. setup.
 bool parse_iio_element(std::string_view text, IioElement& element) noexcept;
 
-/// Value of a channel whose storage begins here: turned to the host's order, shifted, cut to its bits, with
-/// its sign. An unsigned one of 64 bits is held at the largest int64. realtime.
+/// Value of a channel whose storage begins here: converted to the byte order of the host, shifted, cut to its
+/// bits, with its sign. An unsigned value of 64 bits is limited to the largest int64. realtime.
 std::int64_t iio_value(const unsigned char* storage, const IioElement& element) noexcept;
 
 /// Offset of an element after so many bytes of a scan; elements are aligned to their size.

@@ -16,7 +16,7 @@ namespace vernier {
 class ModbusLine {
  public:
   /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; wait: for an answer. Null with
-  /// `error` set where the device cannot be used. setup.
+  /// `error` set if the device cannot be used. setup.
   static std::shared_ptr<ModbusLine> rtu(const std::string& device, int baud, char parity, TimeUs wait,
                                          std::string& error);
   /// address: numeric. A peer that is not there is no error: it is tried again with each reading. setup.

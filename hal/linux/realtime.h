@@ -16,7 +16,7 @@ struct RealtimeGrant {
 /// setup.
 RealtimeGrant become_realtime(int priority) noexcept;
 
-/// Gives the calling thread SCHED_FIFO alone, for one beside the tick. Returns 0 or the errno. setup.
+/// Gives the calling thread only SCHED_FIFO, for a thread beside the tick. Returns 0 or the errno. setup.
 int become_realtime_thread(int priority) noexcept;
 
 /// Threads made from now on have stacks of 1 MB, in the place of 8 that would all be locked in memory. setup.

@@ -20,7 +20,7 @@ class SysfsAttribute {
   SysfsAttribute& operator=(SysfsAttribute&& other) noexcept;
   ~SysfsAttribute();
 
-  /// Has it to itself from now on; false where another process does. setup.
+  /// Takes it for exclusive use; false if another process has it. setup.
   bool lock() noexcept;
 
   /// Writes the number and a line feed. kRefused: the driver or the device refused. realtime, if the bus of

@@ -26,11 +26,11 @@ class AnalogueChain {
   std::int64_t zero_code() const { return zero_code_; }
   std::int64_t last_code() const { return 2 * zero_code_; }
 
-  /// Nearest code, held at the first and last.
+  /// Nearest code, limited to the first and last.
   std::int64_t code_for(AxisTravel correction_nm) const {
     return std::clamp<std::int64_t>(wanted_code(correction_nm), 0, last_code());
   }
-  /// Does the correction lie beyond the codes?
+  /// True if the correction is beyond the codes.
   bool saturates(AxisTravel correction_nm) const {
     return wanted_code(correction_nm) != code_for(correction_nm);
   }
