@@ -15,7 +15,7 @@ void add_registry(CLI::App& command, std::string& place);
 /// The registry with the given name; a file that does not exist is created. Throws InputError if no name is
 /// given, or if the registry is not available. tool.
 registry::Registry make_registry(const std::string& place);
-/// ... which is there already: a misspelt file is refused. tool.
+/// ... which exists already: a misspelt file name is refused. tool.
 registry::Registry open_registry(const std::string& place);
 
 /// The time in us since 1970 that a user wrote, or `otherwise` if the text is empty. Throws InputError if it

@@ -96,7 +96,7 @@ std::string why_not(const plan::AccuracyPlan& plan, double asked_um) {
   if (plan.floor_um > asked_um)
     return fmt::format(
         "U95 of {:g} um cannot be reached: no number of such readings goes below {:.3g} um; they do "
-        "not distinguish {}",
+        "not determine {}",
         asked_um, plan.floor_um, named(plan.unseen));
   return fmt::format(
       "U95 of {:g} um is not reached: {} poses lead to {:.3g} um, limited by {}; more --points, or "
