@@ -8,7 +8,7 @@
 
 namespace vernier::fleet {
 
-/// A line for people: what began, ended or failed.
+/// A line for people: start, end or failure of something.
 using Say = std::function<void(const std::string&)>;
 
 /// Reads boards, keeps their data in a spool, and publishes them as a Sparkplug edge node whose devices are

@@ -15,8 +15,8 @@ struct Broker {
   std::string authority;  // file (PEM) of the authority that signs the broker; ssl only
 };
 
-/// Throws InputError where an address has not the form tcp://HOST[:PORT] or ssl://HOST[:PORT]: no patience
-/// would find such a broker.
+/// Throws InputError if an address has not the form tcp://HOST[:PORT] or ssl://HOST[:PORT], because no retry
+/// can find such a broker.
 void require_broker_address(const std::string& address);
 
 struct MqttMessage {

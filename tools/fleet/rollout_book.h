@@ -30,8 +30,8 @@ struct RolloutState {
   std::uint64_t issued = 0;  // time of signing of the last trial of this rollout; 0: no trial
 };
 
-/// A rollout's rows of the registry. They are written while the lock of the machine is held, and else not.
-/// All calls throw DatabaseError; those that write throw LockLost. tool.
+/// A rollout's rows of the registry. They are written only while the lock of the machine is held. All calls
+/// throw DatabaseError; those that write throw LockLost. tool.
 class RolloutBook {
  public:
   RolloutBook(registry::Registry& registry, std::string name, const registry::MachineLocks& locks)

@@ -11,7 +11,7 @@
 
 namespace vernier::fleet {
 
-/// A device's data as they came: whose, through which gateway, what.
+/// A device's data as received: the machine, the gateway and the data.
 struct DeviceData {
   std::string gateway, machine;
   SparkplugPayload payload;

@@ -27,7 +27,7 @@ class Spool {
   /// that fit. Throws InputError if the file cannot be opened or created.
   Spool(const std::string& file, const std::string& owner, std::uint64_t most);
 
-  /// Of this spool among all: fresh where the file was made, so that numbers never mean two things.
+  /// Unique id of this spool: new if the file was created, so that a number never has two meanings.
   const std::string& id() const { return id_; }
   /// Writes records with numbers, and removes those up to stored(), in one transaction. Throws DatabaseError.
   void take(std::vector<SpoolRecord>& records);
@@ -48,10 +48,10 @@ class Spool {
   std::uint64_t next_birth();
 
  private:
-  /// Of a file beside the store (flock(2)), so that others may look into the store meanwhile.
+  /// Lock of a file beside the store (flock(2)): others may read the store meanwhile.
   class Lock {
    public:
-    /// Throws InputError where another process, or this one, has it.
+    /// Throws InputError if another process, or this one, has it.
     explicit Lock(const std::string& file);
     ~Lock();
     Lock(const Lock&) = delete;
