@@ -14,7 +14,7 @@ struct AlikeOptions {
   double false_alarms = 0.01;  // probability of reporting any drift, common or individual, if none exists
 };
 
-/// A machine that drifts beside the others; the quantity's unit.
+/// A machine with an individual drift; the quantity's unit.
 struct OwnDrift {
   std::string machine;
   double per_day = 0, std = 0;

@@ -18,8 +18,8 @@ class DatabaseError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A database that holds the registry: statements are written once, in what SQLite (3.35 on) and PostgreSQL
-/// share. tool.
+/// A database that contains the registry. Statements are written once, in the common syntax of SQLite (3.35
+/// on) and PostgreSQL. tool.
 class Database {
  public:
   virtual ~Database() = default;

@@ -43,7 +43,7 @@ class JobQueue {
   /// Records the end of a job (status 0: done); false: the job no longer belongs to this attempt, and no
   /// entry was written.
   bool finish(const Job& job, std::int64_t status, const std::string& said);
-  /// Is anything of the batch left that is not done or failed?
+  /// True if the batch has a job that is neither done nor failed.
   bool is_open(const std::string& batch);
   /// Jobs that failed wait again; how many.
   std::int64_t again(const std::string& batch);

@@ -11,7 +11,7 @@ namespace vernier::registry {
 /// exist. Throws InputError if it cannot be reached or is not a database.
 std::unique_ptr<Database> open_database(const std::string& place);
 
-/// Is this the address of a server, which may be away for a while?
+/// True if this is the address of a server, which may be unavailable for a while.
 bool is_server(const std::string& place);
 
 }  // namespace vernier::registry

@@ -86,7 +86,7 @@ class Registry {
   bool trust_board_key(const std::string& machine, const std::string& key);
 
   void put(const RecordedCalibration& calibration);
-  /// Newest first; of all machines where `machine` is empty.
+  /// Newest first; of all machines if `machine` is empty.
   std::vector<RecordedCalibration> calibrations(const std::string& machine);
 
   /// False: this check was there already.

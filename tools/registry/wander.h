@@ -6,8 +6,8 @@
 
 namespace vernier::registry {
 
-/// Readings of one machine in the order of their time: rows of the model, days, and what their stated
-/// uncertainty is to that of the fleet.
+/// Readings of one machine in the order of their time: rows of the model, days, and their stated uncertainty
+/// divided by that of the fleet.
 struct WanderSeries {
   std::vector<Eigen::Index> row;
   std::vector<double> days, weight;
