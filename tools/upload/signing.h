@@ -22,7 +22,7 @@ using BoardPublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
 /// 64 hexadecimal digits, as `vernierd` and `vernier board identify` print them. tool.
 std::string board_key_text(const BoardPublicKey& key);
 /// The key in a text: 64 hexadecimal digits, or the name of a file `identity.pub` of a board's store. Throws
-/// InputError where the text is neither. tool.
+/// InputError if the text is neither. tool.
 BoardPublicKey parse_board_key(const std::string& text);
 /// 32 bytes from the system's random numbers. tool.
 std::array<std::uint8_t, 32> fresh_nonce();
