@@ -50,7 +50,7 @@ struct SafetySheet {
              const std::vector<SafetyRule>& accepted);
   bool ok() const;
   std::uint32_t accepted_mask() const;  // bit n: rule n
-  /// One line: the rule that fails by most, its value, limit and culprit. Empty where all is well.
+  /// One line: the rule with the largest excess, its value, limit and culprit. Empty if all rules hold.
   std::string refusal() const;
 };
 
