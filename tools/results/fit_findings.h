@@ -22,8 +22,8 @@ void add_findings(text::Assurance& word, const model::Machine& machine);
 /// (if any), no reading is missing and none is disturbed.
 text::Assurance assurance_of(const fit::FitResult& result);
 
-/// May this correction run? The rules of the sheet; those that the machine file cannot answer are not
-/// covered.
+/// Tests whether this correction may run, by the rules of the sheet. Rules that the machine file cannot
+/// answer are not covered.
 text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Machine& machine,
                              text::AssuranceKind kind);
 

@@ -9,7 +9,7 @@
 
 namespace vernier::results {
 
-/// One replay of the same measurement through the loop, with what stood between firmware and machine.
+/// One replay of the same measurement through the loop, with the simulated path between firmware and machine.
 struct ReplayStep {
   std::string label;  // "one image unit", "8 bit converter"
   simulate::ReplayResult result;

@@ -16,7 +16,8 @@ nlohmann::ordered_json compare_json(const model::Machine& machine, const model::
                                     const Eigen::VectorXd& residual);
 
 /// Stretches of rows of one role within each run, in the order of the file: {run, role, first_line,
-/// last_line, n_obs, rms_um}. Shows where in a run a model holds (an overshoot arc, a warm-up, a late row).
+/// last_line, n_obs, rms_um}. Shows in which part of a run a model is valid (an overshoot arc, a warm-up, a
+/// late row).
 nlohmann::ordered_json stretches_json(const model::Measurement& measurement, const Eigen::VectorXd& residual);
 
 /// Rows inside and outside the domains of validity of learned terms: {domain, quantity, low, high (trained;
