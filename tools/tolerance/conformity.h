@@ -40,7 +40,7 @@ struct Expectation {
   /// end is that of the wavelength with the widest interval.
   double low = 0, high = 0;
   double u95 = 0;  // half of that interval
-  /// Of conformity; where the model lacks something, of the wavelength that is least favourable to the
+  /// Probability of conformity; with a discrepancy, that of the wavelength that is least favourable to the
   /// verdict.
   std::optional<double> probability;
   std::optional<PartVerdict> verdict;
