@@ -22,8 +22,8 @@ struct BHeadMachine {
   model::States states(const std::vector<JointPose>& joints) const;
 };
 
-/// Checks the nominal chain against the closed direct solution at poses over the ranges of the axes. Throws
-/// InputError where an axis is missing or the chain is another. tool.
+/// Checks the nominal chain against the closed forward kinematics at poses over the ranges of the axes.
+/// Throws InputError if an axis is missing or the chain is another. tool.
 BHeadMachine b_head_machine(model::Machine machine);
 
 /// tables/machines/five_axis_bhead_ctable.xml as it was when the program was built: the machine of the paper

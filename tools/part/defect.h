@@ -8,7 +8,7 @@
 
 namespace vernier::part {
 
-/// A point of the part: flank 0 (A) or 1 (B), and where on it.
+/// A point of the part: flank 0 (A) or 1 (B), and its position on the flank.
 struct PartPoint {
   std::size_t flank = 0;
   double u = 0, v = 0;
