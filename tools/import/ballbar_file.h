@@ -33,7 +33,7 @@ struct RunClock {
   double turn_samples = 0;         // of a whole turn
 };
 
-/// One pass over the circle in one sense, overshoot arcs included.
+/// One pass over the circle in one direction, overshoot arcs included.
 struct BallbarRun {
   std::string label;      // "CCW", "CW"
   int direction = 0;      // +1 counter-clockwise (from +A towards +B), -1 clockwise

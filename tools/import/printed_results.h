@@ -9,7 +9,7 @@
 
 namespace vernier::importer {
 
-/// A result that the file prints beside the same one computed here, both in the printed unit.
+/// A result that the file prints, and the same one computed here, both in the printed unit.
 struct PrintedResult {
   std::string place;  // "CCW", "ISO230_4 1996" …
   std::string name, unit;

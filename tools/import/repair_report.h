@@ -9,7 +9,7 @@
 
 namespace vernier::importer {
 
-/// A repaired file and what repeats in it, before and after.
+/// A repaired file and its repeating error, before and after.
 struct RepairReport {
   TimeRepair repair;
   std::vector<RepeatingError> before,

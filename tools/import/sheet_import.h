@@ -35,7 +35,9 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
 std::string how_read(const sheet::Sheet& sheet);
 /// "x[mm]", "position of X + this, [um]", "left out".
 std::string becomes(const SheetColumn& column);
-/// [{heading, use: column | deviation | left, name, unit, why}], sign where a deviation's was turned.
+/// [{heading, use: column
+/// deviation
+/// left, name, unit, why}], with sign if the sign of a deviation was reversed.
 nlohmann::ordered_json columns_json(const SheetReading& reading);
 
 }  // namespace vernier::importer
