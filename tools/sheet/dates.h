@@ -9,7 +9,7 @@ namespace vernier::sheet {
 /// written, "dd.mm.yyyy"; quoted or escaped text and text in brackets is ignored, except [h] [m] [s].
 bool is_date_format(std::string_view code);
 
-/// Is a built-in format of this number one of dates or times (section 18.8.30, all languages)?
+/// True if a built-in format of this number shows dates or times (section 18.8.30, all languages).
 bool is_date_format(unsigned id);
 
 /// A serial number of days as "2026-03-04", "2026-03-04T12:30:00", below one day "12:30:00". from_1904: of a

@@ -31,7 +31,7 @@ struct Sheet {
   std::vector<std::size_t> line;               // 1-based, of each row
 };
 
-/// Is this a workbook (a zip with a sheet in it) by its first bytes?
+/// True for a workbook (a zip with a sheet in it), by its first bytes.
 bool is_workbook(std::string_view bytes);
 
 /// Reads text or workbook. Throws InputError with file, line and word: an open quote, no rows, no such sheet,
