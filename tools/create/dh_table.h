@@ -12,7 +12,7 @@ struct DhRow {
   double theta = 0, d = 0, a = 0, alpha = 0;  // deg, mm, mm, deg
   bool prismatic = false;
   double beta = 0;  // deg
-  /// Is the next joint's axis parallel to this one's, or nearly so?
+  /// True if the next joint's axis is parallel to the axis of this one, or nearly so.
   bool parallel() const;
   bool operator==(const DhRow&) const = default;
 };

@@ -31,8 +31,8 @@ struct MachinePlan {
   std::array<double, 3> tool{};                   // its point in the frame of the last axis of its side, mm
   std::vector<DhRow> arm;                         // of a robot, a row a joint; else empty
   std::array<double, 6> base{};                   // BaseShift: chain base in the measuring frame, mm, deg
-  /// Only what an instrument along each axis sees is free in a fit: squareness, straightness and angles stay
-  /// 0.
+  /// Only errors that an instrument along each axis measures are free in a fit: squareness, straightness and
+  /// angles stay 0.
   bool positioning_only = false;
 };
 
