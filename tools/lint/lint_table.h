@@ -46,7 +46,7 @@ class LintNames {
   bool is_input(const std::string& name) const {
     return machine_ != nullptr && machine_->find_input(name).has_value();
   }
-  /// Is a column of this table a reading (format::is_reading)?
+  /// True if a column of this table is a reading (format::is_reading).
   bool is_reading(const LintTable& table, const LintColumn& column) const;
   /// The unit that a column of this name needs, as a base unit; "" without a unit; "?" any.
   std::string needed_unit(const std::string& name) const;
