@@ -25,7 +25,7 @@ struct JudgedValue {
   double tolerance = 0;
 };
 
-/// Digits behind the point of what commands print, um or arcsec.
+/// Decimals in the output of commands, um or arcsec.
 inline constexpr int kPrintedDigits = 3;
 
 struct JudgedText {
@@ -35,7 +35,7 @@ struct JudgedText {
 /// numbers to agree with the verdict. A missing value is "–".
 JudgedText judged_text(const JudgedValue& one, int least);
 
-/// Holds where every tolerance that was given is met. unit: of the numbers, for the sentences. tool.
+/// Holds if every given tolerance is met. unit: of the numbers, for the sentences. tool.
 text::Assurance assurance_of(const std::vector<JudgedValue>& all, const std::string& unit);
 
 }  // namespace vernier::evaluate

@@ -29,7 +29,7 @@ struct TargetResult {
 /// measured.
 struct PositioningResult {
   std::vector<TargetResult> targets;                                         // in the order of positions
-  std::array<std::optional<double>, 2> accuracy, systematic, repeatability;  // A, E, R of one sense
+  std::array<std::optional<double>, 2> accuracy, systematic, repeatability;  // A, E, R of one direction
   std::optional<double> accuracy_both, systematic_both, repeatability_both;  // A, E, R
   std::optional<double> reversal, mean_reversal, range;                      // B, mean B, M
 };
