@@ -19,7 +19,7 @@ struct ProgramStretch {
 struct PartProgramOptions {
   /// How far the written path may leave the one that a correction at every moment would make, mm.
   double deviation_mm = 0.0005;
-  /// Machine position of the program's zero, by axis: 0 where the program's coordinates are the machine's.
+  /// Machine position of the program's zero, by axis: 0 if the program uses machine coordinates.
   std::vector<double> zero;
   int digits = 5;                                    // behind the point
   bool arcs = true;                                  // G2 and G3 are written; else chords alone
