@@ -15,8 +15,8 @@ struct ScrewPoint {
   double forward_trim = 0, reverse_trim = 0;
 };
 
-/// Type 0 holds where the axis really is (nominal, forward, reverse; the controller makes trim = nominal -
-/// actual of it), type 1 the trims themselves. Source: LinuxCNC src/emc/motion/usrmotintf.cc, usrmotLoadComp.
+/// Type 0 contains the actual positions of the axis (nominal, forward, reverse; the controller makes trim =
+/// nominal - actual of it), type 1 the trims. Source: LinuxCNC src/emc/motion/usrmotintf.cc, usrmotLoadComp.
 enum class ScrewType { kActual = 0, kTrim = 1 };
 
 /// Lines that the controller keeps at most (EMCMOT_COMP_SIZE).

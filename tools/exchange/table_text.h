@@ -19,7 +19,7 @@ void check_used(const model::Machine& machine, const model::Table& table);
 model::Table empty_table(const model::Machine& machine, std::size_t axis,
                          const std::vector<double>& positions);
 
-/// Rounds away what binary arithmetic adds to a number of at most nine printed decimals.
+/// Removes the rounding of binary arithmetic from a number of at most nine printed decimals.
 double nine_decimals(double value);
 
 }  // namespace vernier::exchange
