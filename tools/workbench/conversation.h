@@ -10,8 +10,8 @@ namespace vernier::workbench {
 /// Texts as one message between two processes.
 using Message = std::vector<std::string>;
 
-/// The next message of a stream; false at its end, after `patience_s` without a byte (0: waits for ever), and
-/// where more comes than any message has. tool.
+/// The next message of a stream. False at its end, after `patience_s` without a byte (0: waits for ever), and
+/// if more bytes come than a message can have. tool.
 bool read_message(int stream, double patience_s, Message& message);
 /// False if the other end does not take it. tool.
 bool write_message(int stream, double patience_s, const Message& message);

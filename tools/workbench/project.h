@@ -24,21 +24,21 @@ struct ProjectFile {
 /// bytes, without control characters, '\' and ':', not starting with '.', '-', '~' or a blank. tool.
 bool is_project_name(std::string_view name);
 
-/// Throws InputError with the name where `path` is a symbolic link, a device or a pipe. tool.
+/// Throws InputError with the name if `path` is a symbolic link, a device or a pipe. tool.
 void refuse_special(const std::filesystem::path& path, const std::string& name);
 
 /// The folder that the workbench reads and writes; it accesses no file outside. Names are checked as above,
 /// and no part of a name may be a symbolic link, a device or a pipe. tool.
 class Project {
  public:
-  /// Throws InputError where `directory` is no folder.
+  /// Throws InputError if `directory` is not a folder.
   explicit Project(const std::string& directory);
 
   const std::filesystem::path& root() const { return root_; }
   /// Path of a file or folder that is there. Throws InputError with the name: no such name, a link, not
   /// there.
   std::filesystem::path existing(const std::string& name) const;
-  /// Path that may be written; it need not be there. Throws InputError as above, and where a folder holds a
+  /// Path that may be written; it need not exist. Throws InputError as above, and if a folder contains a
   /// link, a device or a pipe.
   std::filesystem::path writable(const std::string& name) const;
   /// Writes a file; a reader sees the old one or the whole new one.

@@ -35,7 +35,7 @@ ApiReply blob_reply(std::string bytes);
 /// project's folder is removed from messages. tool.
 ApiReply reply_of(const Project& project, const std::function<ApiReply()>& answer);
 
-/// A body that holds a JSON object. This and what follows throws InputError with the word.
+/// A body that contains a JSON object. This function and the following ones throw InputError with the word.
 nlohmann::json body_json(const ApiRequest& request);
 std::string text_at(const nlohmann::json& json, const char* key);
 std::vector<std::string> texts_at(const nlohmann::json& json, const char* key);
