@@ -45,7 +45,7 @@ class Assurance {
 
   /// The rule is met if value <= limit. Throws std::logic_error if either is not finite.
   void at_most(std::string rule, double value, double limit, std::string text);
-  /// The rule is met where value >= limit. Throws as `at_most`.
+  /// The rule is met if value >= limit. Throws as `at_most`.
   void at_least(std::string rule, double value, double limit, std::string text);
   /// The rule is met if `ok` is true: value is 0 then, else 1; the limit is 0.
   void require(std::string rule, bool ok, std::string text);
@@ -54,7 +54,7 @@ class Assurance {
 
   AssuranceKind kind() const { return kind_; }
   bool holds() const;
-  /// The rules that are not met; where all are, all of them.
+  /// The rules that are not met; if all are met, all rules.
   std::vector<AssuranceRule> because() const;
   const std::vector<std::string>& uncovered() const { return uncovered_; }
 

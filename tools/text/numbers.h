@@ -17,7 +17,7 @@ std::optional<double> parse_number(std::string_view text);
 /// too large.
 std::optional<std::size_t> parse_count(std::string_view text);
 
-/// Is this a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII)?
+/// True for a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII).
 bool is_name(std::string_view text);
 
 /// Sixteen hexadecimal digits, as fingerprints of images are shown.

@@ -19,8 +19,7 @@ struct AttributeSpan {
 /// (a parser has accepted it). tool.
 std::vector<AttributeSpan> attribute_spans(std::string_view text, std::size_t offset);
 
-/// Offset just behind the last attribute (or the name) of that start tag: where another attribute can be
-/// written.
+/// Offset just after the last attribute (or the name) of that start tag: place for another attribute.
 std::size_t end_of_attributes(std::string_view text, std::size_t offset);
 
 /// 1-based line of an offset.
