@@ -38,7 +38,7 @@ enum class ReadingForm : std::uint8_t {
   kInclination
 };
 
-/// One form of reading. Its columns are in columns.h: those that hold the reading, and those beside it.
+/// One form of reading. Its columns are in columns.h: those with the reading, and those that belong to it.
 struct ReadingFormEntry {
   ReadingForm form;
   bool rotation;        // the reading is an angle, deg; else a length, mm
