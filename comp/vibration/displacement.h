@@ -20,8 +20,8 @@ struct Factor {
   unsigned shift = 31;
 };
 
-/// Displacement from acceleration within a band: two sections s / (s^2 + sqrt(2) w s + w^2) in a row,
-/// w = 2 pi corner: two integrations above the corner, which below it take constants and slopes out.
+/// Displacement from acceleration within a band: two sections s / (s^2 + sqrt(2) w s + w^2) in a row, w = 2
+/// pi corner. They integrate twice above the corner and remove constants and slopes below it.
 ///
 /// Form. Each section keeps v and p = e (sum of v), e = w / rate: v += u - sqrt(2) e v - e p, p += e v. Far
 /// above the corner the two are z^2 / (z - 1)^2; the symmetric k, 1 - 2k, k before them makes that an
