@@ -58,9 +58,9 @@ struct SlotChange {
   SlotRecord record;
 };
 
-/// What the two slots hold, as a pure state machine: it names the record to be stored for a change and takes
-/// the change over only when told that it is stored. A power cut at any byte of any write therefore leaves
-/// the state before the change or the one after it.
+/// The state of the two slots, as a pure state machine: it returns the record to be stored for a change, and
+/// applies the change only after the record is stored. After a power failure at any byte of any write the
+/// state is the one before the change or the one after it.
 ///
 ///   confirmed A ── (image written to B) ── try ──► confirmed A, trial B ── confirm ──► confirmed B
 ///                                                          └──── revert, or a reset ──► confirmed A
