@@ -50,7 +50,7 @@ class AxisMonitor {
   std::uint32_t missing_ = 0;
   TicksQ8 elapsed_{0};        // since the last reading
   std::int64_t claimed_ = 0;  // sum of speeds since the position last changed
-  std::int64_t back_ = 0;     // travel against the sense
+  std::int64_t back_ = 0;     // travel against the direction
   AxisInput state_;
 };
 

@@ -115,8 +115,8 @@ bool introduce(Hatch& hatch, const Introduction& introduction) {
       return true;
     case Attached::kOtherStore:
       std::fputs(
-          "vernier-hal: the component was started with another store, keys or board name: start LinuxCNC "
-          "anew\n",
+          "vernier-hal: the component was started with another store, keys or board name: restart LinuxCNC"
+          "\n",
           stderr);
   }
   return false;
