@@ -45,7 +45,7 @@ void trust_board(registry::FleetMachine& machine) {
   upload::Client board(upload::open_transport(upload::parse_url(machine.url)));
   if (board.info().board.empty())
     throw text::LimitNotMet(machine.url +
-                            ": this board has no name (name in its board file): nothing was entered");
+                            ": this board has no name (set name in its board file): no entry was made");
   machine.board = board.info().board;
   const auto key = board.proved_key();
   machine.board_key = key ? upload::board_key_text(*key) : "";
@@ -73,7 +73,7 @@ void enter_board(const AddArguments& arguments, registry::FleetMachine& machine)
 void refuse_known_key(const registry::FleetMachine& machine, const std::vector<registry::FleetMachine>& all) {
   for (const registry::FleetMachine& other : all)
     if (!machine.board_key.empty() && other.name != machine.name && other.board_key == machine.board_key)
-      throw text::LimitNotMet("this is the board of " + other.name + ", by its key: nothing was entered");
+      throw text::LimitNotMet("this is the board of " + other.name + ", by its key: no entry was made");
 }
 
 void run_add(const AddArguments& arguments) {
@@ -196,7 +196,7 @@ void run_status(const ListArguments& arguments) {
     for (const auto& [name, value] : one.values) fmt::print(out, "  {:<40} {}\n", name, value);
   }
   if (!arguments.machine.empty() && all.empty())
-    throw text::InputError({}, arguments.machine, "nothing was heard of this machine yet");
+    throw text::InputError({}, arguments.machine, "no data of this machine received yet");
   write_json(arguments.json, {{"machines", all}});
 }
 

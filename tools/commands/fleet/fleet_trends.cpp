@@ -118,7 +118,7 @@ void add_trends(CLI::App& fleet) {
   command->footer(
       "reading = level of the machine + common curve of time + own rate x time, weighted by the stated\n"
       "uncertainties; individual rates are added one by one if an F test is significant. Readings count as\n"
-      "independent and normal. Exit status 0 done, whatever the finding; 1 bad input.");
+      "independent and normal. Exit status 0 done, for every finding; 1 bad input.");
   command->callback([alike] { run_alike(*alike); });
 }
 

@@ -95,7 +95,8 @@ text::Assurance assurance_of(const model::Machine& machine, const tolerance::Par
     word.not_covered("The part is outside the measured range: " + range + ".");
   for (const std::string& name : result.stale) word.not_covered(name + " was set by hand since the fit.");
   if (arguments.process_um <= 0) word.not_covered("Repeatability, tool and cutting: no --process was given.");
-  if (!result.open_known) word.not_covered("What the readings left open: the machine file does not say.");
+  if (!result.open_known)
+    word.not_covered("Errors that the readings did not determine: the machine file does not list them.");
   return word;
 }
 

@@ -205,7 +205,7 @@ void register_new(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "The type of the machine sets the side of each axis, printed as a line; --tool-side and\n"
-      "--work-side say otherwise. A robot without rows is six joints with the lengths of a\n"
+      "--work-side change it. A robot without rows is six joints with the lengths of a\n"
       "UR10e. A delta or hexapod cannot be written: its chain closes loops.");
   command->callback([arguments, command] { run_new(*arguments, *command); });
 }

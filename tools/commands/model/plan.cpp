@@ -263,7 +263,7 @@ void register_plan(CLI::App& vernier) {
   command->footer(
       "With MEAS and --accuracy: fits, then chooses the next poses one by one that lower U95 (k = 2) over "
       "the\n"
-      "volume, a region or a part's features most, until it is reached; exit status 2 where it cannot be.\n"
+      "volume, a region or a part's features most, until it is reached; exit status 2 if it cannot be.\n"
       "--separate: fits the model with either effect, then chooses the rows whose readings differ most after "
       "the wrong\n"
       "one and all free parameters were fitted again (T-optimal, the worse of both directions). Points: as\n"

@@ -306,8 +306,7 @@ void register_feature(CLI::App& vernier) {
   command->add_option("--size", arguments->size, "block: X,Y in mm")->delimiter(',')->expected(2);
   command->add_option("--expansion", arguments->expansion,
                       "of the workpiece, um/(m K): sizes are those at 20 degC");
-  command->add_option("--temperature", arguments->temperature,
-                      "of all rows, degC, where there is no column T");
+  command->add_option("--temperature", arguments->temperature, "of all rows, degC, without a column T");
   command->add_option("--expansion-std", arguments->expansion_std, "its standard uncertainty, um/(m K)")
       ->capture_default_str();
   command->add_option("--temperature-std", arguments->temperature_std, "K")->capture_default_str();
