@@ -197,8 +197,8 @@ class Offerer {
       result_.rows.candidates[i].value[at] = spread.pick(candidate_levels_[i]);
   }
 
-  /// The template's motion, at another speed and in either sense: the same path, so that accelerations go
-  /// with the square.
+  /// The template's motion, at another speed and in either direction: the same path, so that accelerations
+  /// are proportional to the square of the speed.
   void draw_motion(Eigen::Index at, Spread& spread) {
     model::States& s = result_.rows.states;
     const double speed = spread.pick(speeds_), sense = spread.next() < 0.5 ? -1 : 1;

@@ -106,7 +106,7 @@ Explanation::Contrast Explanation::speed() const {
 Explanation::Contrast Explanation::sense(std::size_t axis) const {
   Contrast c;
   const model::Column& old = existing_.states.direction[axis];
-  constexpr double kOneSided = 0.9;  // mean of the senses from which on rows were taken in one sense
+  constexpr double kOneSided = 0.9;  // mean direction above which rows count as taken in one direction
   const double usual = old.mean();
   if (std::abs(usual) < kOneSided) return c;
   std::vector<std::size_t> which;
