@@ -29,7 +29,7 @@ Values run_values(const CircularPassResult& pass) {
 
 void one_sense(const CircularPassResult& pass, Values& values) {
   const std::string end = pass.direction > 0 ? "_CCW" : "_CW";
-  if (values.contains("AF_CIRCULAR_DEVIATION" + end)) return;  // of the first pass in that sense
+  if (values.contains("AF_CIRCULAR_DEVIATION" + end)) return;  // of the first pass in that direction
   values["AF_CIRCULAR_DEVIATION" + end] = values["AF_RADIAL_DEVIATION" + end] = pass.circular_deviation_um;
   values["AF_MAX_CIRCULAR_DEVIATION" + end] = pass.max_circular_um;
   values["AF_MIN_CIRCULAR_DEVIATION" + end] = pass.min_circular_um;

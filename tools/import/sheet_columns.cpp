@@ -247,8 +247,8 @@ void leave(SheetColumn& column, const std::string& why) {
   column.why = why;
 }
 
-/// The axes that were measured along: a sense without a name is that of the only one, wherever the others
-/// stood.
+/// The measured axes: a direction without an axis belongs to the only measured axis, also if others have
+/// positions.
 std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
                                     const std::set<std::string>& axes,
                                     const std::set<std::string>& measured) {

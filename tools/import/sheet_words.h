@@ -17,7 +17,7 @@ bool says_target(const std::string& word);
 bool says_measured(const std::string& word);
 bool says_deviation(const std::string& word);
 
-/// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no sense. tool.
+/// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no direction. tool.
 int sense_said(std::string_view word);
 
 /// True if a deviation is described as nominal - actual: "(nominal-actual)", "= Soll - Ist". `whole`: also if
