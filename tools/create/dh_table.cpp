@@ -89,8 +89,9 @@ DhRow parse_dh_row(const std::string& words) {
     parts.erase(parts.begin());
   }
   if (parts.size() != 4)
-    throw text::InputError("\"" + words +
-                           "\": a joint is theta,d,a,alpha (deg,mm,mm,deg; P, before them where it slides)");
+    throw text::InputError(
+        "\"" + words +
+        "\": a joint is theta,d,a,alpha (deg,mm,mm,deg; P, before them for a prismatic joint)");
   row.theta = number_in(parts[0], place, "theta");
   row.d = number_in(parts[1], place, "d");
   row.a = number_in(parts[2], place, "a");
