@@ -146,7 +146,7 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
       sense = std::isnan(senses[row]) ? 0 : senses[row];
       if (sense != 0 && std::abs(sense) != 1)
         throw text::InputError(reader.place(static_cast<std::size_t>(row)), text::number_text(sense),
-                               "an approach direction is 1 or -1 (0: nothing moved)");
+                               "an approach direction is 1 or -1 (0: no motion)");
     } else if (row > 0) {
       // At the far end the same target is approached again from the other side.
       const double before = position[row - 1];

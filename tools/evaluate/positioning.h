@@ -34,7 +34,7 @@ struct PositioningResult {
   std::optional<double> reversal, mean_reversal, range;                      // B, mean B, M
 };
 
-/// Evaluates readings; each target that was approached in a sense has two readings in it at least. Throws
+/// Evaluates readings. A target that was approached in a direction needs at least two readings in it. Throws
 /// InputError: fewer than two targets, a single reading. tool.
 PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readings);
 
