@@ -72,7 +72,7 @@ model::States AxisMotion::along(const ProgramMove& move, const std::vector<doubl
       const double way = slope[static_cast<Index>(i)];
       states.axis[i][row] = point[static_cast<Index>(i)];
       states.velocity[i][row] = path > 0 ? move.feed / 60 * way / path : 0;
-      // At a reversal the slope is 0 and its sign chance: the sense is that of the whole stretch.
+      // At a reversal the slope is 0 and its sign random: the direction is that of the whole stretch.
       states.direction[i][row] = sense_[i];
       if (std::isfinite(turn_[i])) states.since[i][row] = std::abs(point[static_cast<Index>(i)] - turn_[i]);
     }

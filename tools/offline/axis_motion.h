@@ -20,8 +20,8 @@ struct ProgramMove {
   Eigen::VectorXd at(double share) const;
 };
 
-/// The motion that belongs to the places of a program's moves: speeds, senses, and how far each axis has come
-/// since it last turned round.
+/// The motion at the positions of a program's moves: speeds, directions, and the travel of each axis since
+/// its last reversal.
 class AxisMotion {
  public:
   /// at: one row, with the inputs.
