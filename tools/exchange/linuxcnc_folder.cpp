@@ -129,7 +129,7 @@ std::string ini_lines(const model::Machine& machine, const std::string& folder) 
       "[VERNIER]\n"
       "# Where the component runs in the servo thread: right after motion-controller, which `halcmd show "
       "thread` numbers\n"
-      "# from 1; 3 where only motion-command-handler stands before that.\n"
+      "# from 1; 3 if only motion-command-handler is before that.\n"
       "POSITION = 3\n"
       "STORE = {0}/store\n"
       "PUBLIC_KEY = {0}/vernier.pub\n"
