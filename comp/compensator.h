@@ -28,7 +28,7 @@ struct CycleInput {
   VisitCount visit;
 };
 
-/// What a channel reads from the CycleInput.
+/// Source of a channel in the CycleInput.
 enum class ChannelKind : std::uint8_t {
   kPosition = 0,
   kVelocity = 1,
@@ -93,7 +93,7 @@ struct Deviation {
 struct Correction {
   std::int32_t counts = 0;
 };
-/// The only place where a deviation turns into a correction. -INT32_MIN becomes INT32_MAX. realtime.
+/// The only place that converts a deviation to a correction. -INT32_MIN becomes INT32_MAX. realtime.
 constexpr Correction correction_for(Deviation deviation) noexcept {
   return Correction{deviation.counts == INT32_MIN ? INT32_MAX : -deviation.counts};
 }
@@ -120,7 +120,7 @@ std::int32_t channel_value(const Channel& channel, std::int64_t value) noexcept;
 
 struct ShareProgram;
 
-/// What a tick began with: from it the tick can be executed again elsewhere.
+/// Start values of a tick, with which the tick can be executed again elsewhere.
 struct EquationState {
   static constexpr std::uint32_t kMostChannels = 256;  // of a program whose shares can be shown
   std::uint32_t channel_count = 0, starting = 0;
@@ -152,8 +152,8 @@ class Compensator {
   /// Forgets lags and slew state: the next step starts from zero correction. setup.
   void reset() noexcept;
 
-  /// What the last step began with; a program of more channels than fit gives none. Copies the channels and
-  /// lags that there are. realtime.
+  /// The channels and lags at the start of the last step; empty for a program with more channels than fit.
+  /// Copies only existing channels and lags. realtime.
   void state(EquationState& state) const noexcept;
 
   /// Runs the printed form instead of executing the program: the same corrections to the last bit, in a sixth

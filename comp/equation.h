@@ -19,8 +19,9 @@ constexpr std::uint32_t kMaxTables = 64;
 constexpr std::int32_t kMaxFactor = std::int32_t{1} << 30;
 constexpr unsigned kMaxShift = 61;
 
-/// What an instruction does with its operands a, b, c (registers, or an index where said) and immediates k,
-/// l. All registers are int32 in a binary format that the compiler chose and that this machine need not know.
+/// Operation of an instruction on its operands a, b, c (registers, or an index where stated) and immediates
+/// k, l. All registers are int32 in a binary format that the compiler chose; this machine does not need to
+/// know it.
 enum class OpCode : std::uint8_t {
   kLinear = 0,    // (a*k + b*l) >> shift, rounded
   kMultiply = 1,  // (a*b) >> shift, rounded
@@ -79,7 +80,7 @@ struct Equation {
   constexpr std::uint32_t register_count() const { return first_result() + result_count; }
 };
 
-/// Number of results of an instruction; 0 where its table is not there.
+/// Number of results of an instruction; 0 if its table does not exist.
 constexpr std::uint32_t results_of(const Instruction& step, View<ErrorTable> tables) noexcept {
   if (step.op == OpCode::kSineCosine) return 2;
   if (step.op != OpCode::kLookUp) return 1;

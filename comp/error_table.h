@@ -10,9 +10,8 @@ namespace vernier {
 /// One as a fraction of a segment (Q30), reached at the far end of a segment.
 constexpr std::int32_t kFractionOne = std::int32_t{1} << 30;
 
-/// The stretch between two neighbouring stations of a table, in counts of the position's register.
-/// Nodes stand at the segment's ends: station i is the start of segment i, the last station the end of the
-/// last.
+/// The stretch between two neighbouring stations of a table, in counts of the position's register. Its ends
+/// are nodes: station i is the start of segment i, the last station the end of the last segment.
 struct Segment {
   std::int32_t start;    // position of the station at the near end
   std::uint32_t length;  // to the next station, > 0
@@ -65,8 +64,8 @@ constexpr Segment segment_at(const std::int32_t* record) noexcept {
           static_cast<std::uint32_t>(record[3])};
 }
 
-/// Piece of an evenly spaced table: exact within one count beyond a station, where the two pieces meet in the
-/// same value, and never a piece that starts beyond the position. The last piece beyond the last station.
+/// Piece of an evenly spaced table. Exact within one count beyond a station, where both pieces have the same
+/// value; never a piece that starts beyond the position. Beyond the last station it is the last piece.
 /// position: from the first station on. One multiplication. realtime.
 constexpr std::uint32_t grid_piece(const ErrorTable& table, std::int32_t position) noexcept {
   const std::uint64_t inside =
@@ -75,9 +74,9 @@ constexpr std::uint32_t grid_piece(const ErrorTable& table, std::int32_t positio
   return static_cast<std::uint32_t>(lower<std::uint64_t>(piece, table.pieces - 1));
 }
 
-/// Number of the piece that holds `position`, which is not before the first station; the last one beyond the
-/// last station. The work depends on the table alone, never on the position: one multiplication where the
-/// stations are even, else a branch-free bisection. realtime.
+/// Number of the piece that contains `position`, which is not before the first station; beyond the last
+/// station it is the last piece. The work depends only on the table, never on the position: one
+/// multiplication if the stations are even, else a branch-free bisection. realtime.
 constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position) noexcept {
   if (table.grid_multiplier != 0) return grid_piece(table, position);
   std::uint32_t base = 0;
@@ -89,9 +88,9 @@ constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position)
   return base;
 }
 
-/// How far `position`, not before its start, lies into the segment, 0..kFractionOne (Q30); held at one beyond
-/// it. Truncates: error < 2^-30 + 2^-31 of the segment, exact at both ends (the verifier accepts no
-/// reciprocal that misses one at the far end). realtime.
+/// Position within the segment as a fraction 0..kFractionOne (Q30), for a position not before its start;
+/// limited to one beyond the end. Truncates: error < 2^-30 + 2^-31 of the segment, exact at both ends (the
+/// verifier accepts no reciprocal that misses one at the far end). realtime.
 constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position) noexcept {
   const std::uint32_t distance =
       static_cast<std::uint32_t>(position) - static_cast<std::uint32_t>(segment.start);
@@ -114,7 +113,7 @@ constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fractio
   return c[0] + narrow(round_shift(first * fraction, 30));
 }
 
-/// Values of kColumns columns of one record. Recursion so that nothing is left of the loop. realtime.
+/// Values of kColumns columns of one record. Recursion, so that the compiler removes the loop. realtime.
 template <unsigned kDegree, unsigned kColumns>
 constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::int32_t* out) noexcept {
   static_assert(kDegree == 1 || kDegree == 3);
@@ -133,7 +132,7 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
   piece_values<kDegree, kColumns>(record + kSegmentWords, fraction_in(segment_at(record), held), out);
 }
 
-/// The same where degree and columns are known only when it runs; the same values. realtime.
+/// The same for degree and columns that are known only at run time; the same values. realtime.
 inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
   const std::int32_t* const record = table.record(piece_of(table, held));
@@ -147,8 +146,9 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
   }
 }
 
-/// position brought into [first, first + period) by whole periods. Exact where the verifier accepted the wrap
-/// for the range of the position: the estimate of the number of periods is then at most one off. realtime.
+/// position brought into [first, first + period) by whole periods. Exact if the verifier accepted the wrap
+/// for the range of the position: the estimate of the number of periods then has an error of one at most.
+/// realtime.
 inline std::int32_t wrapped(const Wrap& wrap, std::int32_t position) noexcept {
   const std::int64_t distance = std::int64_t{position} - wrap.first;
   const std::int64_t periods = (distance * wrap.reciprocal) >> wrap.shift;

@@ -30,15 +30,13 @@ constexpr std::int64_t round_shift(std::int64_t value, unsigned shift) noexcept 
 /// an int32 on every target (proved by the verifier), so that results do not depend on its width.
 using Word = std::int_fast32_t;
 
-/// A value that the caller has proved to fit int32, as a Word: no instruction where that is 64 bits wide.
-/// realtime.
+/// A value that the caller has proved to fit int32, as a Word: no instruction if Word has 64 bits. realtime.
 constexpr Word word_of(std::int64_t value) noexcept { return static_cast<Word>(value); }
 
 /// The low 32 bits of a value that the caller has proved to fit (program verifier). realtime.
 constexpr std::int32_t narrow(std::int64_t value) noexcept { return static_cast<std::int32_t>(value); }
 
-/// value where it fits int32, else the nearest end; `saturated` is set (never cleared) where it did not.
-/// realtime.
+/// Returns value if it fits int32, else the nearest limit; then `saturated` is set (never cleared). realtime.
 constexpr std::int32_t saturate(std::int64_t value, bool& saturated) noexcept {
   const std::int64_t limited = clamp<std::int64_t>(value, INT32_MIN, INT32_MAX);
   saturated = saturated || limited != value;

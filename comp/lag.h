@@ -14,7 +14,7 @@ struct LagState {
 
 constexpr unsigned kLagGuardBits = 30;
 
-/// Puts the state on u, where FORMATS lets a lag start. realtime.
+/// Sets the state to u, as FORMATS defines the start of a lag. realtime.
 constexpr void start_lag(LagState& state, std::int32_t u) noexcept {
   state.value = std::int64_t{u} * (std::int64_t{1} << kLagGuardBits);
 }

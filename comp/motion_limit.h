@@ -17,8 +17,8 @@ struct MotionBounds {
 };
 
 /// Moves a value towards its target within a speed and an acceleration, and brakes in time: it does not
-/// overshoot a target that stands still. |change| <= slew and |change of change| <= acceleration hold for
-/// every sequence of targets while the bounds stay the same; a target that comes nearer than the way to brake
+/// overshoot a target at rest. |change| <= slew and |change of change| <= acceleration hold for every
+/// sequence of targets while the limits do not change. A target that comes nearer than the braking distance
 /// is overshot, within the acceleration.
 class MotionLimit {
  public:
@@ -36,12 +36,12 @@ class MotionLimit {
   }
   constexpr std::int64_t value() const noexcept { return value_; }
   constexpr std::int64_t speed() const noexcept { return speed_; }
-  /// Stands at `value`: a drive that refused to move, or a start.
+  /// Sets the value, with speed zero: a drive that refused to move, or a start.
   constexpr void stop_at(std::int64_t value) noexcept { value_ = value, speed_ = 0; }
 
-  /// A speed from which `way` counts suffice to stop: (v + a/2)^2 <= 2 a way, which is at least the sum
-  /// v + (v - a) + (v - 2a) ... of the ticks to a stop, and at most a/8 more; `way` itself where one tick
-  /// does. way: >= 0; acceleration: as in MotionBounds; both sides stay below 2^64. realtime.
+  /// A speed from which `way` counts are enough to stop: (v + a/2)^2 <= 2 a way. This is at least the sum v +
+  /// (v - a) + (v - 2a) ... of the ticks to a stop, and at most a/8 more; `way` itself if one tick is enough.
+  /// way: >= 0; acceleration: as in MotionBounds; both sides stay below 2^64. realtime.
   static constexpr std::int64_t braking_speed(std::int64_t way, std::int64_t acceleration) noexcept {
     if (way <= acceleration) return way;
     const auto a = static_cast<std::uint64_t>(acceleration);

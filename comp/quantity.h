@@ -5,9 +5,9 @@
 
 namespace vernier {
 
-/// One integer with its unit in the type. Converting to or from a bare integer is always written out; sums
-/// and differences stay in the unit; nothing here saturates or wraps silently on purpose: callers keep
-/// ranges. Context: realtime.
+/// One integer with its unit in the type. Conversion to or from a bare integer is always explicit; sums and
+/// differences keep the unit. No operation saturates or wraps on purpose: callers keep the ranges. Context:
+/// realtime.
 template <class Unit, class Integer>
 struct Quantity {
   using Count = Integer;

@@ -22,23 +22,24 @@ static_assert(sizeof(Share) == 12);
 static_assert(offsetof(Share, axis) == 0 && offsetof(Share, source) == 2 && offsetof(Share, shift) == 4 &&
               offsetof(Share, multiplier) == 8);
 
-/// A second equation beside a program's own: its channels are registers of the tick, its results the shares
-/// of the effects. It has no tables, periods and lags (the tick has looked them up) and is run outside the
-/// tick.
+/// A second equation beside the equation of a program. Its channels are registers of the tick, its results
+/// the shares of the effects. It has no tables, periods and lags (the tick has evaluated them) and runs
+/// outside the tick.
 struct ShareProgram {
   Equation equation;
   View<std::uint16_t> sources;  // for each channel the register of the tick
   View<Share> shares;
 };
 
-/// Proves of a share program what verify_program proves of a program. program: verified; ranges: room for
-/// kMaxRegisters, holds the ranges of the program's registers, gets those of the shares behind them. setup.
+/// Proves for a share program the properties that verify_program proves for a program. program: verified;
+/// ranges: room for kMaxRegisters, contains the ranges of the program's registers, gets those of the shares
+/// after them. setup.
 ProgramFault verify_shares(const ShareProgram& shares, const Program& program, ValueRange* ranges) noexcept;
 
 /// The shares of a tick's correction, before its limits and ramps: one entry per share, in their order. The
-/// tick is executed again from what it began with, so that no work for a display is ever done in a tick. A
-/// VERIFIED share program. state: of the same program; registers: room for kMaxRegisters. False where the
-/// state is of another program. setup.
+/// tick is executed again from its start values: a tick never does work for a display. Needs a VERIFIED share
+/// program. state: of the same program; registers: room for kMaxRegisters. False if the state is of another
+/// program. setup.
 bool run_shares(const ShareProgram& shares, const Program& program, const EquationState& state,
                 std::int32_t* registers, Correction* corrections) noexcept;
 

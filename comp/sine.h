@@ -15,8 +15,8 @@ struct SineCosine {
 /// Largest |result| of sine_cosine: one and its error.
 constexpr std::int32_t kSineLimit = (std::int32_t{1} << 30) + 2;
 
-/// Proved bound of |result - exact| in thousandths of 2^-30: the node's rounding 500 (and 500 times 0.0062
-/// for the other one), what the series leaves out 63, its truncations 50, the last rounding 500.
+/// Proved bound of |result - exact| in thousandths of 2^-30: rounding of the node 500 (and 500 times 0.0062
+/// for the other one), omitted terms of the series 63, its truncations 50, the last rounding 500.
 constexpr std::int32_t kSineErrorMilliLsb = 1120;
 
 /// Sine and cosine of `turns`, 2^-32 turn, any value: the whole circle without an edge. Nearest of 512 nodes,

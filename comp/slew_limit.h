@@ -19,7 +19,7 @@ class SlewLimit {
     return value_;
   }
   constexpr std::int32_t value() const noexcept { return value_; }
-  /// True where the last step could not reach its target.
+  /// True if the last step could not reach its target.
   constexpr bool limiting() const noexcept { return moving_; }
   /// Continues from another value than the present one.
   constexpr void start_from(std::int32_t value) noexcept { value_ = value, moving_ = false; }

@@ -17,19 +17,19 @@ enum class ProgramFault : std::uint8_t {
   kOperand = 6,   // a register that is not written yet, or an index outside
   kShift = 7,     // shift or factor outside the limits of fixed.h
   kOverflow = 8,  // a result that could leave int32
-  kLag = 9,       // a state used twice or not at all
+  kLag = 9,       // a state used twice or never
   kOutput = 10,   // output axis, source, shift or limits out of range
 };
 
-/// All values that a register can take, whatever the inputs.
+/// All values that a register can take, for all inputs.
 struct ValueRange {
   std::int64_t low = 0;
   std::int64_t high = 0;
 };
 
-/// Proves by interval analysis of the integers themselves that no run of the program can overflow, shift
-/// wrongly or read outside. ranges: room for kMaxRegisters, gets the range of every register. Trusts nothing
-/// but the views' own sizes. setup.
+/// Proves by interval analysis of the integers that no run of the program can overflow, shift wrongly or read
+/// outside. ranges: room for kMaxRegisters, gets the range of every register. Assumes only the sizes of the
+/// views. setup.
 ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept;
 
 /// How much a tick of a verified program, or one evaluation of its shares, does: about one for each product
@@ -37,8 +37,8 @@ ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept
 /// that they were measured to have against each other (tests/bench/weights). setup.
 std::uint64_t work_of(const Equation& equation, std::uint32_t channels) noexcept;
 
-/// Lines of memory (64 bytes) that the tables of one run may ask for, none of them in a cache: the steps of a
-/// search that lie further apart than a line, and the record found. setup.
+/// Lines of memory (64 bytes) that the tables of one run may read, with empty caches: the steps of a search
+/// that are further apart than a line, and the record found. setup.
 std::uint64_t lines_of(const Equation& equation) noexcept;
 
 /// Whether grid_piece finds every piece from one count after its start to one before its end; at a station

@@ -4,8 +4,9 @@
 
 namespace vernier {
 
-/// A two's complement integer of 128 bits in two words, for exact sums that outgrow 64: every operation is
-/// modulo 2^128, so a result that fits is exact whatever its parts did. The same bits on every target.
+/// A two's complement integer of 128 bits in two words, for exact sums beyond 64 bits. Every operation is
+/// modulo 2^128: a result that fits is exact even if intermediate values overflow. The same bits on every
+/// target.
 struct Wide {
   std::uint64_t high = 0, low = 0;
   constexpr bool operator==(const Wide&) const = default;

@@ -31,12 +31,12 @@ class AxisReader {
   /// A tick of the firmware begins: readings that came in until now are those of this tick, and stay the same
   /// until the next call. Never waits. realtime.
   virtual void begin_tick() noexcept {}
-  /// Newest reading of an axis. kNoReading: none since the last tick. realtime.
+  /// Newest reading of an axis. kNoReading: no reading since the last tick. realtime.
   virtual HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept = 0;
   /// Feed and curvature, as far as the controller knows them. realtime.
   virtual HalFault read_path(PathReading& reading) noexcept = 0;
-  /// Does the controller itself give velocity, acceleration, sense and since? If not, only position is filled
-  /// and the firmware derives the rest. setup.
+  /// True if the controller itself gives velocity, acceleration, direction and since. If not, only position
+  /// is filled and the firmware derives the rest. setup.
   virtual bool gives_motion() const noexcept = 0;
 };
 

@@ -14,18 +14,18 @@ class CommandHandler {
   /// A reply that takes its time: a medium is at work.
   static constexpr std::uint32_t kLater = UINT32_MAX;
 
-  /// request: any bytes; reply: room for the longest. Returns the bytes of the reply, 0: none, or kLater: the
-  /// link asks later() for it, and serves others meanwhile. setup.
+  /// request: any bytes; reply: room for the longest. Returns the bytes of the reply, 0: no reply, or kLater:
+  /// the link calls later() for it, and serves others meanwhile. setup.
   virtual std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) = 0;
-  /// What later() is to be asked with, right after answer() said kLater. setup.
+  /// Argument for later(), valid right after answer() returned kLater. setup.
   virtual std::uint32_t ticket() const { return 0; }
   /// The deferred reply: its bytes, kLater while it is being made, 0 if no reply is pending. setup.
   virtual std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) {
     return static_cast<void>(ticket), static_cast<void>(reply), 0;
   }
-  /// The live registers for masters that know nothing but registers. setup.
+  /// The live registers for masters that use registers only. setup.
   virtual void fill_registers(std::uint16_t* values) = 0;
-  /// A command from such a master: false where it is none, or cannot be taken now. setup.
+  /// A command from such a master: false if it is not a command, or cannot be taken now. setup.
   virtual bool give(std::uint16_t command) = 0;
 };
 
@@ -37,8 +37,8 @@ class CommandLink {
   /// of one, or does not take its reply. kRefused: the link is broken and has been taken up again, or will be
   /// at the next call; a peer that misbehaves is no fault. setup.
   virtual HalFault serve(CommandHandler& handler, TimeUs wait) noexcept = 0;
-  /// What the operating system can wait on until a request comes: at most `room` handles are put into
-  /// `handles`. Returns how many; 0 where the link has none. setup.
+  /// Handles on which the operating system can wait for a request: at most `room` handles are put into
+  /// `handles`. Returns how many; 0 if the link has no handle. setup.
   virtual std::uint32_t handles(int* handles, std::uint32_t room) const noexcept {
     return static_cast<void>(handles), static_cast<void>(room), 0;
   }

@@ -5,14 +5,14 @@
 
 namespace vernier {
 
-/// Takes corrections to the controller: what is added to the command of an axis.
+/// Sends corrections to the controller: the values that are added to the command of an axis.
 class CorrectionWriter {
  public:
   virtual ~CorrectionWriter() = default;
   /// correction: axis counts (1 nm, or 2^-32 turn). After a fault the device holds the old or the new value.
   /// realtime.
   virtual HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept = 0;
-  /// What the device gives for a correction: itself, or the end of its range. realtime.
+  /// Output of the device for a correction: the same value, or the end of its range. realtime.
   virtual AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept {
     return static_cast<void>(axis), correction;
   }

@@ -8,11 +8,11 @@ namespace vernier {
 class DigitalInput {
  public:
   virtual ~DigitalInput() = default;
-  /// kRefused: the line cannot be read; `on` stays as it is. realtime.
+  /// kRefused: the line cannot be read; `on` is not changed. realtime.
   virtual HalFault read_line(bool& on) noexcept = 0;
 };
 
-/// A line that the board switches: what the machine's controller hears.
+/// A line that the board switches, read by the machine controller.
 class DigitalOutput {
  public:
   virtual ~DigitalOutput() = default;

@@ -4,12 +4,12 @@
 
 namespace vernier {
 
-/// Why a device could not do what it was asked. A read that fails leaves its result untouched.
+/// Reason why a device could not execute a call. A read that fails does not change its result.
 enum class HalFault : std::uint8_t {
   kNone,
-  kNoReading,  // the device answered nothing in time, or has nothing yet
+  kNoReading,  // no answer of the device in time, or no reading yet
   kNoDevice,   // no such axis, input or output on this board
-  kRefused,    // the device or the operating system said no
+  kRefused,    // the device or the operating system refused
 };
 
 }  // namespace vernier

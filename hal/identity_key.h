@@ -14,7 +14,7 @@ class IdentityKey {
   /// The public half, kPublicBytes. setup.
   virtual const std::uint8_t* public_half() const noexcept = 0;
   /// Signs a message (Ed25519ph, RFC 8032). message: size bytes; signature: room for kSignatureBytes.
-  /// kRefused: the library failed and `signature` holds nothing. setup.
+  /// kRefused: the library failed and `signature` is not valid. setup.
   virtual HalFault sign(const std::uint8_t* message, std::uint32_t size,
                         std::uint8_t* signature) noexcept = 0;
 };

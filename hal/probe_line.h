@@ -18,7 +18,7 @@ class ProbeLine {
   /// Oldest edge that has not been read yet. kNoReading: no edge is waiting. kRefused: edges were lost since
   /// the last call; the next call continues with the remaining edges. Never waits. realtime.
   virtual HalFault read_edge(ProbeEdge& edge) noexcept = 0;
-  /// How far `at` may be from the edge; 0 where the device does not know. setup.
+  /// Largest distance of `at` from the edge; 0 if the device does not know. setup.
   virtual InstantNs resolution() const noexcept = 0;
 };
 

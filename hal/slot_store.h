@@ -6,21 +6,21 @@
 
 namespace vernier {
 
-/// A place that survives a power cut: two slots for images, and two places for a small record. A write that
-/// is cut leaves any mixture of old and new bytes in the stretch that was being written, and nothing
-/// elsewhere changes. Never called in the tick.
+/// Memory that survives a power failure: two slots for images, and two places for a small record. A write
+/// that is cut leaves any mixture of old and new bytes in the stretch that was being written; no other byte
+/// changes. Never called in the tick.
 class SlotStore {
  public:
   virtual ~SlotStore() = default;
   /// Bytes that a slot holds.
   virtual std::uint32_t capacity() const noexcept = 0;
-  /// kNoReading: nothing has been written there yet; a flash may answer with what an erased one holds, ones
-  /// throughout. kRefused: less stands there than is asked for, or it cannot be read. setup.
+  /// kNoReading: the slot was never written; a flash may return the contents of an erased one, all bits one.
+  /// kRefused: the slot contains fewer bytes than requested, or it cannot be read. setup.
   virtual HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept = 0;
   /// Returns when the bytes are on the medium. kRefused: they may be there in part. setup.
   virtual HalFault write_record(std::uint32_t place, const std::uint8_t* bytes,
                                 std::uint32_t size) noexcept = 0;
-  /// kNoReading: beyond what was written. setup.
+  /// kNoReading: beyond the written bytes. setup.
   virtual HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
                               std::uint32_t size) noexcept = 0;
   /// kNoDevice: beyond the capacity; kRefused: the medium is full or broken. setup.

@@ -13,7 +13,7 @@ namespace vernier {
 ///                |        +--fault--+--------> RampOut -> Faulted
 ///                +---------------- clear ------------------+
 enum class Mode : std::uint8_t {
-  kBoot = 0,      // nothing has been read
+  kBoot = 0,      // no device has been read
   kChecking = 1,  // waits until all devices have answered without fault for a while
   kReady = 2,     // may be activated; while it brings the correction in it is still Ready
   kActive = 3,    // the whole correction is in
@@ -36,7 +36,7 @@ enum class Fault : std::uint8_t {
   kClock = 7,             // the timer failed, or time jumped
   kReferenceLost = 8,     // an axis does not know its zero any more
   kInputImplausible = 9,  // a sensor reads beyond its plausible range or jumps
-  kImageLost = 10,        // the confirmed image cannot be loaded: nothing is corrected
+  kImageLost = 10,        // the confirmed image cannot be loaded: no correction
 };
 
 /// One line for people: "position-missing".
@@ -49,7 +49,7 @@ enum class Command : std::uint8_t {
   kActivate = 1,
   kDeactivate = 2,
   kClearFault = 3,
-  kHold = 4,     // Active only: every correction stays as it is
+  kHold = 4,     // Active only: every correction keeps its value
   kRelease = 5,  // ends a hold
 };
 constexpr std::uint8_t kCommandCount = static_cast<std::uint8_t>(Command::kRelease) + 1;
@@ -64,14 +64,14 @@ enum class UploadFault : std::uint8_t {
   kIncomplete = 5,       // fewer bytes than announced
   kStore = 6,            // the medium is full or broken
   kNotAnUpload = 7,      // no upload header, or its sizes do not fit
-  kNoKey = 8,            // the board has no public key: nothing can be trusted
+  kNoKey = 8,            // the board has no public key: no signature can be verified
   kForeignKey = 9,       // signed with another key
   kSignature = 10,       // the signature does not fit the bytes
   kImage = 11,           // the image is refused
   kFingerprint = 12,     // the header names another equation
   kForeignMachine = 13,  // the image does not fit the board's wiring
   kOlder = 14,           // not newer than all that were ever tried
-  kNoTrial = 15,         // nothing is on trial
+  kNoTrial = 15,         // no image is on trial
   kTooMuchWork = 16,     // more work than the board does in its share of a tick
   kOtherBoard = 17,      // signed for another board or class
   kSecurity = 18,        // below the security counter

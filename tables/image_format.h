@@ -7,11 +7,9 @@
 #include "comp/shares.h"
 
 /// The only definition of the machine image (`machine.vimg`), shared by compiler, uploader and firmware.
-///
 /// Little-endian. Header (64 bytes), then `section_count` section entries, then the sections, each starting
-/// on a multiple of 8 bytes from the start of the image; gaps are zero. Every section type stands exactly
-/// once, in the order of SectionType. The checksum covers all bytes of the image after the checksum field
-/// itself.
+/// on a multiple of 8 bytes from the start of the image; gaps are zero. Every section type occurs exactly
+/// once, in the order of SectionType. The checksum covers all bytes of the image after the checksum field.
 namespace vernier {
 
 static_assert(std::endian::native == std::endian::little, "images are read in place");
@@ -109,7 +107,7 @@ static_assert(offsetof(AxisRecord, name) == 0 && offsetof(AxisRecord, flags) == 
 struct InputRecord {
   char name[kImageNameBytes];
   char unit[16];
-  std::int64_t reference;  // 1e-6 of the unit: what a missing sensor reads
+  std::int64_t reference;  // 1e-6 of the unit: value for a missing sensor
   std::int64_t low, high;  // 1e-6 of the unit: range that the error bound covers
 };
 static_assert(sizeof(InputRecord) == 64);
@@ -117,7 +115,7 @@ static_assert(offsetof(InputRecord, name) == 0 && offsetof(InputRecord, unit) ==
               offsetof(InputRecord, reference) == 40 && offsetof(InputRecord, low) == 48 &&
               offsetof(InputRecord, high) == 56);
 
-/// What a live display calls a share: "X of transform 2 (tool): BX*dirX", cut where it is longer.
+/// Name of a share in a live display: "X of transform 2 (tool): BX*dirX", cut if it is longer.
 struct ShareName {
   char text[64];
 };

@@ -249,7 +249,7 @@ const char* describe(ImageFault fault) noexcept {
     case ImageFault::kFingerprint:
       return "fingerprint: the equation is not the one the header names";
     case ImageFault::kAxis:
-      return "axis record: name (also one that stands twice), flags or range";
+      return "axis record: name (also a repeated name), flags or range";
     case ImageFault::kInput:
       return "input record: name, unit or range";
     case ImageFault::kRange:

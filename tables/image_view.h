@@ -18,8 +18,8 @@ enum class ImageFault : std::uint8_t {
   kChecksum = 6,         // bytes changed on the way
   kSection = 7,          // a section out of order, misaligned, overlapping or outside
   kFingerprint = 8,      // the equation is not the one that the header names
-  kAxis = 9,             // axis record: name (also one that stands twice), flags or range
-  kInput = 10,           // input record: name (also one that stands twice), unit or range
+  kAxis = 9,             // axis record: name (also a repeated name), flags or range
+  kInput = 10,           // input record: name (also a repeated name), unit or range
   kRange = 11,           // a table whose records leave their section
   kTooMany = 12,         // more tables than the views have room for
   kProgramTooLong = 13,  // the causes of comp/verify.h, in its order
@@ -59,7 +59,7 @@ class ImageView {
   const char* name() const noexcept { return name_; }
   View<AxisRecord> axes() const noexcept { return axes_; }
   View<InputRecord> inputs() const noexcept { return inputs_; }
-  /// Shares of the effects, for Compensator::shares, and what they are called.
+  /// Shares of the effects, for Compensator::shares, and their names.
   const ShareProgram& shares() const noexcept { return shares_; }
   View<ShareName> share_names() const noexcept { return share_names_; }
   /// Ready for Compensator.

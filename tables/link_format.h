@@ -24,18 +24,18 @@ enum class LinkOp : std::uint8_t {
   kHistory = 4,   // u64 first, u16 every -> u64 next, u16 lost, then whole ticks as in kTick, as many as fit
   kHealth = 5,    // u8 first counter -> u8 count of counters in all, u64 each, as many as fit
   kSlots = 6,     // -> SlotsReply
-  kBegin = 7,     // u32 bytes -> nothing
-  kData = 8,      // u32 offset, bytes -> nothing
-  kFinish = 9,    // -> nothing
-  kConfirm = 10,  // -> nothing
-  kRevert = 11,   // -> nothing
+  kBegin = 7,     // u32 bytes -> empty reply
+  kData = 8,      // u32 offset, bytes -> empty reply
+  kFinish = 9,    // -> empty reply
+  kConfirm = 10,  // -> empty reply
+  kRevert = 11,   // -> empty reply
   kRead = 12,     // u32 offset, u8 bytes -> bytes of the confirmed upload
   kCommand = 13,  // u8 Command -> empty reply: the next tick takes it, or counts it if it is not possible
-  kWeight = 14,   // u8 axis, u32 weight 0..65536 -> nothing
+  kWeight = 14,   // u8 axis, u32 weight 0..65536 -> empty reply
   kShares = 15,   // u16 first -> u16 shares in all, u32 programs taken so far, LinkShare each, as many as fit
   kShareName = 16,  // u16 share, u32 programs -> char[64]; kBadValue where another program runs by now
   kTouches = 17,    // u64 first -> u64 next, u16 lost, then LinkTouch and LinkTouchAxis each, as many as fit
-  kWorkpiece = 18,  // WorkpieceFrame -> nothing; kBadValue where it is no turn
+  kWorkpiece = 18,  // WorkpieceFrame -> empty reply; kBadValue if it is not a rotation
   kChallenge = 20,  // -> ChallengeReply
   kSigned = 21,  // SignedRequest, then op and payload of the request; the reply is that of the request, with
                  // this op
@@ -49,7 +49,7 @@ enum class LinkStatus : std::uint8_t {
   kUnknownOp = 1,
   kBadLength = 2,     // shorter or longer than the op's request
   kBadValue = 3,      // no such axis, command, counter ...
-  kNotReady = 4,      // nothing published yet, or the command before has not been taken
+  kNotReady = 4,      // no data published yet, or the previous command has not been taken
   kRefused = 5,       // an upload step: payload is u8 UploadFault, u8 ImageFault, u8 BindFault, char[] the
                       // offending name
   kNotAllowed = 6,    // not over this link
@@ -59,7 +59,7 @@ enum class LinkStatus : std::uint8_t {
 };
 constexpr std::uint8_t kLinkStatusCount = static_cast<std::uint8_t>(LinkStatus::kStale) + 1;
 
-/// What a link of a board may be used for; each includes those before it.
+/// Rights of a link of a board; each level includes the previous ones.
 enum class LinkAccess : std::uint8_t {
   kRead = 0,     // state
   kCommand = 1,  // commands, weights, the workpiece's frame, giving an image up
@@ -72,7 +72,7 @@ struct SlotsReply {
   std::uint64_t issued;           // of the confirmed image
   std::uint64_t newest_issued;    // the newest that was ever tried
   std::uint32_t security;         // the highest that was ever tried
-  std::uint32_t trial_left_ms;    // 0 where none runs
+  std::uint32_t trial_left_ms;    // 0 if no trial runs
   std::uint8_t confirmed, trial;  // slot, or 255
   std::uint8_t reserved[6];
 };
@@ -97,10 +97,10 @@ struct ChallengeReply {
   std::uint8_t nonce[16];
   std::uint32_t counter;  // of this challenge: for one request in the next ten seconds
   std::uint8_t access;    // LinkAccess of the link that it came over
-  std::uint8_t keys;      // that the board trusts; 0: nothing needs a signature
+  std::uint8_t keys;      // that the board trusts; 0: no request needs a signature
   std::uint8_t reserved[2];
 };
-/// Who a board is, proved: the signature is over IdentityHead with the name in HelloReply.
+/// Proved identity of a board: the signature is over IdentityHead with the name in HelloReply.
 struct IdentifyReply {
   std::uint8_t start_nonce[16];  // of this start of the board, as in ChallengeReply
   std::uint8_t key[32];          // public half of the board's own key
@@ -128,17 +128,17 @@ struct LinkInput {
 };
 struct LinkShare {
   std::uint8_t axis;        // board's
-  std::int32_t correction;  // what the effect adds, counts of the axis, before limits and ramps
+  std::int32_t correction;  // contribution of the effect, counts of the axis, before limits and ramps
 };
-/// What the tick runs.
+/// State of the running image.
 enum class ImageState : std::uint8_t {
-  kNone = 0,       // nothing was ever confirmed, or nothing runs yet
+  kNone = 0,       // no image was ever confirmed, or no image runs yet
   kConfirmed = 1,  // the confirmed image
   kTrial = 2,      // the image on trial
   kLost = 3,       // an image is confirmed and cannot be loaded: Fault::kImageLost
 };
 struct LinkState {
-  std::uint64_t fingerprint;  // of the image that runs; 0: none
+  std::uint64_t fingerprint;  // of the running image; 0: no image
   std::int64_t since_us;      // the machine file's t when the tick took it over
   std::uint32_t weight;       // share of every correction that is in, 0..65536: ramps and faults
   std::uint8_t image;         // ImageState
@@ -146,7 +146,7 @@ struct LinkState {
 };
 struct LinkAxisState {
   std::int32_t wanted;    // counts: of the equation, at full weight and within its limit
-  std::int32_t achieved;  // counts: what the output gives, after all limits
+  std::int32_t achieved;  // counts: value of the output, after all limits
   std::uint32_t weight;   // of the axis, 0..65536
   std::uint8_t limits;    // AxisLimitFlag
 };
@@ -243,7 +243,7 @@ enum LiveRegister : int {
   kLiveAxes = 16,  // per axis 4 registers: position in um (linear) or 1e-3 deg (rotary), 2 registers, signed;
                    // correction in 0.01 um or 1e-6 deg, 2 registers, signed
   kLiveInputs = 48,        // per input 2 registers: 0.001 of its unit, signed
-  kLiveFingerprint = 96,   // 4 registers, highest word first: of the image that runs; 0: none
+  kLiveFingerprint = 96,   // 4 registers, highest word first: of the running image; 0: no image
   kLiveAxisWeights = 100,  // per axis its weight, 0.01 %
   kLiveRegisters = 108     // all of them
 };

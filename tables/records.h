@@ -29,7 +29,7 @@ struct StateRecord {
 };
 static_assert(sizeof(StateRecord) % 8 == 0);
 
-/// What is counted and measured, as others see it.
+/// Counters and measured values, as other threads read them.
 struct HealthRecord {
   std::uint64_t ticks = 0, active_ticks = 0, overruns = 0, skipped = 0;
   std::uint64_t missing_readings = 0, missing_inputs = 0, frozen_readings = 0, jumps = 0;
@@ -52,20 +52,20 @@ static_assert(offsetof(HealthRecord, ticks) == 0 && offsetof(HealthRecord, activ
               offsetof(HealthRecord, refused_commands) == 120 && offsetof(HealthRecord, programs) == 128 &&
               offsetof(HealthRecord, latency_ns) == 136 && offsetof(HealthRecord, execution_ns) == 168);
 
-/// What is to be known about a touch.
+/// Data of a touch.
 enum TouchFlag : std::uint8_t {
   kTouchUncompensated = 1u << 0,  // no program ran: `compensated` is `position`
   kTouchWhileFaulted = 1u << 1,   // a fault was latched
   kTouchInWorkpiece = 1u << 2,    // the board has axes X, Y, Z: `workpiece_nm` is there
 };
 
-/// A touch of the probe as others see it. Axes in the board's order, in their counts. The counters say what
-/// was lost until then, so that a reader knows whether touches are missing that never got a number.
+/// A touch of the probe, as other threads read it. Axes in the board's order, in their counts. The counters
+/// give the losses until then: a reader detects whether touches without a number are missing.
 struct TouchRecord {
   std::int64_t time_ns = 0;              // of the contact, the machine file's t
   std::int64_t position[kMaxAxes] = {};  // as the controller counts
   std::int64_t compensated[kMaxAxes] =
-      {};  // where the axis would stand if its correction were all in: the tool
+      {};  // position of the axis with its whole correction applied: the tool
   std::int64_t uncertainty[kMaxAxes] =
       {};                             // standard uncertainty from the instant and from the interpolation
   std::int64_t workpiece_nm[3] = {};  // X, Y, Z

@@ -20,10 +20,10 @@ constexpr std::uint32_t kMaxFrameBytes = 2 * kMaxFramedBytes + 2;
 /// Returns the bytes of the frame. setup.
 std::uint32_t write_frame(const std::uint8_t* message, std::uint32_t size, std::uint8_t* frame) noexcept;
 
-/// Finds the messages in what a line brings.
+/// Finds the messages in the bytes of a line.
 class FrameReader {
  public:
-  /// The next byte; true where it ended a whole message, which stands until the next call. setup.
+  /// Takes the next byte; true if it completed a message, which is valid until the next call. setup.
   bool take(std::uint8_t byte) noexcept;
   const std::uint8_t* message() const noexcept { return bytes_; }
   std::uint32_t size() const noexcept { return size_; }

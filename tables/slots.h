@@ -5,7 +5,7 @@
 
 namespace vernier {
 
-/// No slot: nothing confirmed yet, or no trial.
+/// No slot: no confirmed image yet, or no trial.
 constexpr std::uint8_t kNoSlot = 0xff;
 constexpr std::uint32_t kSlotCount = 2;
 /// The store keeps the record twice; a change overwrites the older one.
@@ -15,9 +15,9 @@ constexpr std::uint32_t kSlotRecordCount = 2;
 struct SlotRecord {
   std::uint32_t magic;     // kSlotMagic
   std::uint32_t sequence;  // of the change that wrote it, from 1; the higher of two valid records counts
-  std::uint64_t issued;    // when the confirmed image was signed (upload_format.h); 0: none confirmed
+  std::uint64_t issued;    // when the confirmed image was signed (upload_format.h); 0: no confirmed image
   std::uint64_t trial_issued;
-  std::uint64_t newest_issued;  // of all that were ever tried: what is not newer is not taken again
+  std::uint64_t newest_issued;  // of all images ever tried: an image that is not newer is refused
   std::uint32_t security;       // highest that was ever tried
   std::uint8_t confirmed;       // slot, or kNoSlot
   std::uint8_t trial;           // slot that is on trial, or kNoSlot
@@ -52,21 +52,21 @@ static_assert(offsetof(SlotRecordV1, magic) == 0 && offsetof(SlotRecordV1, seque
               offsetof(SlotRecordV1, reserved) == 26 && offsetof(SlotRecordV1, checksum) == 28);
 constexpr std::uint32_t kSlotMagicV1 = 0x544f4c53;  // "SLOT"
 
-/// A record and the place, 0 or 1, where it is to be stored.
+/// A record and the place, 0 or 1, for storing it.
 struct SlotChange {
   std::uint32_t place;
   SlotRecord record;
 };
 
-/// What the two slots hold, as a pure state machine: it names the record to be stored for a change and takes
-/// the change over only when told that it is stored. A power cut at any byte of any write therefore leaves
-/// the state before the change or the one after it.
+/// The state of the two slots, as a pure state machine: it returns the record to be stored for a change, and
+/// applies the change only after the record is stored. After a power failure at any byte of any write the
+/// state is the one before the change or the one after it.
 ///
 ///   confirmed A ── (image written to B) ── try ──► confirmed A, trial B ── confirm ──► confirmed B
 ///                                                          └──── revert, or a reset ──► confirmed A
 class Slots {
  public:
-  /// The newer valid one of two records; nothing confirmed where neither is valid. setup.
+  /// The newer valid one of two records; no confirmed image if neither is valid. setup.
   static Slots load(const SlotRecord& first, const SlotRecord& second) noexcept;
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }
@@ -96,9 +96,9 @@ class Slots {
   std::uint32_t next_place_ = 0;
 };
 
-/// A valid record of version 1 as one of this version; no record where it is not valid. setup.
+/// Converts a valid record of version 1 to this version; no record if it is not valid. setup.
 SlotRecord upgraded(const SlotRecordV1& record) noexcept;
-/// Is it a record that a board may follow: magic, checksum, slots that exist and differ. setup.
+/// True for a record that a board may use: magic, checksum, slots that exist and differ. setup.
 bool is_valid(const SlotRecord& record) noexcept;
 
 }  // namespace vernier

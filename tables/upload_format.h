@@ -7,7 +7,7 @@ namespace vernier {
 
 constexpr std::uint32_t kBoardNameBytes = 24;
 
-/// What is uploaded and stored in a slot: this header (little-endian, 152 bytes), then the image
+/// Contents of an upload and of a slot: this header (little-endian, 152 bytes), then the image
 /// (image_format.h). The signature, Ed25519 in its pre-hashed form (RFC 8032, Ed25519ph), covers the header
 /// before it and the whole image.
 struct UploadHeader {
@@ -55,7 +55,7 @@ static_assert(offsetof(UploadHeaderV1, magic) == 0 && offsetof(UploadHeaderV1, h
 constexpr std::uint8_t kUploadMagicV1[8] = {'V', 'E', 'R', 'N', 'U', 'P', 'L', '\n'};
 constexpr std::uint32_t kSignedHeaderBytesV1 = 64;
 
-/// What a signed request is signed over, before its op and payload: Ed25519ph of both.
+/// Head that is signed before the op and payload of a signed request: Ed25519ph of both.
 struct SignedRequestHead {
   std::uint8_t magic[8];   // kRequestMagic
   std::uint8_t nonce[16];  // of the board, new with each start
@@ -72,7 +72,7 @@ constexpr std::uint32_t kPublicKeyBytes = 32;
 /// The data that a board signs with its key to prove its identity: Ed25519ph of these 80 bytes.
 struct IdentityHead {
   std::uint8_t magic[8];         // kIdentityMagic
-  std::uint8_t asked_nonce[32];  // of whoever asks, new with each question
+  std::uint8_t asked_nonce[32];  // of the client, new with each request
   std::uint8_t start_nonce[16];  // of this start of the board: signed requests name the same one
   char board[kBoardNameBytes];   // name in its board file
 };

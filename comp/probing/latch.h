@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// Where the axes were at one instant, and what was still missing from their corrections.
+/// Positions of the axes at one instant, and the missing part of their corrections.
 struct LatchSample {
   InstantNs at;
   AxisPosition position[kMaxAxes];
@@ -43,15 +43,15 @@ class LatchRing {
   static constexpr std::uint32_t kSize = 64;
   static constexpr std::int64_t kMostUneven = 8;
 
-  /// sample.at: later than the one before, or the ring begins anew. realtime.
+  /// sample.at: later than the previous one, or a new ring begins. realtime.
   void add(const LatchSample& sample) noexcept;
 
   /// Goes to an instant. realtime.
   LatchFault seek(InstantNs when) noexcept;
 
-  /// The position at the instant of the last seek() that found one. axis: below kMaxAxes; rollover: whole
-  /// turns (2^32 counts) between two samples are none. time_uncertainty: standard uncertainty of the instant,
-  /// 0 .. 2^31 ns. kTooFast or kNone. realtime.
+  /// The position at the instant of the last successful seek(). axis: below kMaxAxes; rollover: whole turns
+  /// (2^32 counts) between two samples are ignored. time_uncertainty: standard uncertainty of the instant, 0
+  /// .. 2^31 ns. kTooFast or kNone. realtime.
   LatchFault position_of(std::uint32_t axis, bool rollover, InstantNs time_uncertainty,
                          LatchedPosition& latched) const noexcept;
 

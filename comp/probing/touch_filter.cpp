@@ -3,8 +3,8 @@
 
 namespace vernier {
 
-// A change of the contact is over when the settling time has passed since its first edge; the level then
-// decides what it was.
+// A change of the contact is complete when the settling time has passed since its first edge. The level then
+// decides the kind of the change.
 bool TouchFilter::conclude(InstantNs until, Touch& touch) noexcept {
   if ((state_ != State::kClosing && state_ != State::kOpening) || until - since_ < settle_) return false;
   const bool was_closing = state_ == State::kClosing;

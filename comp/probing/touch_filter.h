@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// What a probe's line has shown.
+/// Counters of a probe's line.
 enum class TouchKind : std::uint8_t {
   kTouch = 0,           // closed, and stayed closed through the settling time
   kReleaseMissing = 1,  // a touch, but the line had not opened since the one before: an edge was lost
@@ -35,7 +35,7 @@ class TouchFilter {
   /// settle: time after a change of the contact in which further edges belong to it, >= 0. setup.
   explicit TouchFilter(InstantNs settle = InstantNs(1'000'000)) noexcept : settle_(settle) {}
 
-  /// An edge; not earlier than the one before. Returns true with `touch` where it ended one that was
+  /// Takes an edge, not earlier than the previous one. Returns true with `touch` if it ended a touch that was
   /// settling. realtime.
   bool edge(InstantNs at, bool made, Touch& touch) noexcept;
   /// Called as time passes without an edge: true with `touch` if the last contact has settled by then.

@@ -8,8 +8,8 @@
 
 namespace vernier {
 
-/// Where a workpiece lies in a machine with axes X, Y, Z: its origin, and how far it is turned about Z. The
-/// cosine and sine are found on the host, so that nothing here computes an angle.
+/// Location of a workpiece in a machine with axes X, Y, Z: its origin and its rotation about Z. The host
+/// computes the cosine and sine: no angle is computed here.
 struct WorkpieceFrame {
   static constexpr std::int32_t kOne = std::int32_t{1} << 30;
 
@@ -17,7 +17,7 @@ struct WorkpieceFrame {
   std::int32_t cosine = kOne;  // Q30; cosine^2 + sine^2 within 2^-28 of one
   std::int32_t sine = 0;       // of the angle from the machine's X to the workpiece's X
 
-  /// Is it a turn, and in range? setup.
+  /// True if it is a rotation, and in range. setup.
   constexpr bool valid() const noexcept {
     constexpr std::int64_t kUnit = std::int64_t{kOne} * kOne;
     if (cosine < -kOne || cosine > kOne || sine < -kOne || sine > kOne) return false;
@@ -42,7 +42,7 @@ struct WorkpieceFrame {
     return round_shift(high + (low >> 20), 10);
   }
 };
-// It travels as it is (LinkOp::kWorkpiece).
+// It is sent without conversion (LinkOp::kWorkpiece).
 static_assert(sizeof(WorkpieceFrame) == 32);
 static_assert(offsetof(WorkpieceFrame, origin) == 0 && offsetof(WorkpieceFrame, cosine) == 24 &&
               offsetof(WorkpieceFrame, sine) == 28);

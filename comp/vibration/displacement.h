@@ -20,8 +20,8 @@ struct Factor {
   unsigned shift = 31;
 };
 
-/// Displacement from acceleration within a band: two sections s / (s^2 + sqrt(2) w s + w^2) in a row,
-/// w = 2 pi corner: two integrations above the corner, which below it take constants and slopes out.
+/// Displacement from acceleration within a band: two sections s / (s^2 + sqrt(2) w s + w^2) in a row, w = 2
+/// pi corner. They integrate twice above the corner and remove constants and slopes below it.
 ///
 /// Form. Each section keeps v and p = e (sum of v), e = w / rate: v += u - sqrt(2) e v - e p, p += e v. Far
 /// above the corner the two are z^2 / (z - 1)^2; the symmetric k, 1 - 2k, k before them makes that an
@@ -40,11 +40,11 @@ class Displacement {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts at rest. False, and nothing is changed, where a setting is out of range. setup.
+  /// Starts at rest. False, without any change, if a setting is out of range. setup.
   bool start(const DisplacementScale& scale) noexcept;
 
-  /// Takes a sample in, LSB; gives the displacement at its instant. A sample beyond +-kLimit is held there, a
-  /// displacement beyond int32 too; both are counted. realtime.
+  /// Takes a sample, LSB; returns the displacement at its instant. A sample beyond +-kLimit is limited to it,
+  /// a displacement beyond int32 too; both are counted. realtime.
   LengthNm step(std::int32_t sample) noexcept;
 
   std::uint32_t held() const noexcept { return held_; }

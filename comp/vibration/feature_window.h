@@ -35,29 +35,29 @@ struct FeatureScale {
 };
 
 /// Features of a window as inputs of an equation: 1e-6 of the signal's unit (squared for VAR and BANDPOWER),
-/// of 1, or of Hz. Bit i of `undefined`: feature i is 0/0 (a signal of nothing, or of one value) and its
-/// value 0.
+/// of 1, or of Hz. Bit i of `undefined`: feature i is 0/0 (a signal of zeros, or of one value) and its value
+/// 0.
 struct FeatureValues {
   InputMicro value[kFeatures];
   std::uint32_t undefined = 0;
 };
 
-/// The last n samples of one axis. Each sample costs the same: four power sums and sum |x| take the new one
-/// in and the old one out, exactly; a tree of groups keeps the extremes; n/4 products keep the first moment
-/// of the spectrum (spectral_weights.h). Integers throughout, so nothing drifts, however long it runs. Ranges
-/// for n <= 2^11, |x| < 2^19: sum x^2 < 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below
-/// 2^121, spectral sum below 2^82: 128-bit sums are exact. Bound of features(): 0.501 of 1e-6 plus 2^-54 of
-/// the value against exact arithmetic; FREQUENCY adds rate n 2^-36 for its rounded weights (36 uHz at 1651 Hz
-/// and n = 1500); beyond int64 it saturates.
+/// The last n samples of one axis. Each sample needs the same work: four power sums and sum |x| add the new
+/// sample and subtract the old one, exactly; a tree of groups keeps the extremes; n/4 products keep the first
+/// moment of the spectrum (spectral_weights.h). All values are integers: no drift, for any running time.
+/// Ranges for n <= 2^11, |x| < 2^19: sum x^2 < 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of
+/// n below 2^121, spectral sum below 2^82: 128-bit sums are exact. Bound of features(): 0.501 of 1e-6 plus
+/// 2^-54 of the value against exact arithmetic; FREQUENCY adds rate n 2^-36 for its rounded weights (36 uHz
+/// at 1651 Hz and n = 1500); beyond int64 it saturates.
 class FeatureWindow {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts an empty window; `weights` stays where it is as long as the window is used (axes share it). False
-  /// where scale or weights are out of range. setup.
+  /// Starts an empty window; `weights` must outlive its use (axes share it). False if scale or weights are
+  /// out of range. setup.
   bool start(const FeatureScale& scale, const SpectralWeights& weights) noexcept;
 
-  /// Takes one sample in, LSB. Beyond +-kLimit it is held there and counted. realtime.
+  /// Takes one sample, LSB. Beyond +-kLimit it is limited and counted. realtime.
   void push(std::int32_t sample) noexcept;
 
   /// n samples have come since start. realtime.

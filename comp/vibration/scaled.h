@@ -57,7 +57,7 @@ constexpr Scaled reciprocal(Scaled a) noexcept {
   std::uint64_t y = 13021231110853801140u - long_product(a.mantissa, 8680820740569200760u).high;
   for (int step = 0; step < 4; ++step)
     y = corrected(y, static_cast<std::int64_t>(kOneQ62 - long_product(a.mantissa, y).high));
-  const int zeros = std::countl_zero(y);  // 1 where 1/d < 2, 0 where it is 2
+  const int zeros = std::countl_zero(y);  // 1 if 1/d < 2, 0 if it is 2
   return {y << zeros, -62 - 64 - zeros - a.exponent};
 }
 
@@ -77,7 +77,7 @@ constexpr Scaled inverse_root(Scaled a) noexcept {
   return {y << zeros, -62 - 32 - zeros - even / 2};
 }
 
-/// Nearest integer, ties upwards; INT64_MAX where it is beyond. realtime.
+/// Nearest integer, ties upwards; INT64_MAX if it is larger. realtime.
 constexpr std::int64_t count_of(Scaled a) noexcept {
   if (a.mantissa == 0 || a.exponent < -64) return 0;
   if (a.exponent >= 0) return INT64_MAX;

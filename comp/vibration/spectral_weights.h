@@ -7,21 +7,21 @@ namespace vernier {
 constexpr std::uint32_t kMaxWindow = 2048;
 constexpr unsigned kSpectralShift = 34;
 
-/// What the mean frequency of a window of n samples needs. The one-sided periodogram (rectangular window, n
-/// points, zero and half the rate counted once) has sum f P / sum P = rate * (1/4 - sum over odd m of
-/// h(m) R(m) / R(0)), R the circular autocorrelation and h(m) = 1 / (n sin(pi m/n))^2: the transform of a
-/// triangle, which vanishes at even m. So one sample's turn in the window costs n/4 products, exactly, where
-/// a sliding transform would cost n.
-/// Weights are h in 2^-34, rounded: 2^34/9 at most (n = 6), all odd m together 2^32.
+/// Weights for the mean frequency of a window of n samples. The one-sided periodogram (rectangular window, n
+/// points, zero and half the rate counted once) has sum f P / sum P = rate * (1/4 - sum over odd m of h(m)
+/// R(m) / R(0)), R the circular autocorrelation and h(m) = 1 / (n sin(pi m/n))^2: the transform of a
+/// triangle, which is zero at even m. A new sample in the window therefore needs n/4 products, exactly; a
+/// sliding transform needs n. Weights are h in 2^-34, rounded: 2^34/9 at most (n = 6), all odd m together
+/// 2^32.
 struct SpectralWeights {
   std::uint32_t window = 0;
   std::uint32_t pairs = 0;                   // odd m below n/2: each serves m and n - m
   std::int32_t weight[kMaxWindow / 4] = {};  // of m = 1, 3, 5 ...
-  std::int32_t middle = 0;                   // of m = n/2 where that is odd, else 0
+  std::int32_t middle = 0;                   // of m = n/2 if that is odd, else 0
 };
 
-/// Fills the weights for a window of n samples, in integers: the same bits on every target, each within
-/// 0.5 + 1e-6 of exact. False, and nothing is changed, where n is odd or not 6..2048. setup.
+/// Computes the weights for a window of n samples, in integers: the same bits on every target, each within
+/// 0.5 + 1e-6 of exact. False, without any change, if n is odd or not 6..2048. setup.
 bool prepare_weights(std::uint32_t window, SpectralWeights& weights) noexcept;
 
 }  // namespace vernier

@@ -64,7 +64,7 @@ Fault AxisMonitor::check(std::int64_t travel, AxisSpeed velocity, Health& health
   return fault;
 }
 
-// First-order smoothing by powers of two; the sense turns only when the axis came back further than its
+// First-order smoothing by powers of two; the direction changes only when the axis came back further than its
 // noise.
 void AxisMonitor::derive(std::int64_t any_travel) noexcept {
   const std::int64_t travel = clamp(any_travel, -kMostCounts >> 20, kMostCounts >> 20);

@@ -19,20 +19,20 @@ struct AxisLimits {
   bool rollover = false;                 // whole turns are no travel
 };
 
-/// Watches the readings of one axis and, where the controller gives positions only, derives its motion.
+/// Watches the readings of one axis. Derives its motion if the controller gives positions only.
 class AxisMonitor {
  public:
   AxisMonitor() = default;
   /// tick: time between two readings; gives_motion: the readings carry the motion state. setup.
   AxisMonitor(const AxisLimits& limits, TimeUs tick, bool gives_motion) noexcept;
 
-  /// One reading, or none (present false); counts into health. A reading that jumps is a fault once and the
-  /// measure of the next ones. elapsed: since the call before, so that a late tick is no jump and makes no
-  /// false speed. realtime.
+  /// Takes one reading, or a missing one (present false); counts into health. A reading that jumps is a fault
+  /// once and the reference of the next ones. elapsed: since the previous call; with it a late tick gives no
+  /// jump and no wrong speed. realtime.
   Fault take(bool present, const AxisReading& reading, Health& health, TicksQ8 elapsed = kOneTick) noexcept;
 
   bool known() const noexcept { return known_; }
-  /// The newest good state; held while readings are missing.
+  /// The newest good state; kept while readings are missing.
   const AxisInput& state() const noexcept { return state_; }
 
  private:
@@ -50,7 +50,7 @@ class AxisMonitor {
   std::uint32_t missing_ = 0;
   TicksQ8 elapsed_{0};        // since the last reading
   std::int64_t claimed_ = 0;  // sum of speeds since the position last changed
-  std::int64_t back_ = 0;     // travel against the sense
+  std::int64_t back_ = 0;     // travel against the direction
   AxisInput state_;
 };
 

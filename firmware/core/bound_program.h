@@ -16,7 +16,7 @@ Wiring wiring_of(const ImageView& view);
 /// A program with the state of its execution and the board's devices that it works on. Made outside the tick,
 /// taken over by Cycle::use in one. Refers to the image's bytes.
 struct BoundProgram {
-  /// A program with nothing to do: no image.
+  /// A program without work: no image.
   BoundProgram() noexcept : compensator(Program{}) {}
   /// Axis i and input i of the image are those of the board. setup.
   explicit BoundProgram(const ImageView& view) noexcept;
@@ -29,8 +29,8 @@ struct BoundProgram {
   View<ShareName> share_names;           // one per share
   std::uint32_t axis[kMaxAxes] = {};     // board's axis for each of the image
   std::uint32_t input[kMaxInputs] = {};  // board's input for each of the image
-  bool reads_input[kMaxInputs] = {};     // per input of the image: whether its equation reads it at all
-  InputMicro reference[kMaxInputs];      // per input of the image: what it reads before the sensor has spoken
+  bool reads_input[kMaxInputs] = {};     // per input of the image: whether its equation reads it
+  InputMicro reference[kMaxInputs];      // per input of the image: its value before the first reading
 };
 
 /// Finds the image's axes and inputs among the board's by name. bound: made from the same view. offender: the

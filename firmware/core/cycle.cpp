@@ -82,7 +82,7 @@ Fault Cycle::read_axes(TicksQ8 elapsed) noexcept {
   return fault;
 }
 
-// Speed of the linear axes together: the path's on a machine whose axes stand square to each other.
+// Speed of the linear axes together: the path speed of a machine with perpendicular axes.
 FeedNmPerMin Cycle::feed_of_axes() const noexcept {
   constexpr std::int64_t kMost = 1'000'000'000;  // 1 m/s: squares of all axes fit into 64 bits
   static_assert(kMaxAxes <= 18);
@@ -189,7 +189,7 @@ void Cycle::judge_limits(std::uint32_t axis) noexcept {
 bool Cycle::write_axis(std::uint32_t axis) noexcept {
   Drive& drive = drive_[axis];
   const MotionBounds bounds{drive.slew, limits_.axis[axis].motion.acceleration};
-  // Whatever went before, no more than the board's own limit ever leaves it.
+  // For every history, no more than the limit of the board is ever written.
   const std::int64_t largest = limits_.axis[axis].largest;
   const AxisTravel next =
       drive.repeat ? drive.pending

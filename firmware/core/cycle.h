@@ -13,7 +13,7 @@
 
 namespace vernier {
 
-/// What an axis of the board may do, where that differs from the rule for its kind.
+/// Limits of an axis of the board that differ from the rule for its kind.
 struct AxisSetting {
   bool own = false;  // `limits` count instead of those of the kind
   AxisLimits limits;
@@ -38,17 +38,16 @@ struct CycleLimits {
 
 /// What came out of a tick.
 struct TickReport {
-  CycleOutput output;  // what the compensator wanted, by axis of the image
+  CycleOutput output;  // result of the compensator, by axis of the image
   Mode mode;
   Fault latched;
 };
 
-/// One tick of the firmware: read the devices, step the compensator, write the corrections. Never waits.
-///
-/// What reaches a drive changes by at most the slew limit of its axis from one successful write to the next,
-/// whatever the readings, commands and faults; the speed of the change is bounded by the acceleration of
-/// AxisSetting. While a fault is ramped out the compensator keeps the last good input, so that the correction
-/// only shrinks. The images and the board must outlive the cycle.
+/// One tick of the firmware: reads the devices, steps the compensator, writes the corrections. Never waits.
+/// The value at a drive changes by at most the slew limit of its axis from one successful write to the next,
+/// for all readings, commands and faults; the speed of the change is limited by the acceleration of
+/// AxisSetting. While a fault is ramped out the compensator keeps the last good input: the correction can
+/// only decrease. The images and the board must outlive the cycle.
 class Cycle {
  public:
   /// A board whose devices are those of the image, in its order. view: opened without fault. setup.
@@ -61,9 +60,10 @@ class Cycle {
   TickReport tick(TimeUs time, Command command, Fault outer = Fault::kNone,
                   TicksQ8 elapsed = kOneTick) noexcept;
 
-  /// Goes on with another program from the next tick, without a step: corrections move from where they are,
-  /// within the limits of their axes; axes that the new one does not correct go to zero. next: bound to this
-  /// board's wiring (bind), lives until the next use() returns. Returns the program until now. realtime.
+  /// Continues with another program from the next tick, without a step. Corrections move from their present
+  /// values, within the limits of their axes; axes that the new program does not correct go to zero. next:
+  /// bound to this board's wiring (bind), lives until the next use() returns. Returns the previous program.
+  /// realtime.
   BoundProgram* use(BoundProgram& next) noexcept;
 
   /// Share of the correction of a board's axis that is applied, 0..1; changes within the limits. realtime.
@@ -73,18 +73,18 @@ class Cycle {
   Mode mode() const noexcept { return mode_.mode(); }
   bool holding() const noexcept { return mode_.holding(); }
   Fault latched() const noexcept { return mode_.latched(); }
-  /// What the last tick found, latched or not: while checking, what it waits for.
+  /// Fault of the last tick, latched or not; while checking, the condition that is not met yet.
   Fault found() const noexcept { return found_; }
   /// Share of the correction that is in.
   WeightQ16 weight() const noexcept { return mode_.weight(); }
   Health& health() noexcept { return health_; }
   const Health& health() const noexcept { return health_; }
-  /// What the equation wants of a board's axis at full weight, what its output gives of that, and which
-  /// limits (AxisLimitFlag) hold it.
+  /// The correction that the equation requires of a board's axis at full weight, the part that its output
+  /// gives, and the active limits (AxisLimitFlag).
   AxisTravel wanted(std::uint32_t axis) const noexcept { return AxisTravel(drive_[axis].whole); }
   AxisTravel achieved(std::uint32_t axis) const noexcept { return drive_[axis].achieved; }
   std::uint8_t limits(std::uint32_t axis) const noexcept { return drive_[axis].limits; }
-  /// Most that the correction of a board's axis changes by in a tick, counts; 0 while nothing has moved it.
+  /// Largest change of the correction of a board's axis in a tick, counts; 0 before the first change.
   std::int64_t slew(std::uint32_t axis) const noexcept { return drive_[axis].slew; }
   /// The correction that a board's axis was given last.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
@@ -93,7 +93,7 @@ class Cycle {
   InputMicro input_value(std::uint32_t input) const noexcept { return inputs_[input]; }
   const PathReading& path() const noexcept { return path_; }
   const BoundProgram& program() const noexcept { return *now_; }
-  /// What the last tick began with. realtime.
+  /// Start values of the last tick. realtime.
   void equation_state(EquationState& state) const noexcept { now_->compensator.state(state); }
 
  private:
@@ -110,7 +110,7 @@ class Cycle {
   void judge_limits(std::uint32_t axis) noexcept;
   void count(const CycleOutput& output) noexcept;
 
-  /// What is to reach a drive, by board's axis.
+  /// The value for a drive, by board's axis.
   struct Drive {
     std::int64_t wanted = 0;  // counts, within the board's limit
     std::int64_t whole = 0;   // the same at full weight, before that limit
@@ -128,7 +128,7 @@ class Cycle {
   BoundProgram* now_;
   ModeControl mode_;
   Fault found_ = Fault::kNone;
-  Health health_, idle_health_;                     // of what a program needs; of the rest
+  Health health_, idle_health_;                     // of the inputs that a program needs; of the others
   std::uint32_t axis_count_ = 0, input_count_ = 0;  // of the board
   bool uses_axis_[kMaxAxes] = {}, uses_input_[kMaxInputs] = {}, linear_[kMaxAxes] = {};
   AxisMonitor axes_[kMaxAxes];

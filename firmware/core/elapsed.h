@@ -39,8 +39,8 @@ class ElapsedTicks {
   std::int64_t per_ns_ = 0;  // 256 / tick in ns, Q24: below 2^23, as a tick is 1 us at least
 };
 
-/// 2^24 / elapsed, rounded down: what a travel is multiplied by to become one of a tick, Q16. Bit by bit, for
-/// targets without a divider. elapsed: 1 .. kMostElapsed. realtime.
+/// 2^24 / elapsed, rounded down: the factor that converts a travel to the travel of one tick, Q16. Bit by
+/// bit, for targets without a divider. elapsed: 1 .. kMostElapsed. realtime.
 constexpr std::int64_t per_tick_q16(TicksQ8 elapsed) noexcept {
   std::uint32_t rest = 0, quotient = 0;
   for (int bit = 24; bit >= 0; --bit) {

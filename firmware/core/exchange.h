@@ -38,11 +38,11 @@ class AtomicWords {
 };
 
 /// A number that one thread counts up and others read, without an atomic of 64 bits, which small targets do
-/// not have: its high half stands before and after the low one, and a reader that sees two of them reads
-/// again, which it has to at most once in 2^32 counts.
+/// not have. Its high half is stored before and after the low one. A reader that sees two different halves
+/// reads again, at most once in 2^32 counts.
 class SharedCount {
  public:
-  /// One writer; what it wrote before is seen by who sees the count. realtime.
+  /// One writer. A reader that sees the count also sees all earlier writes. realtime.
   void store(std::uint64_t count) noexcept {
     const auto high = static_cast<std::uint32_t>(count >> 32);
     after_.store(high, std::memory_order_release);
@@ -73,7 +73,7 @@ class Published {
     value_.put(value);
     turn_.store(turn + 2, std::memory_order_release);
   }
-  /// False where the writer was quicker so many times in a row. setup.
+  /// False if the writer was faster so many times in a row. setup.
   bool read(T& value, int tries = 1000) const noexcept {
     for (int i = 0; i < tries; ++i) {
       const std::uint32_t before = turn_.load(std::memory_order_acquire);
@@ -117,7 +117,7 @@ class History {
     const std::uint64_t count = begun_.load();
     return count > size_ ? count - size_ : 0;
   }
-  /// False where value `index` is not there yet, or not any more. setup.
+  /// False if value `index` is not there yet, or not any more. setup.
   bool read(std::uint64_t index, T& value) const noexcept {
     if (index >= count()) return false;
     const T copy = values_[static_cast<std::uint32_t>(index) & (size_ - 1)].get();
@@ -133,7 +133,7 @@ class History {
   std::unique_ptr<AtomicWords<T>[]> values_;
 };
 
-/// What a tick began with, so that others can work out what each effect added.
+/// Start values of a tick, from which other threads compute the share of each effect.
 struct EquationRecord {
   std::uint32_t programs = 0, reserved = 0;  // HealthRecord::programs: whose state it is
   EquationState state;

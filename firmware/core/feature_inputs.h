@@ -48,9 +48,9 @@ bool feature_of(std::string_view name, Feature& feature) noexcept;
 /// after a gap. Its value is of the latest sample, to 1 nm. Its tick needs 200 instructions of x86-64.
 class FeatureInputs : public InputReader {
  public:
-  /// source: of all inputs that are no feature, outlives this. inputs: of the board, at most kMaxInputs.
-  /// tick: of the firmware. What a window cannot be made for (length, resolution, an `of` that is a feature)
-  /// is refused: `refused()` then names the request. setup.
+  /// source: of all inputs that are not features, outlives this. inputs: of the board, at most kMaxInputs.
+  /// tick: of the firmware. A request without a possible window (length, resolution, an `of` that is a
+  /// feature) is refused: `refused()` then names it. setup.
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::span<const FeatureRequest> requests,
                 TimeUs tick);
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::initializer_list<FeatureRequest> requests,
@@ -68,7 +68,7 @@ class FeatureInputs : public InputReader {
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
 
  private:
-  /// A signal's window with what its samples are made of.
+  /// A signal's window with the sources of its samples.
   struct Signal {
     FeatureRequest from;
     std::uint64_t inverse = 0;  // 2^63 / lsb, cut

@@ -23,7 +23,7 @@ LinkAccess access_needed(LinkOp op) noexcept {
   }
 }
 
-// The pieces of an upload need none: what they make is signed as a whole.
+// The pieces of an upload need no signature: the complete upload is signed.
 bool signature_needed(LinkOp op) noexcept {
   return op != LinkOp::kData && access_needed(op) != LinkAccess::kRead;
 }

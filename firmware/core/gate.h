@@ -22,7 +22,7 @@ class Gate {
   Gate(const BoardIdentity& identity, const Nonce& nonce, IdentityKey* own_key = nullptr) noexcept
       : identity_(identity), nonce_(nonce), own_key_(own_key) {}
 
-  /// The request that may be carried out, or why none may. It lives until the next call.
+  /// The request that may be executed, or the reason of a refusal. It lives until the next call.
   struct Opened {
     LinkStatus status;
     const std::uint8_t* request;
@@ -30,26 +30,26 @@ class Gate {
   };
   /// now: of any clock, the same as challenge()'s.
   Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, TimeUs now) noexcept;
-  /// Is it the request for a challenge? Its payload then; each can be used once.
+  /// The payload of a request for a challenge, else empty; each can be used once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
   ChallengeReply challenge(LinkAccess access, TimeUs now) noexcept;
-  /// Is it the request to prove who the board is? Everybody may ask for that.
+  /// True for the request to prove the identity of the board. Every caller may send it.
   static bool is_identify(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// Signs the asker's nonce, the nonce of this start and the board's name with the key of the board.
   /// kUnknownOp: the board has no key; kBadLength: the request has no nonce; kNotReady: the library failed.
   /// `reply` is filled in with kDone only. setup.
   LinkStatus identify(const std::uint8_t* request, std::uint32_t size, IdentifyReply& reply) noexcept;
-  /// May a master that knows nothing but registers give commands over this link?
+  /// True if a master that uses registers only may give commands over this link.
   bool lets_plain_commands(LinkAccess access, bool trusted_line) const noexcept {
     return access >= LinkAccess::kCommand && (identity_.keys.empty() || trusted_line);
   }
 
  private:
-  /// Challenges that are open at a time; whoever asks for more drops the oldest, and has to sign again.
+  /// Largest number of open challenges; a further challenge removes the oldest, whose client must sign again.
   static constexpr std::uint32_t kMostOpen = 32;
   static constexpr TimeUs kOpenFor{10'000'000};
   struct Challenge {
-    std::uint32_t counter = 0;  // 0: none
+    std::uint32_t counter = 0;  // 0: no challenge
     TimeUs given;
   };
   Challenge* find(std::uint32_t counter, TimeUs now) noexcept;
@@ -63,7 +63,7 @@ class Gate {
   std::uint8_t inner_[kMaxRequestBytes] = {};
 };
 
-/// What a request needs: access of its link, and a signature at all.
+/// Requirements of a request: access of its link, and a signature or not.
 LinkAccess access_needed(LinkOp op) noexcept;
 bool signature_needed(LinkOp op) noexcept;
 

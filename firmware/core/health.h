@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// What the firmware counts. Counters only go up and survive the clearing of a fault.
+/// Counters of the firmware. They never decrease and are kept when a fault is cleared.
 struct Health {
   std::uint64_t ticks = 0;
   std::uint64_t active_ticks = 0;

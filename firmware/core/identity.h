@@ -5,15 +5,15 @@
 
 namespace vernier {
 
-/// A public key and what it is trusted with.
+/// A public key and its rights.
 struct TrustedKey {
   PublicKey key{};
   Name name;  // for people: whose it is
   bool command = true, upload = true;
-  bool retired = false;  // what was confirmed with it still runs; nothing new is taken
+  bool retired = false;  // images confirmed with it still run; no new image is accepted
 };
 
-/// Who a board is, and whom it trusts.
+/// Identity of a board, and the keys that it trusts.
 struct BoardIdentity {
   static constexpr std::uint32_t kMostKeys = 8;
   Name board, board_class;  // what an image may be signed for
@@ -23,7 +23,7 @@ struct BoardIdentity {
   /// A board without a name that trusts one key with everything.
   BoardIdentity(const PublicKey& key) { keys.push_back(TrustedKey{key, {}}); }  // NOLINT: one is the other
 
-  /// The key whose first bytes these are; null: none.
+  /// The key whose first bytes these are; null: no such key.
   const TrustedKey* find(const std::uint8_t* first_bytes, std::uint32_t size) const noexcept;
 };
 

@@ -8,7 +8,7 @@
 
 namespace vernier {
 
-/// Takes values off a request; once too few bytes were left, nothing is taken any more.
+/// Reads values from a request; after a read beyond its end no further values are read.
 class Link::Reader {
  public:
   Reader(const std::uint8_t* bytes, std::uint32_t size) : bytes_(bytes), left_(size) {}
@@ -22,7 +22,7 @@ class Link::Reader {
   }
   const std::uint8_t* rest() const { return bytes_; }
   std::uint32_t left() const { return left_; }
-  /// Everything was there and nothing is left over.
+  /// All values were present and no byte remains.
   bool complete() const { return good_ && left_ == 0; }
   bool good() const { return good_; }
 
@@ -76,7 +76,7 @@ std::uint32_t Link::answer(const std::uint8_t* request, std::uint32_t size, std:
     Reader in(request + kRequestHeaderBytes, size - kRequestHeaderBytes);
     status = run(static_cast<LinkOp>(request[0]), in, out, now);
   }
-  // A refusal explains itself; any other failure has nothing to say.
+  // A refusal contains its reason; other failures have no reason.
   if (status != LinkStatus::kDone && status != LinkStatus::kRefused) out.cut(0);
   reply[2] = static_cast<std::uint8_t>(status);
   return kReplyHeaderBytes + out.used();
@@ -203,7 +203,7 @@ LinkStatus Link::history(Reader& in, Writer& out) const {
   const auto every = in.take<std::uint16_t>();
   if (!in.complete()) return LinkStatus::kBadLength;
   if (every == 0) return LinkStatus::kBadValue;
-  // Some distance to the end that is being overwritten, so that what is named here is still there.
+  // Some distance from the end that is being overwritten: the named record is still present.
   const std::uint32_t distance = exchange_.ticks.size() / 64;
   const std::uint64_t oldest = exchange_.ticks.oldest() + (exchange_.ticks.oldest() > 0 ? distance : 0);
   std::uint64_t next = std::max(first, oldest);
@@ -278,7 +278,7 @@ LinkStatus Link::weight(Reader& in) {
 
 namespace {
 
-/// The program that runs, kept where it is while it is looked at.
+/// The running program, protected from removal while it is read.
 class Look {
  public:
   explicit Look(Programs& programs) : programs_(programs), program_(programs.look()) {}
@@ -318,7 +318,7 @@ LinkStatus Link::state(Writer& out) {
   return LinkStatus::kDone;
 }
 
-// What was published may be of a program that has gone, or that has not been collected yet.
+// The published data may belong to a program that was removed, or that was not collected yet.
 bool Link::work_out_shares(const LoadedProgram& program) {
   if (!exchange_.equation.read(equation_) || equation_.programs != program.number.load()) return false;
   return run_shares(program.view.shares(), program.view.program(), equation_.state, registers_, shares_);

@@ -12,18 +12,18 @@ namespace vernier {
 /// counts as hostile until it is checked.
 class Link {
  public:
-  /// All outlive the link. identity: what HelloReply names. setup.
+  /// All outlive the link. identity: reported by HelloReply. setup.
   Link(Exchange& exchange, Uploader& uploader, const Wiring& wiring, TimeUs tick,
        const BoardIdentity& identity);
 
   /// Answers one request. request: any bytes; reply: room for kMaxReplyBytes. Returns the bytes of the reply,
-  /// 0 where the request is too short to be answered. now: as the uploader's. setup.
+  /// 0 if the request is too short for an answer. now: as the uploader's. setup.
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
 
-  /// Has the request to do with the medium? It is then answered by the store, which may wait for it. setup.
+  /// True if the request needs the medium. The store then answers it and may wait for the medium. setup.
   static bool needs_store(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// Is it, or may it carry (signed), a request for the store or a step of an upload? None while the store is
-  /// at work for one. setup.
+  /// True if it is, or may contain (signed), a request for the store or a step of an upload. Always false
+  /// while the store works on a request. setup.
   static bool may_need_store(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// "Ask again": the reply to a request that comes while the store is at work. setup.
   static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept {
@@ -35,7 +35,8 @@ class Link {
 
   /// The live registers for plain Modbus masters; values: kLiveRegisters. setup.
   void fill_registers(std::uint16_t* values);
-  /// A command from a plain master: refused where it is none or the one before has not been taken. setup.
+  /// A command from a plain master; refused if it is not a command or if the previous one has not been taken.
+  /// setup.
   LinkStatus give(std::uint8_t command);
 
  private:
@@ -50,7 +51,7 @@ class Link {
   LinkStatus slots(Writer& out, TimeUs now) const;
   LinkStatus read(Reader& in, Writer& out);
   LinkStatus weight(Reader& in);
-  /// What the tick runs.
+  /// The program of the tick.
   struct Running {
     std::uint64_t fingerprint = 0;
     ImageState image = ImageState::kNone;

@@ -6,8 +6,8 @@
 namespace vernier {
 
 void ModeControl::latch(Fault fault, Health& health) noexcept {
-  // While checking nothing is in the drives, and a device that is not there yet is what checking is for. An
-  // image that is lost does not come back by waiting.
+  // While checking, no correction is in the drives, and a missing device is not a fault yet. A lost image
+  // does not return by waiting.
   const bool checking = mode_ == Mode::kBoot || mode_ == Mode::kChecking;
   if (fault == Fault::kNone || (checking && fault != Fault::kImageLost)) return;
   if (latched_ != Fault::kNone) return;

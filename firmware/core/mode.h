@@ -15,7 +15,7 @@ constexpr std::int32_t kRampTicks = 256;
 static_assert(kFullWeight.count % kRampTicks == 0);
 
 /// The state machine of the modes. Each tick: before() with the faults of reading, the weight for the
-/// compensator, after() with what came out.
+/// compensator, after() with the result.
 class ModeControl {
  public:
   /// complete: every device has answered at least once and now. realtime.
@@ -26,7 +26,7 @@ class ModeControl {
 
   Mode mode() const noexcept { return mode_; }
   WeightQ16 weight() const noexcept { return weight_; }
-  /// Are the corrections held as they are? Only in Active.
+  /// True if the corrections are held at their values. Only in Active.
   bool holding() const noexcept { return holding_ && mode_ == Mode::kActive; }
   /// The first fault since the last clearing.
   Fault latched() const noexcept { return latched_; }

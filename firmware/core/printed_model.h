@@ -6,9 +6,9 @@
 
 namespace vernier {
 
-/// The machine that this firmware was built with (CMake: -DVERNIER_MODEL=DIR of `vernier compile -o DIR`): an
-/// image of the same equation runs its printed form, any other image is executed. equation: null where it was
-/// built with none.
+/// The machine that this firmware was built with (CMake: -DVERNIER_MODEL=DIR of `vernier compile -o DIR`). An
+/// image of the same equation runs its compiled form, any other image is interpreted. equation: null if the
+/// firmware was built without a machine.
 struct PrintedModel {
   std::uint64_t fingerprint = 0;
   PrintedEquation equation = nullptr;

@@ -20,7 +20,7 @@ struct ProbeSettings {
   InstantNs settle{1'000'000};
   std::uint32_t axes = 0;                                // of the board
   bool rollover[kMaxAxes] = {};                          // whole turns of the axis do not count
-  std::uint8_t xyz[3] = {kMaxAxes, kMaxAxes, kMaxAxes};  // board's axes X, Y, Z; kMaxAxes: it has none
+  std::uint8_t xyz[3] = {kMaxAxes, kMaxAxes, kMaxAxes};  // board's axes X, Y, Z; kMaxAxes: no such axis
 
   /// Standard uncertainty of the instant of a touch. resolution: of the edge's stamp. setup.
   InstantNs time_uncertainty(InstantNs resolution) const noexcept;

@@ -83,7 +83,7 @@ void Programs::end_trial(TimeUs now) noexcept {
 
 void Programs::offer() noexcept {
   if (wanted_ == nullptr || wanted_ == offered_) return;
-  // What the tick has not taken yet is not wanted any more.
+  // A program that the tick has not taken yet is withdrawn.
   if (offered_ != nullptr) {
     if (exchange_.offered.exchange(nullptr, std::memory_order_acq_rel) == nullptr) return;
     offered_ = nullptr;
@@ -134,8 +134,8 @@ TimeUs Programs::trial_left(TimeUs now, TimeUs whole) const noexcept {
 }
 
 const LoadedProgram* Programs::look() noexcept {
-  // The guardian frees nothing that is marked here; a program that went before the mark stood is not looked
-  // at.
+  // The guardian frees no program that is marked here; a program that was freed before the mark was set is
+  // not read.
   const LoadedProgram* const program = seen_.load();
   looked_at_.store(program);
   if (program == nullptr || seen_.load() != program) return looked_at_.store(nullptr), nullptr;

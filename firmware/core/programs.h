@@ -10,8 +10,8 @@
 
 namespace vernier {
 
-/// A place for one upload: its header, its image, and what that is bound to. The bytes are in memory that was
-/// taken when the board was made.
+/// A place for one upload: its header, its image, and its bound program. The bytes are in memory that is
+/// taken when the board is made.
 struct LoadedProgram {
   UploadHeader header{};
   std::unique_ptr<std::uint64_t[]> words;
@@ -34,7 +34,7 @@ struct GiveBack {
 /// A place in use; it is free again when this object is destroyed.
 using ProgramRef = std::unique_ptr<LoadedProgram, GiveBack>;
 
-/// How far the trial of an image is. Who may leave a state stands behind it.
+/// State of the trial of an image. The comment of each state names the part that may leave it.
 enum class Trial : std::uint8_t {
   kNone,        // the store, by run_trial()
   kRunning,     // the guardian when its time is over; the store when it is to be kept
@@ -43,11 +43,11 @@ enum class Trial : std::uint8_t {
   kOver,        // the store, when the record says that the image was reverted
 };
 
-/// The programs of a board: which one the tick runs, which one it goes back to. Three parties use it, none of
-/// which waits for another:
-///   the store checks images and has them run or tried;
+/// The programs of a board: the running one, and the one to which the board returns. Three parties use it;
+/// none of them waits for another:
+///   the store checks images and starts them or their trial;
 ///   the guardian hands them to the tick and ends trials on time, from memory alone;
-///   the links look at the one that runs.
+///   the links read the running one.
 class Programs {
  public:
   /// One that runs, one that the board goes back to, one that comes in.
@@ -57,26 +57,26 @@ class Programs {
   Programs(Exchange& exchange, std::uint32_t places, std::uint32_t image_bytes);
 
   // ---- the store
-  /// Null where every place is in use.
+  /// Null if every place is in use.
   ProgramRef take() noexcept;
   std::uint32_t image_bytes() const noexcept { return image_bytes_; }
   /// The confirmed image, when the board starts.
   void run_confirmed(ProgramRef program) noexcept;
   /// An image to be tried, for trial_time from when the guardian gets it. Only in Trial::kNone.
   void run_trial(ProgramRef program, TimeUs trial_time) noexcept;
-  /// The image on trial is to be kept: its time stops. False where none is on trial any more.
+  /// Confirms the image on trial: its time stops. False if no image is on trial any more.
   bool begin_to_keep() noexcept { return change(Trial::kRunning, Trial::kConfirming); }
   /// It is written down that it is kept, or that could not be done. Only after begin_to_keep().
   void kept(bool written) noexcept { trial_.store(written ? Trial::kKept : Trial::kRunning); }
   /// The image on trial is reverted with the guardian's next round.
   bool give_up() noexcept;
-  /// Has give_up() been asked for and not been done yet?
+  /// True if give_up() was called and is not executed yet.
   bool giving_up() const noexcept { return to_give_up_.load() && trial_.load() == Trial::kRunning; }
   /// The revert of the last trial is recorded. Only in Trial::kOver.
   void given_up() noexcept { trial_.store(Trial::kNone); }
 
   // ---- the guardian
-  /// Hands over what is to run and ends a trial whose time is over. now: of the clock of run_trial(). Never
+  /// Hands over the next program and ends a trial whose time is over. now: of the clock of run_trial(). Never
   /// waits.
   void guard(TimeUs now) noexcept;
 
@@ -86,7 +86,7 @@ class Programs {
   void look_away() noexcept { looked_at_.store(nullptr); }
 
   Trial trial() const noexcept { return trial_.load(); }
-  /// Left of the trial that runs; `whole` where it has not begun.
+  /// Remaining time of the trial; `whole` if it has not begun.
   TimeUs trial_left(TimeUs now, TimeUs whole) const noexcept;
 
  private:
@@ -108,8 +108,8 @@ class Programs {
   std::atomic<LoadedProgram*> confirmed_in_{nullptr}, trial_in_{nullptr};
   std::atomic<const LoadedProgram*> seen_{nullptr}, looked_at_{nullptr};
   std::uint32_t taken_over_ = 0;
-  SharedCount until_us_;  // of the trial; 0: none has begun. The guardian's
-  // The guardian's. A program is in none, one or several of these.
+  SharedCount until_us_;  // of the trial; 0: no trial. Used by the guardian
+  // Used by the guardian. A program is in none, one or several of these.
   LoadedProgram *running_ = nullptr, *offered_ = nullptr, *wanted_ = nullptr, *kept_ = nullptr,
                 *tried_ = nullptr;
   LoadedProgram empty_[2];  // removes all corrections if no image can be restored

@@ -107,7 +107,7 @@ TickReport Runner::step(Command command, Fault found) noexcept {
   Fault outer = overran_too_often() ? Fault::kOverrun : found;
   if (wait() != HalFault::kNone) outer = Fault::kClock;
   const InstantNs woke = clock_.now();
-  // A monotonic clock that runs backwards is broken, whatever the reason.
+  // A monotonic clock that runs backwards is broken, for any reason.
   if (woke < last_ || woke - due_ > kClockStep) outer = Fault::kClock;
   const TicksQ8 elapsed = elapsed_.of(woke - last_);
   last_ = woke;

@@ -14,7 +14,7 @@ namespace vernier {
 struct OverrunLimits {
   std::uint32_t in_a_row = 10;
   std::uint32_t lost_share_q16 = 65536 / 20;  // of the ticks, that may be left out for ever
-  std::uint32_t lost_at_once = 200;  // beyond that share: a stop of 0.2 s is none, two in a second are
+  std::uint32_t lost_at_once = 200;           // limit: a stop of 0.2 s is accepted, two in a second are not
 };
 
 /// How the ticks of a runner went, ns.
@@ -30,13 +30,13 @@ class Runner {
  public:
   /// The first tick is due one period from now. setup.
   Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept;
-  /// Each tick starts with a sign of `sync`. One that is earlier than half a period is none; where none comes
-  /// for `patience` after the tick was due, the clock starts the ticks until the next sign. setup.
+  /// Each tick starts with a signal of `sync`. A signal earlier than half a period is ignored. If no signal
+  /// comes for `patience` after the tick was due, the clock starts the ticks until the next signal. setup.
   Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience,
          const OverrunLimits& overruns = {}) noexcept;
 
-  /// From now on step() is called in the controller's own cycle: it waits for nothing, each call is one tick
-  /// of the time that the controller counts, however late its thread woke, and none is left out. setup.
+  /// From now on step() is called in the cycle of the controller. It does not wait. Each call is one tick of
+  /// the controller's time, for any delay of its thread, and no tick is skipped. setup.
   void follow_caller() noexcept { follows_ = true; }
   /// Sleeps, then one tick; found: a fault from outside of the tick. Its time is counted from the
   /// construction or set_time(). realtime.
@@ -47,7 +47,7 @@ class Runner {
   TimeUs time() const noexcept { return time_; }
   /// The moment at which the last tick read its axes.
   InstantNs woke() const noexcept { return last_; }
-  /// Do the ticks follow the controller's sync?
+  /// True if the ticks follow the controller's sync.
   bool in_step() const noexcept { return in_step_; }
   /// Times that the sync was lost; only goes up.
   std::uint64_t lost_syncs() const noexcept { return lost_syncs_; }

@@ -40,7 +40,7 @@ Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
 }
 
 void Service::take_over() noexcept {
-  // What was taken out before must have been collected, or there is nowhere to put the next.
+  // The previous data must have been collected, else there is no room for the next.
   if (exchange_.retired.load(std::memory_order_relaxed) != nullptr) return;
   BoundProgram* const next = exchange_.offered.exchange(nullptr, std::memory_order_acquire);
   if (next != nullptr) exchange_.retired.store(cycle_.use(*next), std::memory_order_release);
@@ -85,7 +85,7 @@ Command Service::next_command() noexcept {
     if (in) return Command::kDeactivate;
     return asked == Command::kClearFault && !ending_ ? asked : Command::kNone;
   }
-  // As switching it on does: what the fault took out comes in again.
+  // As switching it on does: the correction that the fault removed is applied again.
   if (asked == Command::kClearFault && options_.clear_on_enable && cycle_.latched() != Fault::kNone) {
     asked = Command::kNone;
     to_clear_ = true;
@@ -247,7 +247,7 @@ std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, s
   if (opened.status != LinkStatus::kDone) return Link::answer_with(opened.status, request, reply);
   if (!may_need_store || !Link::needs_store(opened.request, opened.size)) {
     const std::uint32_t answered = link_.answer(opened.request, opened.size, reply, now());
-    // A reply repeats what was asked, in its cover too.
+    // A reply repeats the request, including its cover.
     if (answered > 0) reply[0] = request[0];
     return answered;
   }

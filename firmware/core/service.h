@@ -19,7 +19,7 @@
 
 namespace vernier {
 
-/// What a board's daemon is made with.
+/// Settings of a board's daemon.
 struct ServiceOptions {
   Wiring wiring;
   CycleLimits limits;
@@ -39,31 +39,30 @@ struct ServiceOptions {
   std::uint32_t touches_kept = Exchange::kTouches;
 };
 
-/// What a link of the board may be used for.
+/// Rights of a link of the board.
 struct LinkRights {
   LinkAccess access = LinkAccess::kUpload;
   bool plain_commands = false;  // commands by register, which cannot be signed, though the board has keys
 };
 
-/// The board's program, in four duties that may each have a context of their own: the tick; the guardian,
-/// which hands programs over and ends trials and waits for nothing; the links; the store, which waits for its
-/// medium. The guardian may stop the links and the store anywhere, the tick all three. Between them stand
-/// Exchange, Programs and StoreDesk. All memory is taken at construction.
+/// The board's program, in four duties that may have separate contexts. The tick. The guardian, which hands
+/// programs over, ends trials and never waits for a device. The links. The store, which waits for its medium.
+/// The guardian may interrupt the links and the store at any point, the tick all three. Exchange, Programs
+/// and StoreDesk connect them. All memory is taken at construction.
 class Service : private CommandHandler {
  public:
   /// board, store: outlive the service. setup.
   Service(ServiceOptions options, const Board& board, SlotStore& store);
 
-  /// Checks what the store holds and offers it to the first tick. setup.
+  /// Checks the image of the store and offers it to the first tick. setup.
   UploadResult boot();
-  /// As boot(), but what runs is an image of whoever starts the board, unsigned; the store keeps what it has.
-  /// setup.
+  /// As boot(), but runs an unsigned image given at the start of the board; the store is not changed. setup.
   UploadResult boot_with(std::span<const std::uint8_t> image);
 
   /// Sleeps until the next tick is due and runs it. realtime.
   TickReport tick() noexcept;
 
-  /// From the next tick on the correction is taken out and nothing brings it in again. realtime.
+  /// From the next tick on the correction is removed and cannot be applied again. realtime.
   void end() noexcept { ending_ = true; }
 
   /// Share of all corrections, on top of those that the links give to axes. realtime.
@@ -84,8 +83,8 @@ class Service : private CommandHandler {
   /// The links: waits at most `wait` for requests of one link and answers them. Without store_beside all
   /// other duties but the tick are done too. setup.
   HalFault serve(CommandLink& link, TimeUs wait, const LinkRights& rights = {}) noexcept;
-  /// The store: does what a link has left for it and writes down what the guardian did. True: a link can
-  /// collect a reply. setup.
+  /// The store: executes the requests that a link has left for it and records the actions of the guardian.
+  /// True: a link can collect a reply. setup.
   bool look_after_store() noexcept;
   bool store_is_asked() const noexcept { return desk_.asked(); }
   /// Guardian and store in one context, one after the other. setup.
@@ -100,7 +99,7 @@ class Service : private CommandHandler {
  private:
   // A percentile walks a whole histogram; one of the six is brought up to date every so many ticks.
   static constexpr std::uint32_t kTicksPerPercentile = 64;
-  // Ten pictures a second of what an equation began with, for who asks what each effect adds.
+  // Ten times a second the start values of an equation, for clients that read the shares of the effects.
   static constexpr std::uint32_t kTicksPerEquation = 100;
 
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;

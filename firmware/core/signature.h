@@ -10,12 +10,12 @@ namespace vernier {
 
 using PublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
 
-/// Does a signature of 64 bytes fit a head, what follows it, and this key? Ed25519ph, RFC 8032. A port
-/// defines it, with the library that it has; where it has none, firmware/core/signature.cpp does. setup.
+/// Verifies a signature of 64 bytes of a head, of the bytes after it, and of this key. Ed25519ph, RFC 8032. A
+/// port defines it with its library; a port without a library uses firmware/core/signature.cpp. setup.
 bool signature_fits(std::span<const std::uint8_t> head, std::span<const std::uint8_t> rest,
                     const std::uint8_t* signature, const PublicKey& key);
 
-/// The first `size` bytes of a head that is laid out in memory as it is signed.
+/// The first `size` bytes of a head that has the signed layout in memory.
 template <class Head>
 std::span<const std::uint8_t> bytes_of_head(const Head& head, std::uint32_t size = sizeof(Head)) {
   return {reinterpret_cast<const std::uint8_t*>(&head), size};

@@ -9,8 +9,8 @@
 
 namespace vernier {
 
-/// Where a request that the medium has to do with lies between the links, which never wait, and the store,
-/// which may wait for its medium as long as that takes. One at a time.
+/// A request that needs the medium, on its way from the links, which never wait, to the store, which may wait
+/// for its medium without limit. One at a time.
 class StoreDesk {
  public:
   // ---- the links
@@ -20,8 +20,8 @@ class StoreDesk {
     const State state = state_.load(std::memory_order_acquire);
     return state == State::kFree || (state == State::kDone && ++asked_while_done_ > kPatience);
   }
-  /// Only where free(). op: that the reply repeats, which is that of the request's cover. Returns the ticket
-  /// for collect().
+  /// Call only if free(). op: repeated by the reply; the op of the request's cover. Returns the ticket for
+  /// collect().
   std::uint32_t leave(const std::uint8_t* request, std::uint32_t size, std::uint8_t op) noexcept {
     op_ = op;
     size_ = std::min<std::uint32_t>(size, sizeof(request_));
@@ -31,7 +31,8 @@ class StoreDesk {
     state_.store(State::kAsked, std::memory_order_release);
     return ticket_;
   }
-  /// Bytes of the reply; CommandHandler::kLater while it is worked on, 0 where it gave way to another.
+  /// Bytes of the reply; CommandHandler::kLater while the request is executed, 0 if it was replaced by
+  /// another.
   std::uint32_t collect(std::uint32_t ticket, std::uint8_t* reply) noexcept {
     if (ticket != ticket_) return 0;
     const State state = state_.load(std::memory_order_acquire);

@@ -28,7 +28,7 @@ SlotRecord read_record(SlotStore& store, std::uint32_t place) {
   return old.magic == kSlotMagicV1 ? upgraded(old) : record;
 }
 
-// A place in which something stands, be it no record. Erased flash reads as ones.
+// A place that contains data, valid or not. Erased flash reads as ones.
 bool is_written(SlotStore& store, std::uint32_t place) {
   std::uint8_t bytes[sizeof(SlotRecord)];
   if (store.read_record(place, bytes, 1) == HalFault::kNoReading) return false;
@@ -159,7 +159,7 @@ UploadResult Uploader::load(std::uint8_t slot, LoadedProgram& loaded, Origin ori
   return result.fault == UploadFault::kNone ? check_image(loaded) : result;
 }
 
-// What was confirmed before boards had names still runs, until another one is uploaded.
+// An image that was confirmed before boards had names still runs, until another one is uploaded.
 UploadResult Uploader::load_v1(std::uint8_t slot, LoadedProgram& loaded) {
   std::uint8_t bytes[sizeof(UploadHeaderV1)];
   UploadHeaderV1 old;
@@ -185,7 +185,7 @@ UploadResult Uploader::load_v1(std::uint8_t slot, LoadedProgram& loaded) {
 // time.
 void Uploader::read_slots() {
   const SlotRecord first = read_record(store_, 0), second = read_record(store_, 1);
-  // The first record that was ever written may have been cut by the power; nothing was confirmed by then.
+  // A power failure may have cut the first record that was ever written; no image was confirmed by then.
   records_lost_ = !is_valid(first) && !is_valid(second) && is_written(store_, 0) && is_written(store_, 1);
   slots_ = Slots::load(first, second);
   if (slots_.trial() != kNoSlot) store(slots_.revert());
@@ -266,7 +266,7 @@ UploadResult Uploader::add(std::uint32_t offset, const std::uint8_t* bytes, std:
   return {};
 }
 
-// From where it came in to the medium, in pieces that a small flash driver takes.
+// Copies received data to the medium, in pieces that a small flash driver accepts.
 UploadResult Uploader::write_slot(std::uint8_t slot) {
   constexpr std::uint32_t kPiece = 4096;
   std::uint8_t header[sizeof(UploadHeader)];
@@ -280,7 +280,8 @@ UploadResult Uploader::write_slot(std::uint8_t slot) {
   return written ? UploadResult{} : refused(UploadFault::kStore);
 }
 
-// The floor is what was ever tried, not what was kept: what an operator gave up does not come back by itself.
+// The limit is the newest image ever tried, not the newest confirmed one: an image that an operator reverted
+// does not return by itself.
 UploadFault Uploader::judge_history(const UploadHeader& header) const noexcept {
   if (header.security < slots_.security()) return UploadFault::kSecurity;
   if (header.issued > kLatestIssued) return UploadFault::kAbsurdTime;
@@ -293,7 +294,7 @@ UploadResult Uploader::finish() {
   receiving_ = false;
   const std::uint8_t slot = slots_.free_slot();
   UploadResult result = write_slot(slot);
-  // What counts is what the medium gives back, not what came over the wire.
+  // The data read back from the medium count, not the data received.
   ProgramRef loaded = std::move(coming_);
   if (result.fault == UploadFault::kNone) result = load(slot, *loaded, Origin::kNew);
   if (result.fault != UploadFault::kNone) return result;

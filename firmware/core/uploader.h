@@ -15,14 +15,14 @@
 
 namespace vernier {
 
-/// A refusal with what is known about it; `fault` is kNone where it went well.
+/// A refusal with its details; `fault` is kNone if there was no error.
 struct UploadResult {
   UploadFault fault = UploadFault::kNone;
   ImageFault image = ImageFault::kNone;
   BindFault bind = BindFault::kNone;
   Name offender;  // the name that does not fit
 };
-/// A line of text in place; what is longer is cut.
+/// A line of text in place; longer text is cut.
 struct Line {
   char text[160] = {};
   const char* c_str() const noexcept { return text; }
@@ -33,7 +33,7 @@ Line describe(const UploadResult& result) noexcept;
 
 /// Which images the store holds, as others see it.
 struct SlotsRecord {
-  std::uint64_t confirmed_fingerprint = 0, trial_fingerprint = 0;  // 0: none
+  std::uint64_t confirmed_fingerprint = 0, trial_fingerprint = 0;  // 0: no image
   std::uint64_t issued = 0, newest_issued = 0;  // of the confirmed image, and of all that were ever tried
   std::uint8_t confirmed = kNoSlot, trial = kNoSlot, reserved[2] = {};
   std::uint32_t security = 0;
@@ -63,7 +63,7 @@ class Uploader {
   /// As boot(), but runs an image given by the operator who starts the board: it is not signed, and the
   /// medium is not changed. setup.
   UploadResult boot_with(std::span<const std::uint8_t> image);
-  /// Writes what came in to the medium, checks what is there and has it tried. setup.
+  /// Writes received data to the medium, checks it and starts its trial. setup.
   UploadResult finish();
   /// Keeps the image on trial. setup.
   UploadResult confirm();
@@ -82,11 +82,12 @@ class Uploader {
   UploadResult add(std::uint32_t offset, const std::uint8_t* bytes, std::uint32_t size);
 
   // ---- anybody
-  /// The store's contents; a trial that is over is none, whatever the medium knows of it by now.
+  /// The store's contents; a trial that is over is not listed, even if the medium does not record the end
+  /// yet.
   SlotsRecord record() const noexcept;
-  /// Is there a confirmed image that could not be loaded, and no other runs in its place?
+  /// True if a confirmed image could not be loaded and no other runs instead.
   bool image_lost() const noexcept { return image_lost_.load(); }
-  /// Left of the trial; 0 where none runs.
+  /// Remaining time of the trial; 0 without a trial.
   TimeUs trial_left(TimeUs now) const noexcept;
   std::uint32_t capacity() const noexcept { return store_.capacity(); }
   /// Which program runs.
@@ -96,7 +97,7 @@ class Uploader {
   const Slots& slots() const noexcept { return slots_; }
 
  private:
-  /// Where an upload is checked: one that was confirmed has passed what follows from its history.
+  /// Checks an upload; an upload that was confirmed has passed the checks of its history already.
   enum class Origin : std::uint8_t { kStored, kNew };
   UploadResult load(std::uint8_t slot, LoadedProgram& loaded, Origin origin);
   UploadResult load_v1(std::uint8_t slot, LoadedProgram& loaded);

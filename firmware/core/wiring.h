@@ -9,7 +9,7 @@
 
 namespace vernier {
 
-/// A name as images know it: at most kImageNameBytes - 1 characters, what is longer is cut.
+/// A name as in images: at most kImageNameBytes - 1 characters, longer names are cut.
 class Name {
  public:
   constexpr Name() = default;
@@ -21,7 +21,7 @@ class Name {
   constexpr bool empty() const noexcept { return size_ == 0; }
   constexpr std::uint32_t size() const noexcept { return size_; }
   constexpr operator std::string_view() const noexcept { return {text_, size_}; }
-  /// A digit, a letter; dropped where there is no room. setup.
+  /// A digit, a letter; dropped without room. setup.
   constexpr void add(char letter) noexcept {
     if (size_ + 1 < sizeof(text_)) text_[size_++] = letter;
   }
@@ -40,7 +40,7 @@ class Name {
   std::uint32_t size_ = 0;
 };
 
-/// At most kMost values in a row, in place. What finds no room is left out: who fills one checks before.
+/// At most kMost values in a row, in place. Values without room are dropped: the caller checks before.
 template <class T, std::uint32_t kMost>
 class FixedList {
  public:
@@ -62,7 +62,8 @@ class FixedList {
   std::uint32_t size_ = 0;
 };
 
-/// What a board is wired to, in the order of its devices. Images name axes and inputs; the wiring finds them.
+/// Wiring of a board, in the order of its devices. Images use the names of axes and inputs; the wiring finds
+/// them.
 struct Wiring {
   struct Axis {
     Name name;

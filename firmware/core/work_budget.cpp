@@ -79,7 +79,7 @@ WorkBudget measured_work_budget(Clock& clock, TimeUs tick, std::span<std::uint32
 }
 
 bool WorkBudget::covers(const Program& program, const ShareProgram& shares) const noexcept {
-  // Beyond 2^50 a budget is none; lines and their price are below 2^14 and 2^30.
+  // A budget above 2^50 is not used; lines and their cost are below 2^14 and 2^30.
   const std::uint64_t most = lower(work, std::uint64_t{1} << 50),
                       price = lower(of_line, std::uint64_t{1} << 30);
   const std::uint64_t tick =

@@ -14,7 +14,7 @@ constexpr std::uint64_t kAnyWork = UINT64_MAX;
 /// Shares are computed outside the tick, for a display. They may need this many times the work of a tick.
 constexpr std::uint64_t kShareWorkFactor = 20;
 
-/// What a board does in its share of a tick.
+/// Work of a board in its share of a tick.
 struct WorkBudget {
   std::uint64_t work = kAnyWork;  // comp/verify.h, work_of
   std::uint64_t of_line = 0;      // work that a line of memory costs which no cache holds (lines_of)
@@ -24,14 +24,14 @@ struct WorkBudget {
   bool covers(const Program& program, const ShareProgram& shares) const noexcept;
 };
 
-/// Work that this board does in a quarter of a tick: the rest is for devices, the link and what else its
-/// processor has to do. Measured on sums of products, for some milliseconds, and on jumps through `memory`
-/// (its words are written over), which no cache should hold whole; none: lines cost nothing, as where there
-/// are no caches. The best of several tries counts, as the others were interrupted. Where the clock does not
-/// move, kAnyWork. Before the first tick. setup.
+/// Work that this board does in a quarter of a tick; the rest is for devices, the link and the other tasks of
+/// its processor. Measured for some milliseconds on sums of products, and on jumps through `memory` (its
+/// words are overwritten), which must be larger than the caches. Without memory, cache lines have no cost, as
+/// on a processor without caches. The best of several tries counts, because the others were interrupted.
+/// kAnyWork if the clock does not move. Call before the first tick. setup.
 WorkBudget measured_work_budget(Clock& clock, TimeUs tick, std::span<std::uint32_t> memory = {}) noexcept;
 
-/// Words of `memory` that outgrow what boards have as caches: 16 MB.
+/// Words of `memory` that exceed the caches of boards: 16 MB.
 constexpr std::size_t kWordsBeyondCaches = std::size_t{1} << 22;
 
 }  // namespace vernier

@@ -23,7 +23,7 @@ namespace vernier {
 namespace {
 
 constexpr double kMostCounts = 1e15;
-constexpr double kMostDelayUs = 40'000;  // of a probe: what the latch remembers at 1 kHz, less its settling
+constexpr double kMostDelayUs = 40'000;  // of a probe: memory of the latch at 1 kHz, minus its settling time
 
 const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link", "key"};
 
@@ -144,8 +144,8 @@ std::string beside(const std::string& board_path, const std::string& path) {
   return (std::filesystem::path(board_path).parent_path() / given).string();
 }
 
-/// What a calibration has found counts instead of the board file's own settings. A file that is not there is
-/// missed by Devices: without it the output would be driven with other numbers than were measured.
+/// The results of a calibration override the settings of the board file. A missing calibration file is
+/// reported by Devices: without it the output would be driven with other numbers than the measured ones.
 void apply_calibration(const std::string& board_path, SignalSource& output) {
   const std::string path = output.text("calibration", "");
   if (path.empty()) return;
@@ -159,7 +159,7 @@ void apply_calibration(const std::string& board_path, SignalSource& output) {
   settings.nothing_else();
 }
 
-/// What a real output may do is for the board to say, outside of every image.
+/// The limits of a real output are set by the board, outside of every image.
 void require_limits(const Table& settings, const SignalSource& output, bool rotary) {
   if (output.kind.empty() || output.kind == "sim") return;
   const std::string unit = rotary ? "deg" : "mm";
@@ -266,7 +266,7 @@ void read_key(BoardFile& board, const toml::table& table) {
   if (name.empty()) settings.fail("name is missing: whose key it is");
   if (file.empty()) settings.fail("file is missing: the public key of `vernier keys`");
   if (role != "all" && role != "command" && role != "upload" && role != "retired")
-    settings.fail("role: '" + role + "' is none of all, command, upload, retired");
+    settings.fail("role: '" + role + "' is not one of all, command, upload, retired");
   key.name = std::string_view(name);
   board.key_files.push_back(beside(board.path, file));
   key.key = read_public_key(board.key_files.back());
@@ -351,7 +351,7 @@ LinkRights rights_of(SignalSource& link) {
   const bool loopback = link.kind == "modbus-tcp" && link.text("address", "127.0.0.1").starts_with("127.");
   const std::string access = link.text("access", loopback ? "upload" : "read");
   if (access != "read" && access != "command" && access != "upload")
-    link.fail("access: '" + access + "' is none of read, command, upload");
+    link.fail("access: '" + access + "' is not one of read, command, upload");
   rights.access = access == "read"      ? LinkAccess::kRead
                   : access == "command" ? LinkAccess::kCommand
                                         : LinkAccess::kUpload;

@@ -20,12 +20,12 @@ struct SignalSource {
   std::string where;                         // "board.toml:12: axis.X.output"
 
   [[noreturn]] void fail(const std::string& what) const;  // throws BoardError
-  /// Throws BoardError where the file has a setting that is not among `names`, apart from kind.
+  /// Throws BoardError if the file has a setting that is not among `names`, apart from kind.
   void only(std::initializer_list<const char*> names) const;
   const std::string& text(const std::string& name) const;  // throws BoardError where absent
   double number(const std::string& name) const;            // the same
   double number(const std::string& name, double otherwise) const;
-  /// A whole number from low to high; throws BoardError where it is absent or something else.
+  /// A whole number from low to high; throws BoardError if it is absent or not valid.
   std::int64_t whole(const std::string& name, std::int64_t low, std::int64_t high) const;
   std::int64_t whole(const std::string& name, std::int64_t otherwise, std::int64_t low,
                      std::int64_t high) const;
@@ -35,16 +35,16 @@ struct SignalSource {
 /// One axis or input of the board file.
 struct AxisEntry {
   Wiring::Axis wiring;
-  double low = 0, high = 0;  // mm or deg; what a simulated axis moves over
+  double low = 0, high = 0;  // mm or deg; range of a simulated axis
   SignalSource position, output;
 };
 struct InputEntry {
   std::string name, unit;
   SignalSource source;
-  double reference = 0;  // what a simulated one reads
+  double reference = 0;  // reading of a simulated one
 };
 
-/// A link, and what it may be used for.
+/// A link, and its rights.
 struct LinkEntry {
   SignalSource source;
   LinkRights rights;
@@ -63,7 +63,7 @@ struct BoardFile {
   SignalSource enable, healthy;        // digital lines from and to the machine's controller
   std::vector<LinkEntry> links;        // kind: "modbus-tcp", "modbus-rtu", "isotp"
   int priority = 80;                   // SCHED_FIFO
-  std::string watchdog;                // device of a hardware watchdog; empty: none
+  std::string watchdog;                // device of a hardware watchdog; empty: no watchdog
   std::vector<std::string> key_files;  // public keys, read already
 };
 

@@ -12,9 +12,9 @@ namespace vernier {
 /// `identity.pub` (for people and for `vernier fleet add --board-key`).
 class BoardKey final : public IdentityKey {
  public:
-  /// Reads the key of a store, or makes one where the store has none yet: the secret half is on the medium
-  /// before this returns. store: directory that can be written. Throws BoardError where the key cannot be
-  /// read or made, is no key, or others than its owner may read it. setup.
+  /// Reads the key of a store, or makes one if the store has no key yet: the secret half is on the medium
+  /// before this returns. store: directory that can be written. Throws BoardError if the key cannot be read
+  /// or made, is not a key, or if other users may read it. setup.
   explicit BoardKey(const std::string& store);
   ~BoardKey() override;
   BoardKey(const BoardKey&) = delete;

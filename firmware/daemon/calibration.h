@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// What an instrument said of an axis while its output held a code.
+/// Reading of an instrument at an axis while its output held a code.
 struct CalibrationPoint {
   std::int64_t code = 0;
   double measured = 0;  // um of a linear axis, arcsec of a rotary one; 0 is without a correction
@@ -30,9 +30,9 @@ Calibration fit_calibration(const std::vector<CalibrationPoint>& points, std::in
 /// Throws BoardError with file and line. setup.
 std::vector<CalibrationPoint> read_calibration_points(const std::string& path, bool rotary);
 
-/// The file that an output names as its `calibration`: span, zero (the nearest code) and polarity, and for
-/// people their uncertainties. Written by write_output: there as a whole or, where that fails, as it was;
-/// throws BoardError then. setup.
+/// The file that an output names as its `calibration`: span, zero (the nearest code) and polarity, and their
+/// uncertainties for people. Written by write_output: as a whole or, if that fails, not changed; throws
+/// BoardError then. setup.
 void write_calibration(const std::string& path, const Calibration& calibration, const std::string& axis);
 
 /// The same as JSON.

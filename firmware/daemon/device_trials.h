@@ -14,7 +14,7 @@ class IioBuffer;
 /// How long a trial waits for a device.
 inline constexpr TimeUs kPatience(1'000'000);
 
-// Each tries a device that is open: empty, or what is wrong. setup.
+// Each function tries an open device: empty, or the error. setup.
 
 /// Waits for one frame of an axis.
 std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis);

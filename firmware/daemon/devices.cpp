@@ -33,7 +33,7 @@ namespace vernier {
 namespace {
 
 constexpr double kShareOfRangePerS = 0.1;    // speed of a simulated axis
-constexpr std::int64_t kTicksToZero = 1000;  // at least, for what a drive holds at the start
+constexpr std::int64_t kTicksToZero = 1000;  // at least, for the correction that a drive holds at the start
 constexpr std::uint32_t kMostHandles = 64;   // of all links together
 constexpr int kWatchdogSeconds = 10;  // many drivers know whole seconds only; the unit's watchdog is quicker
 
@@ -414,7 +414,8 @@ void Devices::take_left_overs_out(const std::atomic<bool>& stop) noexcept {
     MotionBounds bounds = parts_->file.service.limits.axis[output.axis].motion;
     if (output.device->read_back(held) == HalFault::kNone) motion.stop_at(held.count);
     bounds.slew = std::min(bounds.slew, std::abs(held.count) / kTicksToZero + 1);
-    // The zero is written too, as some drivers do not say what they hold; a refusal shows in the first ticks.
+    // The zero is written too, because some drivers do not report their value; a refusal appears in the first
+    // ticks.
     for (bool zero = false; !zero && !stop;) {
       const AxisTravel next(motion.approach(0, bounds));
       zero = next == AxisTravel{} || output.device->write_correction(0, next) != HalFault::kNone;

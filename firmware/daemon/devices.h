@@ -18,7 +18,7 @@ class WakeUp;
 struct DeviceFinding {
   std::string device;                    // "axis.X.output  pwm"
   std::string missing;                   // empty: it is there
-  std::function<std::string()> attempt;  // tries it once more; what is missing, or empty
+  std::function<std::string()> attempt;  // tries it once more; the missing item, or empty
   bool is_file = false;                  // a file that is read; else a device
 };
 
@@ -30,14 +30,14 @@ struct OpenLink {
 /// The devices that a board file names, alive as long as the board runs.
 class Devices {
  public:
-  /// Opens all of them; what is missing is found in findings(). file: outlives the devices. seed: of the
-  /// motion of simulated axes. Throws BoardError where a setting is wrong. setup.
+  /// Opens all devices; missing ones are listed in findings(). file: outlives the devices. seed: of the
+  /// motion of simulated axes. Throws BoardError if a setting is wrong. setup.
   Devices(const BoardFile& file, unsigned long seed);
   ~Devices();
   Devices(const Devices&) = delete;
   Devices& operator=(const Devices&) = delete;
 
-  /// Only where nothing is missing. setup.
+  /// Call only if no device is missing. setup.
   Board board() noexcept;
   Clock& clock() noexcept;
   std::vector<OpenLink>& links() noexcept;
@@ -52,8 +52,8 @@ class Devices {
   /// out before the first tick: within the limits of the axis, and over a second at least. stop: ends it
   /// early. setup.
   void take_left_overs_out(const std::atomic<bool>& stop) noexcept;
-  /// The hardware watchdog, where the board file names one: what is missing, or empty; then it is to be fed,
-  /// and disarmed at an orderly end. setup.
+  /// Opens the hardware watchdog if the board file names one. Returns the error, or empty; then the caller
+  /// must feed it, and disarm it at an orderly end. setup.
   std::string start_watchdog();
   void feed_watchdog() noexcept;
   void disarm_watchdog() noexcept;
@@ -65,7 +65,8 @@ class Devices {
   /// Takes a sample of each sensor, which waits for its driver. Not in the tick. setup.
   void sample() noexcept;
   bool has_sensors() const noexcept;
-  /// What each output adds to the error: its step and range, and its delay where the file gives one. setup.
+  /// Contribution of each output to the error: its step and range, and its delay if the file gives one.
+  /// setup.
   std::vector<std::string> output_budget() const;
   /// Reports on standard error which outputs were limited to the end of their range.
   void say_held() const;

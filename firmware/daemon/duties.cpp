@@ -9,7 +9,7 @@ namespace {
 
 constexpr TimeUs kGuardPeriod(5'000);
 constexpr TimeUs kServeWait(20'000);
-constexpr TimeUs kStoreWait(50'000);   // what the guardian did is written down at the latest then
+constexpr TimeUs kStoreWait(50'000);   // latest time to record the actions of the guardian
 constexpr TimeUs kSampleWait(10'000);  // between two samples of the sensors
 
 }  // namespace

@@ -21,7 +21,7 @@ class Duties {
  public:
   /// All outlive this. priority: SCHED_FIFO of the guardian, 0: an ordinary thread. setup.
   Duties(Service& service, Devices& devices, ServiceManager& manager, int priority);
-  /// Ends the threads; the store finishes what it is at.
+  /// Ends the threads; the store completes its present request.
   ~Duties();
   Duties(const Duties&) = delete;
   Duties& operator=(const Duties&) = delete;

@@ -8,7 +8,7 @@
 
 namespace vernier {
 
-/// An image with its bytes: what a view of a file needs to live.
+/// An image with its bytes: a view of a file needs them.
 class ImageFile {
  public:
   /// Takes the bytes (aligned by copying) and validates them. setup.
@@ -21,7 +21,7 @@ class ImageFile {
   ImageView view_;
 };
 
-/// The bytes of a file; false where it cannot be read. setup.
+/// The bytes of a file; false if it cannot be read. setup.
 bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes);
 
 }  // namespace vernier

@@ -136,7 +136,7 @@ int check_devices(Devices& devices) {
   return missing + missing_files == 0 ? kDone : kAnswerIsNo;
 }
 
-/// What outputs a daemon that is gone left behind is taken out, as far as they are there.
+/// Removes the corrections that an ended daemon left in the outputs, if the outputs are present.
 int take_to_zero(Devices& devices) {
   devices.take_left_overs_out(stop_asked);
   int missing = 0;
@@ -169,14 +169,14 @@ void say_image(const UploadResult& result, const Service& service) {
                  static_cast<unsigned long long>(service.uploader().record().confirmed_fingerprint));
 }
 
-/// A board whose key cannot be had corrects its machine all the same; it only cannot prove who it is.
+/// A board without a key corrects its machine as well; it only cannot prove its identity.
 std::unique_ptr<BoardKey> key_of_board(const std::string& store) {
   try {
     auto key = std::make_unique<BoardKey>(store);
     std::fprintf(stderr, "vernierd: key of this board: %s\n", key->text().c_str());
     return key;
   } catch (const BoardError& error) {
-    std::fprintf(stderr, "vernierd: note: this board cannot prove who it is: %s\n", error.what.c_str());
+    std::fprintf(stderr, "vernierd: note: this board cannot prove its identity: %s\n", error.what.c_str());
     return nullptr;
   }
 }

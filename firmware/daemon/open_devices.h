@@ -20,12 +20,12 @@ class SampledInput;
 /// Lines that several sensors share, by device or address.
 using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
 
-// Each opens one device of the board file. Null with `error` set where it is missing; a kind or a setting
-// that is wrong throws BoardError. setup.
+// Each function opens one device of the board file. Null with `error` set if it is missing; a wrong kind or
+// setting throws BoardError. setup.
 
 /// A PWM channel or a converter. rotary: spans are in degrees, else in mm.
 std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error);
-/// A sensor. lines: those that are open, and one more where it needs it.
+/// A sensor. lines: the open ones, and one more if the sensor needs it.
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines, std::string& error);
 /// The buffer of a device that inputs of kind "iio-buffer" name, one channel each; its trigger and rate are
 /// those of the first.

@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// What the operating system granted a realtime run, for the report.
+/// Settings that the operating system granted to a realtime run, for the report.
 struct GrantReport {
   bool fifo = false, locked = false, awake = false;
 };
@@ -15,8 +15,8 @@ struct GrantReport {
 /// (json: a file, "-" or empty). False if the file cannot be written. tool.
 bool report_run(const Runner& runner, const Cycle& cycle, const GrantReport& grant, const std::string& json);
 
-/// Writes a result for programs: json is a file, "-" for standard output, or empty for none. False, and said
-/// on standard error, where it cannot be written. tool.
+/// Writes a result for programs: json is a file, "-" for standard output, or empty for no output. False, with
+/// a message on standard error, if it cannot be written. tool.
 bool write_result(const std::string& json, const std::string& text);
 
 }  // namespace vernier

@@ -70,8 +70,8 @@ class RoutedInputs : public InputReader {
   std::vector<InputReader*> backends_;
 };
 
-/// The board's outputs. A correction for an axis without one is refused unless it is zero: an image that
-/// corrects what the board cannot move must not look as if it did.
+/// The board's outputs. A correction for an axis without an output is refused unless it is zero: an image
+/// that corrects an axis without an output must not appear to work.
 class RoutedOutputs : public CorrectionWriter {
  public:
   explicit RoutedOutputs(std::vector<Route<CorrectionWriter>> routes) : routes_(std::move(routes)) {}

@@ -13,19 +13,19 @@ constexpr std::size_t kLongestWord = 24;
 
 bool beyond_ascii(char c) { return static_cast<unsigned char>(c) >= 0x80; }
 
-/// What stands around a place, up to blanks.
+/// The text around a position, up to blanks.
 std::string word_at(const std::string& text, std::size_t at) {
   const std::size_t before = text.find_last_of(" \t\r\n", at), end = text.find_first_of(" \t\r\n", at);
   const std::size_t begin = before == std::string::npos ? 0 : before + 1;
   return text.substr(begin, (end == std::string::npos ? text.size() : end) - begin).substr(0, kLongestWord);
 }
 
-/// Behind the string whose quote stands at `at`, or at its first letter that may not stand there.
+/// Position after the string whose quote is at `at`, or its first letter that is not allowed there.
 std::size_t skip_string(const std::string& text, std::size_t at) {
   const char quote = text[at++];
   const std::string three(2, quote);
   if (text.compare(at, 2, three) == 0) {
-    // Of several lines: nothing but ASCII.
+    // Of several lines: ASCII only.
     at += 2;
     while (at < text.size() && !beyond_ascii(text[at])) {
       if (text[at] == '\\' && quote == '"')

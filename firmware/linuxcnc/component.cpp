@@ -12,7 +12,7 @@ namespace vernier {
 namespace {
 
 constexpr TimeUs kKeeperWait(5'000);  // between two rounds of the guardian
-constexpr TimeUs kStoreWait(10'000);  // between two looks at what the store is asked
+constexpr TimeUs kStoreWait(10'000);  // between two checks for a request to the store
 constexpr std::int64_t kSettleTicks = 5;
 constexpr std::uint32_t kMostImage = 1u << 26;
 constexpr int kError = 1, kNote = 3;
@@ -112,7 +112,7 @@ void Component::show(const TickReport& report) noexcept {
   *pins_.saturated = any;
   *pins_.active = report.mode == Mode::kActive;
   *pins_.mode = static_cast<std::int32_t>(report.mode);
-  // Nothing latches while it checks; what it waits for is shown all the same, once it is to correct.
+  // While it checks no fault is latched; the missing condition is shown once a correction is requested.
   const bool waits = report.mode == Mode::kChecking && *pins_.enable;
   const Fault fault = waits ? cycle.found() : report.latched;
   *pins_.fault = fault != Fault::kNone;

@@ -29,7 +29,7 @@ class Component {
   ~Component();
   Component(const Component&) = delete;
   Component& operator=(const Component&) = delete;
-  /// Starts the two threads; false where the system refuses them. setup.
+  /// Starts the two threads; false if the system refuses them. setup.
   bool start() noexcept;
   /// Ends them; the hatch is not touched any more, and ticks may still run. setup.
   void stop() noexcept;

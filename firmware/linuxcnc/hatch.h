@@ -9,8 +9,9 @@
 
 namespace vernier {
 
-/// One request at a time from one process to another, in memory that both have: who asks fills it in, makes
-/// the turn odd and waits for the next even one. Whoever dies in between has changed nothing but the request.
+/// One request at a time from one process to another, in shared memory. The client fills it in, makes the
+/// turn number odd and waits for the next even one. A process that dies in between has changed only the
+/// request.
 struct Call {
   static constexpr std::uint32_t kMostBytes = 4096;
   std::atomic<std::uint32_t> turn{0};
@@ -19,7 +20,7 @@ struct Call {
   std::uint8_t bytes[kMostBytes] = {};
 };
 
-/// Is a process there, and not only waiting for its parent? setup.
+/// True if a process exists, and is not only waiting for its parent. setup.
 bool process_lives(std::int32_t pid) noexcept;
 /// Waits at most `wait` for a request. setup.
 bool wait_for_call(Call& call, TimeUs wait) noexcept;
@@ -28,11 +29,11 @@ inline bool is_asked(const Call& call) noexcept {
 }
 /// The request is answered: result, size and bytes are in the call. setup.
 void answer_call(Call& call) noexcept;
-/// Waits until the call is answered; false, and the call withdrawn, where `peer` is gone or `stop` is set.
+/// Waits until the call is answered. False, and the call is withdrawn, if `peer` has ended or `stop` is set.
 /// setup.
 bool make_call(Call& call, std::int32_t peer, const std::atomic<bool>& stop) noexcept;
 
-/// What the component's store is asked, which vernier-hal keeps (hal/slot_store.h).
+/// Requests to the component's store, which vernier-hal keeps (hal/slot_store.h).
 enum class StoreOp : std::uint32_t {
   kReadRecord,
   kWriteRecord,
@@ -41,14 +42,14 @@ enum class StoreOp : std::uint32_t {
   kFinishImage,
   kReadGiven
 };
-/// What the component is asked by vernier-hal's links (hal/command_link.h). place: the link's access.
+/// Requests of vernier-hal's links to the component (hal/command_link.h). place: the link's access.
 enum class LinkCall : std::uint32_t { kAnswer, kLater, kRegisters, kCommand };
 
 /// Data that vernier-hal sends about itself when it connects.
 struct Introduction {
   std::int32_t pid = 0;
   std::uint32_t capacity = 0;     // of a slot
-  std::uint32_t given_bytes = 0;  // of an image to start with; 0: what the store holds
+  std::uint32_t given_bytes = 0;  // of an image to start with; 0: the image of the store
   std::uint32_t keys = 0;
   PublicKey key[BoardIdentity::kMostKeys] = {};
   Name board, board_class;
@@ -57,13 +58,13 @@ struct Introduction {
 };
 static_assert(sizeof(Introduction) <= Call::kMostBytes);
 
-/// What the component makes of it.
+/// Result of the component.
 enum class Attached : std::int32_t {
   kStarted = 0,       // the image runs
-  kResumed = 1,       // it goes on with what it runs
+  kResumed = 1,       // it continues with its running image
   kImageRefused = 2,  // bytes: why
   kOtherStore = 3,    // it has been started with another store or other keys, and keeps them
-  kEmpty = 4,         // the store has no image, and none was given
+  kEmpty = 4,         // the store has no image, and no image was given
 };
 
 /// The memory that component and vernier-hal share. Neither waits for the other in a tick: the component has

@@ -11,14 +11,14 @@ class HatchLink : public CommandLink {
   /// call: outlives the link. setup.
   explicit HatchLink(Call& call) noexcept : call_(call) {}
   HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
-  /// The link's access, of the request that waits; LinkAccess::kRead where none does. setup.
+  /// The link's access, for the waiting request; LinkAccess::kRead without a request. setup.
   LinkAccess access() const noexcept;
 
  private:
   Call& call_;
 };
 
-/// vernier-hal's side: hands what a link asks on to the component.
+/// vernier-hal's side: passes the requests of a link to the component.
 class HatchHandler : public CommandHandler {
  public:
   /// hatch, stop: outlive the handler. setup.

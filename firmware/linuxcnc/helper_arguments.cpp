@@ -33,7 +33,7 @@ bool parse_access(const char* text, LinkAccess& access) {
 const char* const kHelperUsage =
     "usage: loadusr -W vernier-hal --store DIR --public-key FILE [--listen ADDRESS:PORT] [--image DIR]\n"
     "Keeps the images of the realtime component vernier (loadrt vernier axes=...) and serves its link.\n"
-    "  --store DIR            where the two slots are kept; made where it is not there\n"
+    "  --store DIR            folder of the two slots; created if it does not exist\n"
     "  --public-key FILE      key whose signature is trusted (vernier keys); up to eight times\n"
     "  --listen ADDRESS:PORT  Modbus TCP for vernier upload, watch, record, touches and the workbench\n"
     "  --access A             what that link may be used for: read, command or upload (default)\n"

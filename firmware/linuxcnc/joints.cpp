@@ -10,7 +10,7 @@ namespace {
 constexpr double kCountsPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
 // Far beyond every machine, and within what converts to counts.
 constexpr double kMostCounts = 1e15;
-// A turning point smaller than a count is none: inverse kinematics round.
+// A reversal smaller than a count is ignored: inverse kinematics rounds.
 constexpr double kTurnsAt = 1;
 
 // Largest outward share of the way to a limit, where the slew limit would let more.
@@ -88,7 +88,7 @@ void Joints::move(Joint& joint, double position, double per_second) noexcept {
   joint.acceleration = (velocity - joint.velocity) * per_second;
   joint.velocity = velocity;
   joint.position = position;
-  // What is a fault is no speed of the joint.
+  // A faulty change is no speed of the joint.
   if (std::abs(travel) * joint.counts <= joint.jump)
     joint.fastest = std::max(joint.fastest, std::abs(velocity));
   turn(joint, travel);
@@ -179,8 +179,9 @@ AxisTravel Joints::within_range(std::uint32_t axis, AxisTravel correction) const
   return AxisTravel(whole(std::clamp(static_cast<double>(correction.count), low, high)));
 }
 
-// Whatever the joint, its limits or the share of the way do, the slew limit comes first: a joint that is
-// faster than it ever was, or a limit that is set under a correction, may find it beyond for that long.
+// The slew limit has priority over the joint, its limits and the share of the distance. A joint that is
+// faster than ever before, or a limit that is set below a correction, may therefore have the correction
+// beyond the limit for a while.
 void Joints::hold(Joint& joint, std::uint32_t i) noexcept {
   const AxisTravel target = within_range(i, joint.correction);
   joint.given_out.count += std::clamp(target.count - joint.given_out.count, -joint.slew, joint.slew);
@@ -188,9 +189,10 @@ void Joints::hold(Joint& joint, std::uint32_t i) noexcept {
   joint.at_limit = full < room_below(joint) || full > room_above(joint);
 }
 
-// The feedback answers the command of the tick before, which had that tick's correction. Where it is the
-// command's own signal, it has just become this tick's. What is no number stays where it was: the drive
-// stands, and a feedback that stands is a following error to the controller as soon as the joint is to move.
+// The feedback answers the command of the previous tick, which had the correction of that tick. If it is the
+// command's signal, it has just become that of this tick. A value that is not a number keeps its previous
+// value: the drive does not move, and a constant feedback is a following error to the controller as soon as
+// the joint moves.
 void Joints::write() noexcept {
   for (std::uint32_t i = 0; i < count_; ++i) {
     Joint& joint = joints_[i];

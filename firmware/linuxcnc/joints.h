@@ -7,24 +7,19 @@
 
 namespace vernier {
 
-/// The joints as LinuxCNC commands them, and the correction on its way to their drives. What the controller
-/// commands has no noise: speed and acceleration are differences of this tick and the ones before, not
-/// smoothed.
-///
-/// A correction that would take a joint past its limit fades out before: outward no more than a share of the
-/// way that the command has left, and that so small that at the joint's greatest speed (the pin max-velocity,
-/// or what it was seen to reach, where that is more) it fades within the slew limit. A change of what is
-/// given out is within the slew limit always; the drive stays within the joint's limits where the joint is no
-/// faster than that.
-///
-/// A connected pin that is no number is no reading of its joint: command, position and feedback alike. The
-/// drive's command and the controller's feedback then stay where they were.
-///
-/// A command that jumps onto the feedback (LinuxCNC does that with a joint that it no longer enables) is no
-/// jump of the axis: the reading goes on from there.
-///
-/// A joint that is not homed counts from nowhere: its reading stays where it was, and goes on from its new
-/// zero when it is homed.
+/// The joints as LinuxCNC commands them, and the correction on its way to their drives. Commanded values have
+/// no noise: speed and acceleration are differences of this tick and the previous ones, not smoothed.
+/// A correction that would move a joint past its limit fades out before. Outward it is at most a share of the
+/// distance of the command from the limit. The share is so small that the correction fades within the slew
+/// limit at the joint's greatest speed (the pin max-velocity, or the greatest observed speed if that is
+/// larger). The output always changes within the slew limit; the drive stays within the joint's limits if the
+/// joint is not faster than that speed.
+/// A connected pin that is not a number is a missing reading of its joint: command, position and feedback
+/// alike. The drive's command and the controller's feedback then keep their values.
+/// A command that jumps to the feedback (LinuxCNC does that with a joint that it no longer enables) is no
+/// jump of the axis: the reading continues from there.
+/// A joint that is not homed has no reference: its reading keeps its value, and continues from the new zero
+/// when the joint is homed.
 class Joints : public AxisReader, public CorrectionWriter {
  public:
   /// pins: outlive this. mm_per_unit: of the machine's lengths. setup.
@@ -34,13 +29,13 @@ class Joints : public AxisReader, public CorrectionWriter {
   void read(double seconds) noexcept;
   /// Corrections to the commands, and off the feedback as they were added. realtime.
   void write() noexcept;
-  /// Most that a joint's correction may change by in a tick, counts; 0: not at all. realtime.
+  /// Largest change of a joint's correction in a tick, counts; 0: no change. realtime.
   void set_slew(std::uint32_t joint, std::int64_t counts) noexcept { joints_[joint].slew = counts; }
   bool all_homed() const noexcept { return all_homed_; }
-  /// Would the correction take a joint, or any, past its limit? It is held then. realtime.
+  /// True if the correction would move a joint (or any joint) past its limit. It is limited then. realtime.
   bool at_limit(std::uint32_t joint) const noexcept { return joints_[joint].at_limit; }
   bool any_at_limit() const noexcept;
-  /// Where a joint stands, in its counts: feedback without the correction; kNoReading without feedback.
+  /// Position of a joint, in its counts: feedback without the correction; kNoReading without feedback.
   /// realtime.
   HalFault stands(std::uint32_t joint, AxisPosition& position) const noexcept;
 
@@ -86,7 +81,7 @@ class Joints : public AxisReader, public CorrectionWriter {
   Joint joints_[kMaxAxes];
 };
 
-/// Where the joints stand, for touches.
+/// Positions of the joints, for touches.
 class StandingJoints : public AxisReader {
  public:
   /// joints: outlive this. setup.

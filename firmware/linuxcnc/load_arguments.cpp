@@ -13,7 +13,7 @@ namespace {
 constexpr int kLongestShown = 40;
 constexpr const char* kNone = "none";  // rotary=none: not even A, B and C
 
-/// Puts a refusal together; the first one stands.
+/// Makes the text of a refusal; the first one is kept.
 class Refusal {
  public:
   explicit Refusal(std::span<char> text) : text_(text) { text_[0] = 0; }

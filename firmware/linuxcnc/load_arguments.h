@@ -13,14 +13,14 @@ struct LoadArguments {
   const char* units = nullptr;
 };
 
-/// What the component makes of it.
+/// Settings of the component.
 struct LoadedWiring {
   Wiring wiring;
   double mm_per_unit = 1;
 };
 
-/// Checks every argument before anything is made. Returns true, or false with `why`, one line that names the
-/// argument and what is wrong with it. setup.
+/// Checks every argument before any object is made. Returns true, or false with `why`, one line that names
+/// the argument and its error. setup.
 bool read_load_arguments(const LoadArguments& arguments, LoadedWiring& loaded, std::span<char> why);
 
 }  // namespace vernier

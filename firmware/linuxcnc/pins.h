@@ -11,8 +11,8 @@ struct JointPins {
   hal_float_t *cmd_in, *cmd_out, *fb_in, *fb_out, *correction;
   hal_float_t* pos_in;                 // the joint's position; not connected: cmd-in
   hal_float_t *min_limit, *max_limit;  // that command and correction together keep
-  hal_float_t* max_velocity;           // of the joint; 0: what it was seen to reach
-  hal_bit_t* homed;                    // on where it is not connected
+  hal_float_t* max_velocity;           // of the joint; 0: its greatest observed speed
+  hal_bit_t* homed;                    // on if it is not connected
   hal_bit_t *at_limit, *saturated;
   const hal_float_t *pos_loose, *fb_loose;  // where HAL points them while they are not connected
 };
@@ -28,7 +28,7 @@ struct Pins {
   hal_u32_t *execution, *execution_max;  // ns
 };
 
-/// Exports the pins of a component. Null where HAL refuses one. setup.
+/// Exports the pins of a component. Null if HAL refuses one. setup.
 Pins* make_pins(int component, const Wiring& wiring) noexcept;
 
 }  // namespace vernier

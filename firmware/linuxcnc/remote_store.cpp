@@ -38,7 +38,7 @@ HalFault RemoteStore::write(StoreOp op, std::uint32_t place, std::uint32_t offse
   return HalFault::kNone;
 }
 
-// A record is one piece: it is written whole or not at all.
+// A record is one piece: it is written as a whole or not at all.
 HalFault RemoteStore::read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept {
   return read(StoreOp::kReadRecord, place, 0, bytes, size);
 }

@@ -5,8 +5,8 @@
 
 namespace vernier {
 
-/// The component's side of a store that vernier-hal keeps. Where vernier-hal is gone every access is refused,
-/// as by a broken medium; what runs goes on running.
+/// The component's side of a store that vernier-hal keeps. If vernier-hal has ended every access is refused,
+/// as by a broken medium; the running image continues.
 class RemoteStore : public SlotStore {
  public:
   /// hatch, stop: outlive the store. setup.

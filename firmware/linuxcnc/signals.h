@@ -19,7 +19,7 @@ class PinInputs : public InputReader {
   std::uint32_t count_;
 };
 
-/// On where the pin `enable` is and every joint knows its zero.
+/// On if the pin `enable` is on and every joint is homed.
 class EnablePin : public DigitalInput {
  public:
   EnablePin(const Pins& pins, const Joints& joints) noexcept : pins_(pins), joints_(joints) {}

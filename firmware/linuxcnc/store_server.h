@@ -8,7 +8,7 @@
 
 namespace vernier {
 
-/// vernier-hal's side of the component's store: does what the component asks, one request at a time.
+/// vernier-hal's side of the component's store: executes the requests of the component, one at a time.
 class StoreServer {
  public:
   /// call, store, given (the image to start with): outlive this. setup.

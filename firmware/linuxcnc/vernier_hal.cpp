@@ -51,7 +51,7 @@ class HalMember {
   HalMember& operator=(const HalMember&) = delete;
   bool good() const { return id_ >= 0; }
   void ready() { hal_ready(id_); }
-  /// The component's memory; null where it is not loaded.
+  /// The component's memory; null if it is not loaded.
   Hatch* hatch() {
     memory_ = rtapi_shmem_new(Hatch::kKey, id_, sizeof(Hatch));
     void* memory = nullptr;
@@ -90,7 +90,7 @@ Introduction introduction_of(const HelperArguments& arguments, std::size_t given
   return introduction;
 }
 
-/// False where it ends. The component answers when its thread runs.
+/// False if it has ended. The component answers when its thread runs.
 bool introduce(Hatch& hatch, const Introduction& introduction) {
   Call& call = hatch.attach;
   std::memcpy(call.bytes, static_cast<const void*>(&introduction), sizeof(introduction));
@@ -108,15 +108,15 @@ bool introduce(Hatch& hatch, const Introduction& introduction) {
           stderr);
       return true;
     case Attached::kResumed:
-      std::fputs("vernier-hal: the component goes on with what it runs\n", stderr);
+      std::fputs("vernier-hal: the component continues with its running image\n", stderr);
       return true;
     case Attached::kImageRefused:
       std::fprintf(stderr, "vernier-hal: the image is not used: %s\n", text);
       return true;
     case Attached::kOtherStore:
       std::fputs(
-          "vernier-hal: the component was started with another store, keys or board name: start LinuxCNC "
-          "anew\n",
+          "vernier-hal: the component was started with another store, keys or board name: restart LinuxCNC"
+          "\n",
           stderr);
   }
   return false;

@@ -29,13 +29,13 @@ class AnalogueOutput : public CorrectionWriter {
 
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 
-  /// Has the device to itself from now on; false where another process, or another output, does. setup.
+  /// Takes the device for exclusive use; false if another process, or another output, has it. setup.
   bool lock() noexcept { return attribute_.lock(); }
 
-  /// The correction that the device holds. kNoReading: the driver does not say. setup.
+  /// The correction that the device holds. kNoReading: the driver does not report it. setup.
   HalFault read_back(AxisTravel& correction) noexcept;
-  /// Reads the code that the device holds and writes the same again, which moves nothing. kNoReading: the
-  /// driver does not say, nothing was written. setup.
+  /// Reads the code of the device and writes the same code again, which moves nothing. kNoReading: the driver
+  /// does not give the code; it was not written. setup.
   HalFault rewrite() noexcept;
   /// Writes that asked for more than the range has.
   std::uint64_t held_at_end() const noexcept { return held_at_end_; }

@@ -17,8 +17,8 @@ struct CanCounts {
   std::uint64_t duplicates = 0;  // the counter of the frame before
   std::uint64_t late = 0;        // a counter before that of the newest frame
   std::uint64_t lost = 0;        // counters that were left out
-  std::uint64_t restarts = 0;    // the counter began anew
-  std::uint64_t invalid = 0;     // frames that say so themselves
+  std::uint64_t restarts = 0;    // the counter restarted
+  std::uint64_t invalid = 0;     // frames that are marked as invalid
   std::uint64_t stalled = 0;     // frames whose stamp has stood still
   std::uint64_t bus_errors = 0;  // error frames: bus off, restarted
   std::uint64_t broken = 0;      // ticks in which the socket failed (interface down or gone)
@@ -31,8 +31,8 @@ class CanAxes : public AxisReader {
   static constexpr std::uint32_t kMostFrames = 256;   // taken from the socket in one tick
   static constexpr std::uint32_t kStalledFrames = 3;  // frames with one and the same stamp that are accepted
 
-  /// interface: "can0"; ids: 11 bits, or 29 bits where above 0x7ff, all different, at least one. Null with
-  /// `error` set where the kernel refuses. setup.
+  /// interface: "can0"; ids: 11 bits, or 29 bits above 0x7ff, all different, at least one. Null with `error`
+  /// set if the kernel refuses. setup.
   static std::unique_ptr<CanAxes> open(const std::string& interface, const std::vector<std::uint32_t>& ids,
                                        std::string& error);
   /// Any socket that keeps frames apart and does not block, and gives them as the kernel's can_frame; taken
@@ -42,7 +42,7 @@ class CanAxes : public AxisReader {
   CanAxes(const CanAxes&) = delete;
   CanAxes& operator=(const CanAxes&) = delete;
 
-  /// Takes what has come since the last call, at most kMostFrames, without waiting. realtime.
+  /// Takes the frames since the last call, at most kMostFrames, without waiting. realtime.
   void begin_tick() noexcept override;
   /// kNoReading: no new, valid frame of this axis since the tick before. realtime.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;

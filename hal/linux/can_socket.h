@@ -8,11 +8,11 @@
 
 namespace vernier {
 
-/// An identifier as the kernel writes it: 11 bits, or 29 with their flag where above 0x7ff.
+/// An identifier as the kernel writes it: 11 bits, or 29 with their flag above 0x7ff.
 canid_t can_identifier(std::uint32_t id) noexcept;
 
-/// Binds a socket to an interface ("can0"). address: what else belongs in it (identifiers of ISO-TP). Closes
-/// the socket and sets `error` where it cannot. setup.
+/// Binds a socket to an interface ("can0"). address: its other fields (identifiers of ISO-TP). Closes the
+/// socket and sets `error` if that fails. setup.
 bool bind_can(int socket, const std::string& interface, sockaddr_can address, std::string& error);
 
 /// A non-blocking socket for frames with these identifiers. bus_errors: the kernel also reports the bus-off

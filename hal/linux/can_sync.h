@@ -11,7 +11,7 @@ namespace vernier {
 /// The sync frame of a CAN bus (CiA 301 calls it SYNC, identifier 0x80): any frame with its identifier.
 class CanSync : public TickSync {
  public:
-  /// interface: "can0"; id: 11 bits, or 29 where above 0x7ff. Null with `error` set. setup.
+  /// interface: "can0"; id: 11 bits, or 29 above 0x7ff. Null with `error` set. setup.
   static std::unique_ptr<CanSync> open(const std::string& interface, std::uint32_t id, std::string& error);
   /// Any socket that keeps frames apart and does not block; taken over. setup.
   explicit CanSync(int socket) : socket_(socket) {}

@@ -19,7 +19,7 @@ class FileLock {
   int fd_ = -1;
 };
 
-/// Locks an open descriptor; false where another process has it. setup.
+/// Locks an open descriptor; false if another process has it. setup.
 bool lock_descriptor(int fd) noexcept;
 
 }  // namespace vernier

@@ -86,7 +86,7 @@ class Line : public GpioLine {
       for (int k = 0; k < count; ++k)
         put_edge(queue, ns_of(events[k].ts), events[k].event_type == GPIOD_LINE_EVENT_RISING_EDGE,
                  EdgeQueue::kNoNumber);
-      // Full: whether it ran over, this interface does not say.
+      // Full: this interface does not report an overflow.
       if (count == static_cast<int>(kKernelEdges)) queue.put_loss();
     }
   }

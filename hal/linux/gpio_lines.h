@@ -21,7 +21,7 @@ class GpioLine {
  public:
   enum class Use { kInput, kOutput, kEdges };
 
-  /// Requests the line; an output starts off. Null with `error` set where there is no such chip or line, or
+  /// Requests the line; an output starts off. Null with `error` set if there is no such chip or line, or if
   /// it is in use. setup.
   static std::unique_ptr<GpioLine> request(const GpioAddress& address, Use use, std::string& error);
   virtual ~GpioLine() = default;
@@ -29,7 +29,7 @@ class GpioLine {
   /// 1 on, 0 off, -1 with errno set. realtime.
   virtual int get() noexcept = 0;
   virtual bool set(bool on) noexcept = 0;
-  /// Moves what the kernel holds into the queue without waiting. realtime.
+  /// Moves the edges of the kernel into the queue without waiting. realtime.
   virtual void read_edges(EdgeQueue& queue) noexcept = 0;
 };
 

@@ -5,7 +5,7 @@
 
 namespace vernier {
 
-/// A watchdog of the kernel (/dev/watchdog): what is not fed for its time resets the computer.
+/// A watchdog of the kernel (/dev/watchdog): it resets the computer if it is not fed within its time.
 class HardwareWatchdog {
  public:
   /// Starts the watchdog immediately, with a time of `seconds` if the driver allows to set it. Null with
@@ -17,7 +17,7 @@ class HardwareWatchdog {
   HardwareWatchdog& operator=(const HardwareWatchdog&) = delete;
 
   void feed() noexcept;
-  /// An orderly end: it stops, where the driver allows that at all. setup.
+  /// An orderly end: the watchdog stops if the driver allows it. setup.
   void disarm() noexcept;
 
  private:

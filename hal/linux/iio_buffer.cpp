@@ -55,7 +55,7 @@ struct Chosen {
 std::unique_ptr<IioBuffer> IioBuffer::open(const IioBufferSettings& settings, std::string& error) {
   std::unique_ptr<IioBuffer> buffer(new IioBuffer(settings));
   const std::string& at = settings.directory;
-  // What ran before would keep every setting as it is.
+  // A buffer that already runs would keep every setting.
   if (!write_word(at + "/buffer/enable", "0", error)) return nullptr;
   if (!settings.trigger.empty() && !pull_trigger(at + "/trigger/current_trigger", settings.trigger, error))
     return nullptr;
@@ -127,7 +127,7 @@ bool IioBuffer::place_channels(std::string& error) {
 bool IioBuffer::start(std::string& error) {
   const std::string folder = settings_.directory + "/buffer";
   if (!write_word(folder + "/length", std::to_string(kBufferScans), error)) return false;
-  // A driver without a watermark wakes with every scan as it is.
+  // A driver without a watermark wakes with every scan in any case.
   std::error_code absent;
   if (fs::exists(folder + "/watermark", absent) && !write_word(folder + "/watermark", "1", error))
     return false;

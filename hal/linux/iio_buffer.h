@@ -21,8 +21,8 @@ struct IioBufferSettings {
   std::string directory;  // of the device in sysfs
   std::string device;     // "/dev/iio:device0"
   std::vector<IioChannel> channels;
-  std::string trigger;    // written to trigger/current_trigger; empty: as it stands, or none
-  std::string frequency;  // written to sampling_frequency; empty: as it stands
+  std::string trigger;    // written to trigger/current_trigger; empty: not changed
+  std::string frequency;  // written to sampling_frequency; empty: not changed
 };
 
 /// What came out of the buffer so far; all only go up.
@@ -50,7 +50,7 @@ class IioBuffer : public InputReader {
   IioBuffer(const IioBuffer&) = delete;
   IioBuffer& operator=(const IioBuffer&) = delete;
 
-  /// Takes what has come, without waiting, and steps to the next scan. realtime: one or two system calls.
+  /// Takes the received scans, without waiting, and steps to the next one. realtime: one or two system calls.
   void begin_tick() noexcept override;
   /// kNoReading: no scan for this tick. realtime.
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;

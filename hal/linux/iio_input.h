@@ -15,8 +15,8 @@ struct IioScale {
   double scale = 1;
 };
 
-/// A sensor of the kernel's industrial I/O class, or of hwmon: one attribute, say in_temp0_input in 1/1000
-/// degC, or in_voltage3_raw.
+/// A sensor of the kernel's industrial I/O class, or of hwmon: one attribute, for example in_temp0_input in
+/// 1/1000 degC, or in_voltage3_raw.
 class IioInput : public SampledInput {
  public:
   /// attribute: path. Null with `error` set. setup.

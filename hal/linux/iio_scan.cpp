@@ -48,7 +48,7 @@ std::int64_t iio_value(const unsigned char* storage, const IioElement& element) 
   std::uint64_t value = 0;
   for (std::uint32_t i = 0; i < bytes; ++i)
     value = value << 8 | storage[element.big_endian ? i : bytes - 1 - i];
-  // Up and down again: what stands beside the value falls out, and its sign goes on.
+  // Shift up and down again: this removes the other bits beside the value and extends its sign.
   const std::uint32_t unused = 64 - element.bits;
   value = value >> element.shift << unused;
   if (element.is_signed) return static_cast<std::int64_t>(value) >> unused;

@@ -17,15 +17,15 @@ struct IioElement {
   std::uint32_t bytes() const noexcept { return storage_bits / 8 * repeat; }
 };
 
-/// Reads "le:s16/16>>0", "be:u24/32X2>>8" and the like. False where it is something else, or has no storage
-/// of 8, 16, 32 or 64 bits that holds its bits. setup.
+/// Reads "le:s16/16>>0", "be:u24/32X2>>8" and the like. False for other text, or if its storage is not 8, 16,
+/// 32 or 64 bits or does not hold its bits. setup.
 bool parse_iio_element(std::string_view text, IioElement& element) noexcept;
 
-/// Value of a channel whose storage begins here: turned to the host's order, shifted, cut to its bits, with
-/// its sign. An unsigned one of 64 bits is held at the largest int64. realtime.
+/// Value of a channel whose storage begins here: converted to the byte order of the host, shifted, cut to its
+/// bits, with its sign. An unsigned value of 64 bits is limited to the largest int64. realtime.
 std::int64_t iio_value(const unsigned char* storage, const IioElement& element) noexcept;
 
-/// Where an element stands after so many bytes of a scan, elements aligned to their own size.
+/// Offset of an element after so many bytes of a scan; elements are aligned to their size.
 constexpr std::size_t iio_aligned(std::size_t at, std::size_t size) noexcept {
   return (at + size - 1) / size * size;
 }

@@ -35,7 +35,8 @@ std::unique_ptr<IsotpLink> IsotpLink::open(const std::string& interface, std::ui
 
 IsotpLink::~IsotpLink() { ::close(fd_); }
 
-// A peer that does not take its reply has none: the kernel refuses the next one until it gave up on it.
+// A peer that does not take its reply gets no further one: the kernel refuses the next reply until it has
+// given up the first one.
 HalFault IsotpLink::send(const std::uint8_t* reply, std::uint32_t size) noexcept {
   if (size == 0 || ::write(fd_, reply, size) >= 0) return HalFault::kNone;
   return errno == EAGAIN || errno == EWOULDBLOCK ? HalFault::kNone : HalFault::kRefused;

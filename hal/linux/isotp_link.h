@@ -10,8 +10,8 @@ namespace vernier {
 /// Requests and replies as ISO 15765-2 messages on a CAN interface, by the kernel's own protocol.
 class IsotpLink : public CommandLink {
  public:
-  /// interface: "can0"; receive, transmit: identifiers, 11 bits, or 29 bits where above 0x7ff. Null with
-  /// `error` set where the kernel refuses. setup.
+  /// interface: "can0"; receive, transmit: identifiers, 11 bits, or 29 bits above 0x7ff. Null with `error`
+  /// set if the kernel refuses. setup.
   static std::unique_ptr<IsotpLink> open(const std::string& interface, std::uint32_t receive,
                                          std::uint32_t transmit, std::string& error);
   ~IsotpLink() override;
@@ -25,8 +25,8 @@ class IsotpLink : public CommandLink {
     return 1;
   }
 
-  /// The asking side: sends a request and waits for its reply. Returns the bytes of the reply, -1 with errno
-  /// set where none came. setup.
+  /// The client's side: sends a request and waits for its reply. Returns the bytes of the reply, -1 with
+  /// errno set without a reply. setup.
   int ask(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, std::uint32_t room,
           TimeUs wait) noexcept;
 

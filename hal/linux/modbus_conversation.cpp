@@ -30,7 +30,7 @@ std::uint16_t modbus_crc(const std::uint8_t* bytes, std::uint32_t size) noexcept
 void ModbusConversation::took(std::uint32_t bytes, InstantNs now) noexcept {
   if (bytes == 0) return;
   if (!tcp() && now - last_byte_ > kSilence) {
-    // Whatever lay there has no end: the new bytes are a frame of their own.
+    // The previous bytes are not complete: the new bytes are a separate frame.
     std::memmove(in_, in_ + used_, bytes);
     used_ = 0;
     senseless_ = false;
@@ -185,7 +185,7 @@ bool ModbusConversation::broken(InstantNs now) noexcept {
   const bool late = used_ > 0 && !busy() && now - frame_began_ > frame_time_;
   if (!late && !senseless_) return false;
   if (tcp()) return true;
-  // The rest of what is no frame is thrown away as it comes, until the line is quiet.
+  // The rest of an invalid frame is discarded, until the line is quiet.
   used_ = 0;
   senseless_ = now - last_byte_ <= kSilence;
   return false;

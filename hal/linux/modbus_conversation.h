@@ -43,16 +43,18 @@ class ModbusConversation {
   /// Answers the request that is complete, if one is, or goes on with one whose reply takes its time.
   void work(CommandHandler& handler, InstantNs now) noexcept;
 
-  /// What is to be sent, and how much of it was.
+  /// Bytes to be sent, and number of bytes sent.
   const std::uint8_t* out() const noexcept { return out_ + sent_; }
   std::uint32_t waiting() const noexcept { return out_size_ - sent_; }
   void sent(std::uint32_t bytes) noexcept;
 
-  /// The peer lies about lengths, is too slow, or does not take its reply: a connection is to be closed. A
-  /// serial line goes on: what came is thrown away.
+  /// The peer sends a wrong length, is too slow, or does not take its reply: a connection must be closed. A
+  /// serial line continues: the received bytes are discarded.
   bool broken(InstantNs now) noexcept;
-  /// Where many want to be served, the one with the lowest number gives way: first who does not take his
-  /// reply, then who has asked nothing for longest; never who waits for the medium.
+  /// If more clients connect than can be served, the one with the lowest number is removed: first a client
+  /// that does not take its reply, then the client whose last request is oldest; never a client that waits
+  /// for the medium.
+  /// medium.
   std::int64_t worth() const noexcept {
     return waiting() > 0 ? -1 : waits_for_reply_ ? INT64_MAX : last_request_.count;
   }
@@ -75,7 +77,7 @@ class ModbusConversation {
   InstantNs frame_time_, frame_began_, reply_began_, last_request_, last_byte_;
   std::uint8_t in_[kMostFrame] = {}, out_[kMostFrame] = {};
   std::uint32_t used_ = 0, out_size_ = 0, sent_ = 0;
-  std::uint8_t mailbox_[2 * kMostMailbox] = {};  // what the peer wrote
+  std::uint8_t mailbox_[2 * kMostMailbox] = {};  // written by the peer
   std::uint8_t reply_[256] = {};
   std::uint32_t reply_size_ = 0, ticket_ = 0;
   bool waits_for_reply_ = false, senseless_ = false;

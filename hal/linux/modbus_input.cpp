@@ -59,8 +59,8 @@ bool ModbusLine::read(int unit, Registers kind, int address, int count, std::uin
   const int got = kind == Registers::kInput ? modbus_read_input_registers(context_, address, count, values)
                                             : modbus_read_registers(context_, address, count, values);
   if (got == count) return true;
-  // An exception is a proper answer; after anything else the line must come to rest, and a connection begins
-  // anew. (A serial device that went away is opened again likewise.)
+  // An exception is a valid answer. After any other error the line must become quiet, and a connection is
+  // opened again. (So is a serial device that was removed.)
   const bool exception = errno >= EMBXILFUN && errno <= EMBXGTAR;
   after_silence_ = serial_ && !exception;
   if (exception || (serial_ && errno != EBADF && errno != EIO)) return false;

@@ -16,7 +16,7 @@ namespace vernier {
 class ModbusLine {
  public:
   /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; wait: for an answer. Null with
-  /// `error` set where the device cannot be used. setup.
+  /// `error` set if the device cannot be used. setup.
   static std::shared_ptr<ModbusLine> rtu(const std::string& device, int baud, char parity, TimeUs wait,
                                          std::string& error);
   /// address: numeric. A peer that is not there is no error: it is tried again with each reading. setup.
@@ -41,7 +41,7 @@ class ModbusLine {
   TimeUs wait_;
 };
 
-/// Where a value stands and what it means: value = (number + offset) * scale in the input's unit.
+/// Register of a value and its scale: value = (number + offset) * scale in the input's unit.
 struct ModbusValue {
   /// 32 bits: high word first.
   enum class Type { kInt16, kUint16, kInt32, kFloat32 };

@@ -22,7 +22,7 @@ constexpr std::size_t kMostClients = 16;
 constexpr int kMostAccepted = 16;     // in one round
 constexpr int kRequestsInARound = 4;  // of one client, before the others have their turn
 constexpr InstantNs kFrameTime(500'000'000);
-constexpr InstantNs kIdle(2'000'000'000);        // a client that has asked nothing for so long may give way
+constexpr InstantNs kIdle(2'000'000'000);        // a client without a request for this time may be removed
 constexpr InstantNs kIntroduction(200'000'000);  // and one that is new, after that
 
 InstantNs now_ns() {
@@ -81,7 +81,7 @@ std::unique_ptr<ModbusServer> ModbusServer::rtu(const std::string& device, int b
     if (context != nullptr) modbus_free(context);
     return nullptr;
   }
-  // Eleven bits a byte, and half a second for who drives the line by hand.
+  // Eleven bits per byte, and half a second for a user who types.
   const std::int64_t longest = 11'000'000'000 * ModbusConversation::kMostFrame / std::max(baud, 1);
   std::unique_ptr<ModbusServer> server(new ModbusServer(layout, unit, kFrameTime + InstantNs(longest)));
   server->line_ = context;
@@ -91,8 +91,9 @@ std::unique_ptr<ModbusServer> ModbusServer::rtu(const std::string& device, int b
   return server;
 }
 
-// Who does not take his reply gives way, then who has been quiet for longest; who is being served does not.
-// So neither a tool that died without a word, nor many that come only to stay, lock out one that works.
+// First a client that does not take its reply is removed, then the client that was idle longest; never a
+// client that is being served. A tool that ended without closing, or many idle clients, therefore cannot
+// block a working one.
 std::vector<ModbusServer::Client>::const_iterator ModbusServer::first_to_go() const noexcept {
   return std::min_element(clients_.begin(), clients_.end(),
                           [](const Client& a, const Client& b) { return a.talk.worth() < b.talk.worth(); });
@@ -155,7 +156,7 @@ bool ModbusServer::serve_client(Client& client, CommandHandler& handler, Instant
 std::uint32_t ModbusServer::handles(int* handles, std::uint32_t room) const noexcept {
   std::uint32_t count = 0;
   if (listening_ >= 0 && room > 0 && has_room(now_ns())) handles[count++] = listening_;
-  // Who is not listened to does not wake anybody.
+  // A client that is not listened to wakes no thread.
   for (const Client& client : clients_)
     if (count < room && client.talk.room() > 0) handles[count++] = client.fd;
   return count;

@@ -12,12 +12,12 @@ struct _modbus;
 
 namespace vernier {
 
-/// A Modbus server over TCP for a few clients at a time, or over a serial line (which libmodbus opens). No
-/// client can hold it up: it reads and writes what there is, and closes a connection whose request is not
-/// whole within half a second of its first byte, or whose reply is not taken within a second.
+/// A Modbus server over TCP for a few clients, or over a serial line (which libmodbus opens). No client can
+/// block it: it reads and writes what is available. It closes a connection whose request is not complete
+/// within half a second of its first byte, or whose reply is not taken within a second.
 class ModbusServer : public CommandLink {
  public:
-  /// address: numeric, "127.0.0.1"; port 0 takes any free one. Null with `error` set where it cannot listen.
+  /// address: numeric, "127.0.0.1"; port 0 takes any free one. Null with `error` set if it cannot listen.
   /// setup.
   static std::unique_ptr<ModbusServer> tcp(const std::string& address, int port, const ModbusLayout& layout,
                                            std::string& error);

@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// What the operating system granted; for what it did not, the errno.
+/// The settings that the operating system granted; for the others, the errno.
 struct RealtimeGrant {
   int memory_error = 0;    // mlockall
   int schedule_error = 0;  // SCHED_FIFO
@@ -16,7 +16,7 @@ struct RealtimeGrant {
 /// setup.
 RealtimeGrant become_realtime(int priority) noexcept;
 
-/// Gives the calling thread SCHED_FIFO alone, for one beside the tick. Returns 0 or the errno. setup.
+/// Gives the calling thread only SCHED_FIFO, for a thread beside the tick. Returns 0 or the errno. setup.
 int become_realtime_thread(int priority) noexcept;
 
 /// Threads made from now on have stacks of 1 MB, in the place of 8 that would all be locked in memory. setup.

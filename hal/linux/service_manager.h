@@ -14,7 +14,7 @@ class ServiceManager {
   ServiceManager(const ServiceManager&) = delete;
   ServiceManager& operator=(const ServiceManager&) = delete;
 
-  /// state: "READY=1", "WATCHDOG=1", "STOPPING=1". False where it was asked for and failed. setup.
+  /// state: "READY=1", "WATCHDOG=1", "STOPPING=1". False if it was requested and failed. setup.
   bool notify(const char* state) noexcept;
 
  private:

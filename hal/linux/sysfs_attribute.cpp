@@ -46,7 +46,7 @@ SysfsAttribute::~SysfsAttribute() {
 HalFault SysfsAttribute::write_text(const char* text, std::size_t size) noexcept {
   for (int i = 0; i < kMostInterruptions; ++i) {
     const ssize_t put = ::pwrite(fd_, text, size, 0);
-    // A driver takes an attribute as a whole or not at all.
+    // A driver accepts an attribute as a whole or not at all.
     if (put == static_cast<ssize_t>(size)) return HalFault::kNone;
     if (put >= 0 || errno != EINTR) return HalFault::kRefused;
   }
@@ -94,7 +94,7 @@ bool parse_micro(const char* text, std::size_t size, std::int64_t& micro) noexce
     if (++at == size || !is_digit(text[at])) return false;
     for (; at < size && is_digit(text[at]); ++at) fraction += (weight /= 10) * (text[at] - '0');
   }
-  // An attribute ends with a line feed; what a longer text has after it is of no account.
+  // An attribute ends with a line feed; any text after it is ignored.
   if (at < size && text[at] != '\n') return false;
   const std::int64_t value = whole * kMicro + fraction;
   micro = negative ? -value : value;

@@ -14,22 +14,23 @@ class SysfsAttribute {
  public:
   enum class Use { kRead, kWrite, kBoth };
 
-  /// Empty with `error` set ("/sys/...: No such file or directory") where it cannot be opened so. setup.
+  /// Empty with `error` set ("/sys/...: No such file or directory") if it cannot be opened. setup.
   static std::optional<SysfsAttribute> open(const std::string& path, Use use, std::string& error);
   SysfsAttribute(SysfsAttribute&& other) noexcept;
   SysfsAttribute& operator=(SysfsAttribute&& other) noexcept;
   ~SysfsAttribute();
 
-  /// Has it to itself from now on; false where another process does. setup.
+  /// Takes it for exclusive use; false if another process has it. setup.
   bool lock() noexcept;
 
-  /// Writes the number and a line feed. kRefused: the driver or the device said no. realtime, as far as the
-  /// device's bus is quick.
+  /// Writes the number and a line feed. kRefused: the driver or the device refused. realtime, if the bus of
+  /// the device is fast enough.
   HalFault write(std::int64_t value) noexcept;
   /// Writes a word ("normal"). setup.
   HalFault write(const std::string& word) noexcept;
-  /// A decimal number, with a fraction or without, in millionths; further digits are cut off. kNoReading: the
-  /// driver gave an error, nothing, or no number; `micro` stays as it is. Waits as long as the driver does.
+  /// A decimal number, with or without a fraction, in millionths; further digits are cut off. kNoReading: the
+  /// driver gave an error, an empty text, or no number; `micro` is not changed. Waits as long as the driver
+  /// does.
   HalFault read_micro(std::int64_t& micro) noexcept;
   /// The same for a whole number. setup.
   HalFault read(std::int64_t& value) noexcept;

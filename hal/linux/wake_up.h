@@ -17,7 +17,7 @@ class WakeUp {
   void wake() noexcept;
   /// At most `wait`; takes the wake-up. setup.
   void wait(TimeUs wait) noexcept;
-  /// For poll(), and what takes the wake-up after it.
+  /// The handle for poll(), and the function that clears the wake-up after it.
   int handle() const noexcept { return fd_; }
   void clear() noexcept;
 

@@ -25,15 +25,15 @@ class AnalogueChain {
   double step_nm() const { return step_nm_; }
   std::int64_t last_code() const { return 2 * zero_code_; }
 
-  /// Nearest code, held at the first and last.
+  /// Nearest code, limited to the first and last.
   std::int64_t code_for(AxisTravel correction_nm) const {
     return std::clamp<std::int64_t>(wanted_code(correction_nm), 0, last_code());
   }
-  /// Does the correction lie beyond the codes?
+  /// True if the correction is beyond the codes.
   bool saturates(AxisTravel correction_nm) const {
     return wanted_code(correction_nm) != code_for(correction_nm);
   }
-  /// What the drive adds to its axis, nm.
+  /// Value that the drive adds to its axis, nm.
   double offset_nm(std::int64_t code) const { return static_cast<double>(code - zero_code_) * step_nm_; }
 
  private:

@@ -42,8 +42,8 @@ struct PlantOptions {
   std::vector<PlantFault> faults;
 };
 
-/// A seeded machine on a trajectory, seen through imperfect instruments. Same seed, same readings. It stands
-/// at the trajectory's first point until release().
+/// A seeded machine on a trajectory, read through imperfect instruments. The same seed gives the same
+/// readings. It is at the trajectory's first point until release().
 class SimPlant : public AxisReader, public InputReader, public CorrectionWriter {
  public:
   SimPlant(Trajectory& trajectory, std::uint32_t axes, std::uint32_t inputs, PlantOptions options = {});

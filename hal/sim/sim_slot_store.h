@@ -9,7 +9,7 @@
 namespace vernier {
 
 /// Slots in memory whose power can be cut at any byte of any write: the bytes before the cut are new, the
-/// rest is old, and nothing is written any more until restore_power(). It can also be full, or fail to write.
+/// rest is old, and no further byte is written until restore_power(). It can also be full, or fail to write.
 class SimSlotStore : public SlotStore {
  public:
   explicit SimSlotStore(std::uint32_t capacity) : capacity_(capacity) {}

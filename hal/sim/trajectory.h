@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// What the simulated machine does at one tick, before any instrument spoils it. Rollover axes carry whole
+/// Motion of the simulated machine at one tick, before the errors of instruments. Rollover axes carry whole
 /// turns.
 struct PlantState {
   AxisReading axis[kMaxAxes];

@@ -23,7 +23,7 @@ struct AnalogueScale {
   std::int64_t low = 0, high = 0;  // ends of the range that is used, codes; 0 <= low < high
   bool inverted = false;           // a positive correction lowers the code
 
-  /// Is it usable? setup.
+  /// True if it can be used. setup.
   bool valid() const noexcept {
     return span > 0 && span <= kMostCounts && codes > 0 && codes <= INT32_MAX && low >= 0 && low < high &&
            high <= INT32_MAX && zero >= low && zero <= high;

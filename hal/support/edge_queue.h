@@ -14,8 +14,8 @@ class EdgeQueue {
   static constexpr std::uint32_t kRoom = 128;
   static constexpr std::uint32_t kNoNumber = 0;
 
-  /// number: one more with each edge, from 1; kNoNumber where the device gives none. Without room the edge is
-  /// dropped and told as lost. realtime.
+  /// number: one more with each edge, from 1; kNoNumber if the device gives no numbers. Without room the edge
+  /// is dropped and reported as lost. realtime.
   void put(const ProbeEdge& edge, std::uint32_t number = kNoNumber) noexcept {
     if (count_ == kRoom) return put_loss();
     const bool out_of_turn = known_ && edge.made == last_made_;

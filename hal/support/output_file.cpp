@@ -57,7 +57,7 @@ std::error_code write_all(int to, std::string_view text) {
 }
 
 /// The number of the open file of this process that /dev/stdout, /dev/fd/N or /proc/self/fd/N is. Its name
-/// leads to what the file was opened by; to put another file there would not reach who holds it open.
+/// leads to the opened file; a file that replaced it would not reach the processes that have it open.
 std::optional<int> own_descriptor(const fs::path& path) {
   std::error_code failed;
   const fs::path folder = fs::canonical(path.parent_path().empty() ? "." : path.parent_path(), failed);
@@ -87,7 +87,7 @@ std::error_code follow(End& end) {
 }
 
 std::error_code write_to_open_file(int number, std::string_view text) {
-  // What was printed before comes before.
+  // Earlier output is written first.
   if (number == STDOUT_FILENO) std::fflush(stdout);
   Descriptor to(::fcntl(number, F_DUPFD_CLOEXEC, 0));
   if (!to.opened()) return last_error();
@@ -102,7 +102,7 @@ std::error_code write_to_device(const std::string& path, std::string_view text) 
   return to.close();
 }
 
-/// A new file beside `target`; `name` is where it is.
+/// A new file beside `target`; `name` is its path.
 int open_beside(const fs::path& target, mode_t mode, fs::path& name) {
   static std::atomic<unsigned> count{0};
   for (;;) {
@@ -131,7 +131,7 @@ std::error_code fill(Descriptor& to, std::string_view text, const struct stat* o
   return to.close();
 }
 
-/// old: the file that is there, null for none.
+/// old: the existing file, null without one.
 std::error_code replace(const fs::path& target, std::string_view text, const struct stat* old) {
   fs::path name;
   Descriptor to(open_beside(target, old != nullptr ? S_IRUSR | S_IWUSR : 0666, name));

@@ -6,13 +6,14 @@
 
 namespace vernier {
 
-/// Writes what a program was asked to leave at `path`; every output of the tools and of the daemon goes
-/// through here. An ordinary file, there or not yet, is replaced as a whole by way of a temporary file beside
-/// it, on the medium before its name changes: a reader, and a power cut, find the old one or the new one; its
-/// permissions stay, and its owner where the system lets them. Links are followed and stay: what the last one
-/// leads to is replaced, or made. A device, pipe or terminal is written to and never replaced, and so is an
-/// open file of this process (/dev/stdout, /dev/fd/N). Waits for the reader of a named pipe, as a shell's >
-/// does. Returns why not (a folder, a socket, no right, a full medium); an ordinary file is then as it was.
+/// Writes the output of a program to `path`; every output of the tools and of the daemon uses this function.
+/// An ordinary file, existing or not, is replaced as a whole through a temporary file beside it, which is on
+/// the medium before its name changes. A reader, and a power failure, find the old file or the new one. Its
+/// permissions are kept, and its owner if the system allows it. Links are followed and kept: the target of
+/// the last link is replaced or made.
+/// A device, pipe or terminal is written to and never replaced. The same applies to an open file of this
+/// process (/dev/stdout, /dev/fd/N). Waits for the reader of a named pipe, as > of a shell does. Returns the
+/// reason of a failure (a folder, a socket, no right, a full medium); an ordinary file is then unchanged.
 /// setup, tool.
 std::error_code write_output(const std::string& path, std::string_view text);
 

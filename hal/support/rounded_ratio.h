@@ -29,7 +29,7 @@ class RoundedRatio {
     }
   }
 
-  /// value: held at +-kMost, and so is the result. realtime.
+  /// value: limited to +-kMost, and so is the result. realtime.
   constexpr std::int64_t of(std::int64_t value) const noexcept {
     const bool beyond = value >= kMost || value <= -kMost;
     const auto size = static_cast<std::uint64_t>(beyond ? kMost : magnitude_of(value));

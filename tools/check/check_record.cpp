@@ -71,8 +71,8 @@ class Collector {
   }
 
  private:
-  /// The noise of the survey, where it was more than each reading's stated own; nothing where one has u and
-  /// the other not.
+  /// The noise of the survey, if it exceeded the stated noise of each reading; empty if one has u and the
+  /// other has not.
   void take_noise() {
     const auto& kept = machine_.fitted->noise;
     if (!kept) return;
@@ -187,7 +187,7 @@ class Collector {
     }
   }
 
-  /// The instrument, or what it stands on, moves steadily from the first row to the last.
+  /// The instrument, or its support, moves steadily from the first row to the last.
   void take_drifts() {
     std::map<model::ObservationKind, VectorXd> of_kind;
     const double last = std::max<double>(1, static_cast<double>(m_.rows()) - 1);

@@ -19,14 +19,14 @@ struct Suspect {
 /// The data that are kept of one check: the sensitivity of its readings to the tested parameters, in units of
 /// their uncertainty, with its set-ups projected out.
 struct CheckRecord {
-  std::string label;              // when or what it was
+  std::string label;              // time or name of the check
   std::vector<Suspect> suspects;  // the machine's free parameters first, in their order
   std::size_t parameters = 0;     // how many of them are
   Eigen::MatrixXd gram;           // tested parameters x tested parameters
   Eigen::VectorXd moment;
   double rest = 0, freedom = 0;  // chi^2 without all tested parameters, and its degrees of freedom
   std::size_t readings = 0;
-  double beyond_set_up = 0;  // readings less what the set-up takes
+  double beyond_set_up = 0;  // number of readings minus numbers of the set-up
 };
 
 /// Evaluates a measurement against a fitted machine; fit and check rows are treated alike. The set-up of the
@@ -46,7 +46,8 @@ struct SuspectColumns {
 };
 SuspectColumns suspect_columns(const model::Machine& machine, const model::Measurement& measurement);
 
-/// The fit's covariance of a record's parameters as L L^T: rows of L, 0 for what the fit does not name.
+/// The fit's covariance of a record's parameters as L L^T: rows of L, 0 for parameters without a covariance
+/// in the fit.
 Eigen::MatrixXd spread_of_fit(const model::Machine& machine, const std::vector<Suspect>& suspects,
                               std::size_t parameters);
 

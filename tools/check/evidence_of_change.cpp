@@ -68,7 +68,7 @@ class Judge {
       from_[k].gram += from_[k + 1].gram;
       from_[k].moment += from_[k + 1].moment;
     }
-    // What the fit left uncertain, once the checks up to each have told of it: L (1 + L' G L)^-1 L'.
+    // Uncertainty of the fit, reduced by the checks up to each one: L (1 + L' G L)^-1 L'.
     MatrixXd told = MatrixXd::Zero(p, p);
     for (const CheckRecord& check : checks) {
       told += check.gram.topLeftCorner(p, p);
@@ -186,8 +186,8 @@ class Judge {
     }
   }
 
-  /// Information of the first check alone that could show a change since then: what is known before its
-  /// readings are, as the size of a change that is looked for must be.
+  /// Information of the first check alone that could show a change since then. It is known before the
+  /// readings of the check, as required for the size of the change that is searched.
   double first_amount(std::size_t first, Index suspect) const {
     return amount_beside(checks_[first].gram, suspect, doubt_after_[first]);
   }
@@ -238,7 +238,7 @@ class Judge {
     if (fails("readings") || fails("sensitivity")) {
       answer_.verdict = CheckVerdict::kTooLittle;
       answer_.explanation =
-          "The readings determine the set-up of the instrument and nothing else. Measure more points, "
+          "The readings determine only the set-up of the instrument. Measure more points, "
           "further "
           "apart.";
       return;

@@ -7,7 +7,7 @@
 
 namespace vernier::check {
 
-/// The checks of one machine so far, as they are kept in a file (JSON).
+/// All checks of one machine, as stored in a file (JSON).
 struct CheckHistory {
   std::string machine;  // name and parameters of the fit that they were made against
   std::vector<CheckRecord> checks;
@@ -16,8 +16,8 @@ struct CheckHistory {
 /// What `machine` of a history must be for a fitted machine: other numbers make another history.
 std::string identity_of(const model::Machine& machine);
 
-/// The file as text, and back; a file of version 1 has no record that can be used and reads as one of no
-/// machine. Throws InputError naming the file and what is wrong in it. tool.
+/// Converts to the text of the file, and back. A file of version 1 has no usable record and is read as the
+/// file of no machine. Throws InputError with the file and the error in it. tool.
 std::string history_text(const CheckHistory& history);
 CheckHistory parse_history(const std::string& text, const std::string& file);
 

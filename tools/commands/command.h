@@ -126,16 +126,15 @@ void register_workbench(CLI::App& vernier);
 void register_image_diff(CLI::App& vernier);
 }  // namespace workbench_cli
 
-/// Writes the result for programs: to a file, or to standard output for "-"; nothing for an empty path.
-/// Throws std::logic_error where a figure that tools/docs/formats.md promises is not finite.
+/// Writes the result for programs: to a file, or to standard output for "-"; no output for an empty path.
+/// Throws std::logic_error if a figure that tools/docs/formats.md promises is not finite.
 void write_json(const std::string& path, const nlohmann::ordered_json& result);
 
 /// Help text of the option `--residuals`.
 inline constexpr const char* kResidualsHelp =
     "every reading as CSV: row, observation, value, prediction, residual, u (mm or deg)";
 
-/// Where the human-readable lines go: standard output, or standard error where `--json -` has taken standard
-/// output.
+/// Output of the human-readable lines: standard output, or standard error if `--json -` uses standard output.
 std::FILE* human_stream(const std::string& json_path);
 
 /// Progress of a job that may take more than two seconds, on standard error. On a terminal the line is
@@ -147,7 +146,7 @@ class Progress {
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// fraction 0..1, and what is being done now.
+  /// fraction 0..1, and the present step.
   void update(double fraction, const std::string& step = {});
 
  private:

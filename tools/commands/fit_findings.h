@@ -6,10 +6,10 @@
 
 namespace vernier::commands {
 
-/// Repeats what the last fit of a machine file found, a line each on standard error.
+/// Repeats the findings of the last fit of a machine file, one line each on standard error.
 void repeat_findings(const model::Machine& machine);
 
-/// Reads a machine file and repeats what its last fit found. Throws InputError. tool.
+/// Reads a machine file and repeats the findings of its last fit. Throws InputError. tool.
 model::Machine read_model(const std::string& path);
 
 }  // namespace vernier::commands

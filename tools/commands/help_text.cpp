@@ -44,7 +44,7 @@ std::string beside(std::string left, const std::string& right) {
   return left + std::string(kBeside - columns(left), ' ') + wrapped(right, kBeside, kBeside);
 }
 
-/// Lines that begin with a blank stay as they are, the others flow.
+/// Lines that begin with a blank are not changed, the others are wrapped.
 std::string paragraphs(const std::string& text) {
   std::string result, flowing;
   const auto end = [&] {
@@ -77,8 +77,8 @@ std::string HelpText::make_help(const CLI::App* app, std::string name, CLI::AppF
 std::pair<std::string, std::string> HelpText::option_words(const CLI::Option* option,
                                                            bool is_positional) const {
   std::string left = make_option_name(option, is_positional), right = make_option_desc(option);
-  // What it takes, without the library's words for it; of the words of a set those that the description
-  // lacks.
+  // The value of an option without the library's words for it; of the words of a set only those that the
+  // description lacks.
   const std::string type = option->get_type_name();
   const std::string kind = option->get_items_expected_max() == 0 ? "" : type.substr(0, type.find(':'));
   if (!is_positional && !kind.empty())

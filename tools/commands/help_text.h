@@ -10,7 +10,7 @@ namespace vernier::commands {
 class HelpText : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override;
-  /// An option's names with what it takes, and its description with choices and default.
+  /// An option's names with its value, and its description with choices and default.
   std::pair<std::string, std::string> option_words(const CLI::Option* option, bool is_positional) const;
   std::string make_option(const CLI::Option* option, bool is_positional) const override;
   std::string make_subcommand(const CLI::App* command) const override;

@@ -16,7 +16,8 @@
 namespace vernier::commands {
 namespace {
 
-/// What a hint looks at of a file: any machine file, and more of a table than its headings.
+/// Size of the part of a file that is read for a hint: any machine file, and more than the headings of a
+/// table.
 constexpr std::size_t kMostRead = 1u << 22;
 
 std::vector<std::string> names_of_commands(const CLI::App& app) {
@@ -39,7 +40,8 @@ std::vector<const CLI::App*> parsed_commands(const CLI::App& app) {
   return list;
 }
 
-/// The beginning of an ordinary file; empty where it is none (a device may never end) or cannot be opened.
+/// The beginning of an ordinary file; empty for other files (a device may never end) or if it cannot be
+/// opened.
 std::string head_of(const std::string& path, std::size_t most = 4096) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return {};
@@ -160,7 +162,7 @@ void warn_of_machine(const CLI::App& vernier) {
   if (paths.empty()) paths = values_of(command, "machine");
   for (const std::string& path : paths) {
     const std::string text = head_of(path, kMostRead);
-    // What cannot be read the command itself will say.
+    // The command reports files that cannot be read.
     const lint::MachineLint lint = lint::lint_machine(text, path);
     if (!lint.machine) continue;
     for (const lint::LintFinding& finding : lint.findings)
@@ -170,7 +172,7 @@ void warn_of_machine(const CLI::App& vernier) {
 }
 
 std::string import_hint(const std::string& message, const std::vector<std::string>& arguments) {
-  // Who reads it already knows how; tables of touches are read in any form.
+  // A command that reads it needs no hint; tables of touches are read in any form.
   static const std::set<std::string> kAnyForm = {"import", "probe-cal", "fit-feature"};
   if (!arguments.empty() && kAnyForm.contains(arguments.front())) return "";
   for (const std::string& path : arguments) {
@@ -178,7 +180,7 @@ std::string import_hint(const std::string& message, const std::vector<std::strin
     const std::string bytes = head_of(path, kMostRead);
     if (bytes.empty() || is_xml(bytes)) continue;
     const std::string command = lint::import_command_for(bytes, path);
-    if (!command.empty()) return path + " is a spreadsheet's table as it stands; this reads it: " + command;
+    if (!command.empty()) return path + " is a table of a spreadsheet; this command reads it: " + command;
   }
   return "";
 }

@@ -9,26 +9,26 @@ namespace vernier::commands {
 /// `vernier help fit` as `vernier fit --help`, `vernier help` as `vernier --help`. tool.
 std::vector<std::string> without_help_command(std::vector<std::string> arguments);
 
-/// Throws InputError where the first word of a command or of one of its kinds names none, with the one that
-/// was probably meant. tool.
+/// Throws InputError if the first word is not the name of a command or of one of its kinds, with the most
+/// similar name. tool.
 void require_known_commands(const CLI::App& vernier, const std::vector<std::string>& arguments);
 
-/// What a parser's complaint of an unknown option probably means: "did you mean --json?"; else empty. tool.
+/// Suggestion for an unknown option in a parser's message: "did you mean --json?"; else empty. tool.
 std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error);
 
-/// Makes every option of a number take finite decimals only, and every count only what is not negative: the
-/// parser itself reads "nan", "0x1f" and -1, and no range catches nan. tool.
+/// Makes every option of a number accept finite decimals only, and every count only values that are not
+/// negative. The parser accepts "nan", "0x1f" and -1, and no range excludes nan. tool.
 void take_plain_numbers(CLI::App& vernier);
 
-/// Throws InputError where a measurement stands where a machine file is wanted, or the reverse, with the
-/// command as it was meant. tool.
+/// Throws InputError if a measurement is given instead of a machine file, or the reverse, with the corrected
+/// command. tool.
 void require_files_in_their_places(const CLI::App& vernier, const std::vector<std::string>& arguments);
 
 /// Prints the warnings of lint on the machine file of a command that fits, evaluates or compiles it: on
 /// standard error, one line each, once. tool.
 void warn_of_machine(const CLI::App& vernier);
 
-/// The command that reads a spreadsheet of which an error complains; empty where none does. tool.
+/// The command that reads the spreadsheet of an error message; empty for other messages. tool.
 std::string import_hint(const std::string& message, const std::vector<std::string>& arguments);
 
 }  // namespace vernier::commands

@@ -18,7 +18,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// Text as troff takes it: no line of it is a request, a hyphen is what is typed.
+/// Text for troff: no line of it is a request, a hyphen is the character that is typed.
 std::string escaped(const std::string& text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -39,7 +39,7 @@ std::string hyphened(std::string names) {
   return names;
 }
 
-/// Lines that begin with a blank stay as they are, the others flow.
+/// Lines that begin with a blank are not changed, the others are wrapped.
 std::string notes_of(const std::string& text) {
   std::string result;
   bool kept = false;

@@ -14,8 +14,8 @@ struct ReportHeader {
   std::vector<std::string> given;  // --header "serial number=4711"
   std::string file;                // --letterhead: lines of such entries, for all reports of a shop
 
-  /// In the order of file, then arguments; one given twice stands where it first did, with its last words.
-  /// Throws InputError with file and line, or the option's words.
+  /// In the order of file, then arguments. An entry that is given twice keeps its first position with its
+  /// last text. Throws InputError with file and line, or the text of the option.
   std::vector<std::pair<std::string, std::string>> entries() const;
   /// The page with them, as tools/report/report.h draws them.
   nlohmann::ordered_json on(nlohmann::ordered_json page) const;

@@ -13,9 +13,10 @@ void add_survey(CLI::App& command, SurveyArguments& arguments) {
   command.add_option("MEAS", arguments.measurements, "measurement files (CSV)")->required();
   command.add_option("--images", arguments.images, simulate::kImagesHelp);
   command
-      .add_option("--column", arguments.columns,
-                  "NAME=ROLE: what a logged column is, where its unit and name mislead: temperature, load, "
-                  "vibration, set-point, other, ignore; may be repeated")
+      .add_option(
+          "--column", arguments.columns,
+          "NAME=ROLE: meaning of a logged column whose unit and name are misleading: temperature, load, "
+          "vibration, set-point, other, ignore; may be repeated")
       ->allow_extra_args(false)
       ->type_name("NAME=ROLE");
 }

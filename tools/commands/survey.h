@@ -9,7 +9,7 @@
 
 namespace vernier::commands {
 
-/// What a search is asked to look at.
+/// Settings of a search.
 struct SurveyArguments {
   std::string machine, images;
   std::vector<std::string> measurements, columns;

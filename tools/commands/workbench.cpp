@@ -124,7 +124,7 @@ void register_workbench(CLI::App& vernier) {
       ->capture_default_str();
   command->add_option("--port", arguments->port, "of 127.0.0.1 (0: any free one)")->capture_default_str();
   command->add_flag("--no-browser", arguments->no_browser, "only print the address");
-  command->add_flag("--reader", arguments->reader, "")->group("");  // what the server starts to read files
+  command->add_flag("--reader", arguments->reader, "")->group("");  // started by the server to read files
   command->add_option("--json", arguments->json, "{url, port} once it serves; - for standard output");
   command->footer(
       "Serves until interrupted. The address holds the token of the session; the page reads and writes\n"

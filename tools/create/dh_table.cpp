@@ -18,7 +18,7 @@ double number_in(const std::string& text, const text::Place& place, const std::s
   return *number;
 }
 
-/// The cells of one column in mm or deg; nothing where the table has no such column.
+/// The cells of one column in mm or deg; empty if the table has no such column.
 std::optional<std::vector<double>> column(const format::CsvFile& csv, const std::string& name,
                                           format::Dimension dimension) {
   for (std::size_t k = 0; k < csv.columns.size(); ++k) {
@@ -89,8 +89,9 @@ DhRow parse_dh_row(const std::string& words) {
     parts.erase(parts.begin());
   }
   if (parts.size() != 4)
-    throw text::InputError("\"" + words +
-                           "\": a joint is theta,d,a,alpha (deg,mm,mm,deg; P, before them where it slides)");
+    throw text::InputError(
+        "\"" + words +
+        "\": a joint is theta,d,a,alpha (deg,mm,mm,deg; P, before them for a prismatic joint)");
   row.theta = number_in(parts[0], place, "theta");
   row.d = number_in(parts[1], place, "d");
   row.a = number_in(parts[2], place, "a");

@@ -5,23 +5,23 @@
 
 namespace vernier::create {
 
-/// One joint of an arm: Tz(d)·Rz(theta)·Tx(a)·Rx(alpha), the row of Denavit and Hartenberg, and behind it
-/// Ry(beta) where the next axis is nearly parallel (Hayati 1983). The joint's position is added to theta, or
-/// to d where it is prismatic.
+/// One joint of an arm: Tz(d)·Rz(theta)·Tx(a)·Rx(alpha), the row of Denavit and Hartenberg, followed by
+/// Ry(beta) if the next axis is nearly parallel (Hayati 1983). The position of the joint is added to theta,
+/// or to d if it is prismatic.
 struct DhRow {
   double theta = 0, d = 0, a = 0, alpha = 0;  // deg, mm, mm, deg
   bool prismatic = false;
   double beta = 0;  // deg
-  /// Is the next joint's axis parallel to this one's, or nearly so?
+  /// True if the next joint's axis is parallel to the axis of this one, or nearly so.
   bool parallel() const;
   bool operator==(const DhRow&) const = default;
 };
 
-/// The arm that is written where none is given: six joints, published lengths of the UR10e.
+/// The default arm: six joints, published lengths of the UR10e.
 const std::vector<DhRow>& default_arm();
 
-/// A table of rows: a header of `theta[deg] d[mm] a[mm] alpha[deg]` in any order (`type` of R or P may stand
-/// beside them), a row a joint; theta absent is 0. Throws InputError with file, line and word. tool.
+/// A table of rows: a header of `theta[deg] d[mm] a[mm] alpha[deg]` in any order (optional `type` of R or P),
+/// one row per joint; theta absent is 0. Throws InputError with file, line and word. tool.
 std::vector<DhRow> parse_dh_table(const std::string& text, const std::string& file);
 
 /// "theta,d,a,alpha" or "P,theta,d,a,alpha" of one joint. Throws InputError with the word. tool.

@@ -11,7 +11,8 @@ namespace vernier::create {
 namespace {
 
 constexpr std::array<char, 3> kLengths = {'X', 'Y', 'Z'}, kTurns = {'A', 'B', 'C'};
-/// Bounds of what a correction may do: a millimetre is a crash, a tenth of a degree at a metre nearly two.
+/// Limits of a correction: a millimetre is a crash; a tenth of a degree at a distance of a metre is nearly
+/// two.
 constexpr const char* kLinearLimits = R"(maxcorrection="0.5" maxslew="5")";
 constexpr const char* kRotaryLimits = R"(maxcorrection="0.1" maxslew="1")";
 /// The zero error of a joint is larger, and near a singular pose a small tool motion needs a large joint
@@ -55,8 +56,8 @@ struct TravelAngle {
   std::size_t about = 0;
 };
 
-/// Which way a slide's travel may be out of square. The first X is the datum of direction, the first Y lies
-/// with it in the plane of the set-up, every other one leans both ways.
+/// Directions in which a slide may be out of square. The first X is the datum of direction, the first Y is
+/// with it in the plane of the set-up, all others have both angles.
 std::vector<TravelAngle> travel_angles(const MachinePlan& plan, std::size_t index) {
   const PlannedAxis& axis = plan.axes[index];
   std::array<std::string, 3> first;

@@ -6,9 +6,9 @@
 
 namespace vernier::create {
 
-/// The machine file of a plan, with remarks that say what each part is for: squareness with X as datum (ISO
-/// 230-1 names), location errors of turning axes (ISO 230-7), a table of six errors an axis, all nominal 0; a
-/// robot by its rows, with Hayati's angle between parallel joints. What it writes parse_machine reads. tool.
+/// The machine file of a plan, with comments that explain each part: squareness with X as datum (ISO 230-1
+/// names), location errors of rotary axes (ISO 230-7), a table of six errors per axis, all nominal 0. A robot
+/// has its rows, with Hayati's angle between parallel joints. parse_machine reads the output. tool.
 std::string machine_file(const MachinePlan& plan);
 
 /// The order of the axes, one line per side: "bed > Y (beam) > X (carriage) > Z (ram) > tool". tool.

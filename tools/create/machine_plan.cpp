@@ -13,7 +13,7 @@
 namespace vernier::create {
 namespace {
 
-/// No direction given and none in the name; an axis of a robot needs none.
+/// No direction is given and the name has none; an axis of a robot needs no direction.
 constexpr char kNoDirection = '?';
 
 char direction_in(const std::string& name) {
@@ -133,7 +133,7 @@ void place_all(MachinePlan& plan, bool tool_given, bool work_given) {
   for (const auto* side : {&plan.tool_side, &plan.work_side})
     for (std::size_t k = 0; k < side->size(); ++k)
       if (std::count(side->begin(), side->end(), (*side)[k]) > 1)
-        throw text::InputError("\"" + plan.axes[(*side)[k]].name + "\": this axis stands twice on its side");
+        throw text::InputError("\"" + plan.axes[(*side)[k]].name + "\": this axis occurs twice on its side");
 }
 
 }  // namespace

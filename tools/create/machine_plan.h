@@ -31,8 +31,8 @@ struct MachinePlan {
   std::array<double, 3> tool{};                   // its point in the frame of the last axis of its side, mm
   std::vector<DhRow> arm;                         // of a robot, a row a joint; else empty
   std::array<double, 6> base{};                   // BaseShift: chain base in the measuring frame, mm, deg
-  /// Only what an instrument along each axis sees is free in a fit: squareness, straightness and angles stay
-  /// 0.
+  /// Only errors that an instrument along each axis measures are free in a fit: squareness, straightness and
+  /// angles stay 0.
   bool positioning_only = false;
 };
 
@@ -58,8 +58,8 @@ MachinePlan plan_machine(const std::string& type, std::vector<PlannedAxis> axes,
                          const std::optional<std::vector<std::string>>& tool_order,
                          const std::optional<std::vector<std::string>>& work_order);
 
-/// A robot: its rows, and axes as many as they have (none: J1, J2 … of ±180 deg, prismatic 0 to 500 mm).
-/// Throws InputError where their numbers differ. tool.
+/// A robot: its rows, and the same number of axes (empty: J1, J2 … of ±180 deg, prismatic 0 to 500 mm).
+/// Throws InputError if the numbers differ. tool.
 MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& rows);
 
 /// Positions that divide a range at round numbers into four to seven parts: stations of its table. tool.

@@ -16,7 +16,7 @@
 namespace vernier::create {
 namespace {
 
-/// Columns of a survey: of its readings, and what stands beside them.
+/// Columns of a survey: its readings, and the columns that they need.
 std::vector<const format::ColumnGroup*> groups_of(const format::SurveyReading& reading) {
   std::vector<const format::ColumnGroup*> groups;
   for (const format::ReadingForm form : reading.list()) groups.push_back(&format::reading_columns(form));
@@ -33,7 +33,7 @@ std::string header_of(const format::SurveyReading& reading) {
   return header;
 }
 
-/// "# x y z         what they hold", in lines of bounded length.
+/// "# x y z         their meaning", in lines of bounded length.
 std::string remark_line(const std::string& names, const std::string& meaning) {
   constexpr std::size_t kIndent = 14, kWidth = 104;  // letters: of the names, of a line
   std::string text, line = "# " + names;
@@ -52,7 +52,7 @@ std::string remark_line(const std::string& names, const std::string& meaning) {
 std::string remarks_of(const format::SurveyReading& reading) {
   std::string text;
   for (const format::ColumnGroup* const group : groups_of(reading)) {
-    // What several columns of one form leave out is said once.
+    // A remark on several columns of one form is written once.
     const bool some_will_do = group->use == format::ColumnUse::kReading && group->count > 1 &&
                               !format::entry_of(group->form).together;
     text += remark_line(format::words_of(group->list()),
@@ -147,7 +147,7 @@ std::string remarks(const model::Machine& machine, const format::SurveyReading& 
          "# More columns are welcome, in any place: " +
          format::heading(format::columns::kUncertainty) + " standard uncertainty of the reading, " +
          format::heading(format::columns::kTime) + " time,\n# " + format::heading(format::columns::kFeed) +
-         ", T_name[degC] a temperature, load[%], whatever was logged; `vernier diagnose` asks them what "
+         ", T_name[degC] a temperature, load[%], any logged quantity; `vernier diagnose` asks them what "
          "they\n"
          "# explain.\n"
          "# `vernier lint` reports errors in the file, `vernier import table` reads a spreadsheet "

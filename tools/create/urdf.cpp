@@ -168,8 +168,8 @@ class Tree {
     }
     if (ends.empty()) throw text::InputError({file_, 1}, "robot", "no joint of it moves");
     if (ends.size() > 1)
-      throw text::InputError(fmt::format("{}: several links end the arm, say which with --tip: {}", file_,
-                                         text::joined(ends, ", ")));
+      throw text::InputError(fmt::format("{}: the arm has several end links, choose one with --tip: {}",
+                                         file_, text::joined(ends, ", ")));
     return ends.front();
   }
 
@@ -251,7 +251,7 @@ DhRow row_along_normal(const Line& next) {
   DhRow row;
   row.theta = clean(angle_deg(Vector3d::UnitX(), x, z));
   row.alpha = clean(angle_deg(z, next.direction, x));
-  // The line's point where it is nearest to z: its part across x vanishes in the plane of z and x.
+  // The point of the line nearest to z: its component across x is zero in the plane of z and x.
   row.a = clean(next.point.dot(x));
   const Vector3d y = z.cross(x);
   const double along = -next.point.dot(y) / next.direction.dot(y);
@@ -266,7 +266,7 @@ DhRow row_to(const Isometry3d& frame, const Line& next) {
   return sine < kNearlyParallel ? row_to_parallel(seen) : row_along_normal(seen);
 }
 
-/// The last row: up to the tip's height, turned so that x is the tip's where that can be.
+/// The last row: up to the height of the tip, rotated until x is the x of the tip if possible.
 DhRow row_to_tip(const Isometry3d& tip) {
   DhRow row;
   row.d = clean(tip.translation().z());
@@ -284,8 +284,8 @@ bool is_static_of_arm(const std::string& name) {
                   : kind == "TPX" || kind == "TPY" || kind == "TPZ";
 }
 
-/// The joint's name as an axis of a machine file may have it: letters, digits, and none of the names that the
-/// arm's own statics take (a1, th2).
+/// The joint's name as a valid name of an axis in a machine file: letters, digits, and no name of the arm's
+/// statics (a1, th2).
 std::string axis_name(const std::string& joint) {
   std::string name = joint;
   for (char& c : name)

@@ -7,8 +7,8 @@
 
 namespace vernier::evaluate {
 
-/// What the uncertainty of a positioning test by ISO 230-2 is made of. A range counts as rectangular, u =
-/// range / (2 sqrt 3), and U = 2 u: 0.58 of it (GUM 4.3.7). Absent parts are 0.
+/// Components of the uncertainty of a positioning test by ISO 230-2. A range counts as rectangular, u = range
+/// / (2 sqrt 3), and U = 2 u: 0.58 of it (GUM 4.3.7). Absent components are 0.
 struct PositioningBudget {
   double device_um_m = 0;         // expanded uncertainty of the calibrated instrument, um/m, k = 2
   double misalignment_mm_m = 0;   // of its line to the axis, largest, mm/m
@@ -29,7 +29,7 @@ struct BudgetPart {
   double expanded_um = 0;  // k = 2
 };
 
-/// Its parts over a length: what is in proportion to the way, and the drift. tool.
+/// Its components over a length: the part in proportion to the distance, and the drift. tool.
 std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double length_mm);
 
 /// U (k = 2) of A, E, M, R, B in mm, of tests with `runs` readings in each approach direction. A, E and M are

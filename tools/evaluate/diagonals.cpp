@@ -18,7 +18,7 @@ namespace {
 /// Steps whose directions differ by less are on one line: 1 mm across a metre is a set-up's, not another
 /// line's.
 constexpr double kSameDirection = 1e-3;
-/// The same target: what was commanded is a number of the control, this far apart they are two.
+/// Commanded positions are numbers of the control: above this distance they are two targets.
 constexpr double kSameTarget_mm = 1e-6;
 
 struct Row {
@@ -27,9 +27,9 @@ struct Row {
   std::size_t line = 0;
 };
 
-/// What a file has of diagonals: positions of its linear axes, readings, the largest uncertainty; mm.
+/// Columns of a file for diagonals: positions of its linear axes, readings, the largest uncertainty; mm.
 struct Columns {
-  std::array<model::Column, 3> axis;  // empty: the file has none
+  std::array<model::Column, 3> axis;  // empty: not in the file
   model::Column reading, u;
 };
 
@@ -81,7 +81,7 @@ std::vector<Line> lines_of(const std::vector<Row>& rows, const std::string& file
   std::vector<Line> lines;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
-    // The line of the row before goes on where the way lies along it, or the target is approached once more.
+    // The line of the previous row continues if the motion is along it, or if the target is approached again.
     if (!lines.empty() && lines.back().direction.norm() > 0) {
       const Eigen::Vector3d way = row.at - lines.back().rows.front().at;
       const Eigen::Vector3d across = way - way.dot(lines.back().direction) * lines.back().direction;
@@ -103,7 +103,7 @@ std::vector<Line> lines_of(const std::vector<Row>& rows, const std::string& file
     if (name.size() < 4)
       throw text::InputError({file, line.rows.front().line}, name,
                              name.empty()
-                                 ? "a row that lies on no line with its neighbours"
+                                 ? "a row that is on no line with its neighbours"
                                  : "a line along one axis: that is ISO 230-2 (vernier evaluate iso230-2)");
   }
   return lines;

@@ -53,7 +53,7 @@ JudgedText judged_text(const JudgedValue& one, int least) {
 
 text::Assurance assurance_of(const std::vector<JudgedValue>& all, const std::string& unit) {
   text::Assurance assurance(text::AssuranceKind::kEvaluate);
-  if (all.empty()) assurance.not_covered("No tolerance is given: nothing is judged.");
+  if (all.empty()) assurance.not_covered("No tolerance is given: no value is tested.");
   for (const JudgedValue& one : all) {
     const std::string rule = "tolerance-" + one.name;
     if (!one.value) {

@@ -8,11 +8,11 @@
 
 namespace vernier::evaluate {
 
-/// Decision rule of ISO 14253-1: a tolerance is met where the value with its expanded uncertainty stays
-/// within, not met where it is beyond even without it. Numbers that differ by rounding (1e-12 of the
-/// tolerance) are equal.
+/// Decision rule of ISO 14253-1: a tolerance is met if the value with its expanded uncertainty is within it,
+/// and not met if the value without its uncertainty is beyond it. Numbers that differ by rounding (1e-12 of
+/// the tolerance) are equal.
 enum class Conformity { kMet, kNotMet, kUndecided };
-/// One unit for all three. Throws std::logic_error where one is not finite.
+/// One unit for all three. Throws std::logic_error if one is not finite.
 Conformity conformity(double value, double tolerance, double expanded_uncertainty);
 /// "met", "not met", "not decided (within the uncertainty)".
 const char* conformity_text(Conformity conformity);
@@ -25,7 +25,7 @@ struct JudgedValue {
   double tolerance = 0;
 };
 
-/// Digits behind the point of what commands print, um or arcsec.
+/// Decimals in the output of commands, um or arcsec.
 inline constexpr int kPrintedDigits = 3;
 
 struct JudgedText {
@@ -35,7 +35,7 @@ struct JudgedText {
 /// numbers to agree with the verdict. A missing value is "–".
 JudgedText judged_text(const JudgedValue& one, int least);
 
-/// Holds where every tolerance that was given is met. unit: of the numbers, for the sentences. tool.
+/// Holds if every given tolerance is met. unit: of the numbers, for the sentences. tool.
 text::Assurance assurance_of(const std::vector<JudgedValue>& all, const std::string& unit);
 
 }  // namespace vernier::evaluate

@@ -62,7 +62,7 @@ TargetResult result_at(const TargetReadings& readings) {
   return result;
 }
 
-/// Of a rotary axis the angle about it is the reading where no column has its name: rz of C.
+/// For a rotary axis the angle about it is the reading if no column has its name: rz of C.
 std::string reading_column(const model::ColumnReader& file, const std::string& axis,
                            const std::string& reading) {
   const auto about = format::angle_about(axis);
@@ -137,7 +137,7 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
   const model::Column u = reader.has(uncertainty)
                               ? reader.numbers(uncertainty, reader.dimension(uncertainty), false)
                               : model::Column();
-  // Targets are what was commanded: a thousandth of a micrometre apart they are the same.
+  // Targets are commanded positions: they are equal if they differ by less than a thousandth of a micrometre.
   std::map<long long, TargetReadings> targets;
   double sense = 1;
   for (Eigen::Index row = 0; row < position.size(); ++row) {
@@ -146,7 +146,7 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
       sense = std::isnan(senses[row]) ? 0 : senses[row];
       if (sense != 0 && std::abs(sense) != 1)
         throw text::InputError(reader.place(static_cast<std::size_t>(row)), text::number_text(sense),
-                               "an approach direction is 1 or -1 (0: nothing moved)");
+                               "an approach direction is 1 or -1 (0: no motion)");
     } else if (row > 0) {
       // At the far end the same target is approached again from the other side.
       const double before = position[row - 1];

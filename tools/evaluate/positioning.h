@@ -29,12 +29,12 @@ struct TargetResult {
 /// measured.
 struct PositioningResult {
   std::vector<TargetResult> targets;                                         // in the order of positions
-  std::array<std::optional<double>, 2> accuracy, systematic, repeatability;  // A, E, R of one sense
+  std::array<std::optional<double>, 2> accuracy, systematic, repeatability;  // A, E, R of one direction
   std::optional<double> accuracy_both, systematic_both, repeatability_both;  // A, E, R
   std::optional<double> reversal, mean_reversal, range;                      // B, mean B, M
 };
 
-/// Evaluates readings; each target that was approached in a sense has two readings in it at least. Throws
+/// Evaluates readings. A target that was approached in a direction needs at least two readings in it. Throws
 /// InputError: fewer than two targets, a single reading. tool.
 PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readings);
 

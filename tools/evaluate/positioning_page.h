@@ -20,11 +20,11 @@ struct PositioningWords {
   std::map<std::string, double> tolerance, uncertainty;     // by A E M R B, in the unit of the axis; U95
 };
 
-/// The characteristic of that letter: A, A+, A-, E, E+, E-, R, R+, R-, B, M, mean B. Nothing for one not
+/// The characteristic of that letter: A, A+, A-, E, E+, E-, R, R+, R-, B, M, mean B. `nullopt` if not
 /// measured.
 std::optional<double> characteristic(const PositioningResult& result, const std::string& name);
 
-/// An entry of `characteristics` as a judgement; nothing where it has no tolerance.
+/// An entry of `characteristics` as a judgement; `nullopt` if it has no tolerance.
 std::optional<JudgedValue> judged_of(const nlohmann::ordered_json& characteristic);
 
 /// {axis, unit, factor, targets[…], characteristics[{name, value, tolerance, uncertainty, conformity}],

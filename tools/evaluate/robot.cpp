@@ -109,7 +109,7 @@ PoseResult pose_of(const std::vector<const PoseReading*>& readings) {
   result.distance_spread_mm = std::sqrt(squares / (n - 1));
   result.repeatability_mm = result.mean_distance_mm + 3 * result.distance_spread_mm;
   take_interval(rest, result);
-  // What the instrument errs by it errs by in every visit: no mean takes it away.
+  // An error of the instrument is the same in every visit: no mean removes it.
   result.accuracy_std_mm = std::hypot(result.scatter_std_mm, u);
   take_rotations(readings, result);
   return result;

@@ -17,7 +17,7 @@ struct PoseReading {
   Eigen::Vector3d commanded_mm, measured_mm;
   std::optional<Eigen::Vector3d> commanded_deg, measured_deg;
   double u_mm = 0;  // standard uncertainty of a measured coordinate; 0: not known
-  double time_s = std::numeric_limits<double>::quiet_NaN();  // not a number where it is not known
+  double time_s = std::numeric_limits<double>::quiet_NaN();  // not a number if it is not known
 };
 
 /// What ISO 9283:1998, 7.2 computes at one pose. mm, deg.
@@ -36,7 +36,7 @@ struct PoseResult {
   std::optional<Eigen::Vector3d> accuracy_deg, repeatability_deg;  // AP_a b c; RP_a b c: 3 S of each
 };
 
-/// The visits of each pose, poses and visits in their order. What is pointed to is in `readings`. tool.
+/// The visits of each pose, poses and visits in their order. The pointers refer to `readings`. tool.
 std::vector<std::vector<const PoseReading*>> visits_by_pose(const std::vector<PoseReading>& readings);
 
 /// 95 % interval of a standard deviation, or a multiple of one, with so many degrees of freedom. tool.
@@ -48,9 +48,9 @@ std::pair<double, double> spread_interval(double spread, double freedom);
 /// varies as RP_l then does. tool. Source: ISO 9283:1998, 7.2.1, 7.2.2; the interval by the delta method.
 std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings);
 
-/// Turns and shifts what was measured so that the barycentres of the commanded poses come nearest to them
-/// (least squares, Kabsch 1976): for an instrument whose frame is not the robot's. Throws InputError where
-/// the poses do not fix a frame (fewer than three, on one line). tool.
+/// Rotates and shifts the measured poses until their barycentres are nearest to the commanded poses (least
+/// squares, Kabsch 1976): for an instrument whose frame is not that of the robot. Throws InputError if the
+/// poses do not determine a frame (fewer than three, on one line). tool.
 void align_to_commanded(std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate

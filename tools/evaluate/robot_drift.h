@@ -10,11 +10,11 @@ namespace vernier::evaluate {
 /// A pose in one block of cycles of a long test, against the first block.
 struct DriftBlock {
   std::string run;
-  double time_s = 0;  // middle of its readings since that of the first; not a number where no time is known
+  double time_s = 0;  // middle of its readings since that of the first; not a number without times
   PoseResult pose;
   double accuracy_drift_mm = 0, accuracy_drift_std_mm = 0;  // dAP, and what its scatter makes it uncertain by
   double repeatability_drift_mm = 0, repeatability_drift_std_mm = 0;  // dRP, likewise
-  double shift_mm = 0;  // of the barycentre: dAP is 0 where it goes round the commanded point
+  double shift_mm = 0;  // of the barycentre: dAP is 0 if it moves on a circle about the commanded point
 };
 
 /// A pose over the whole test.

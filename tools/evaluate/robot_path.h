@@ -14,15 +14,15 @@ struct PathResult {
   std::size_t accuracy_at = 0, repeatability_at = 0;  // the station of the largest
 };
 
-/// The same path followed in several cycles (runs), samples in time order, not at the same places. Stations
-/// lie equally spaced along the commanded path of the first cycle; each cycle counts where its measured path
-/// crosses the plane across the commanded path there, linear between samples. Ends are left out: no sample
-/// lies beyond them. Throws InputError: fewer than two cycles, a path without length, a station that a cycle
-/// does not cross. tool.
+/// The same path followed in several cycles (runs); samples in time order, not at the same positions.
+/// Stations are equally spaced along the commanded path of the first cycle. A cycle is evaluated where its
+/// measured path crosses the plane perpendicular to the commanded path, linear between samples. Ends are
+/// excluded, because no sample is beyond them. Throws InputError: fewer than two cycles, a path without
+/// length, a station that a cycle does not cross. tool.
 PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations);
 
-/// Rows of a measurement file with columns px py pz (commanded) and x y z (measured), mm; run, u, t where
-/// they are there. check rows count too; a row without a reading is left out. Throws InputError. tool.
+/// Rows of a measurement file with columns px py pz (commanded) and x y z (measured), mm; run, u, t if
+/// present. check rows count too; a row without a reading is skipped. Throws InputError. tool.
 std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file);
 
 }  // namespace vernier::evaluate

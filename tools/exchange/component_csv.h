@@ -17,10 +17,10 @@ std::string axis_csv(const model::Machine& machine, const model::Table& table);
 model::Table parse_axis_csv(const std::string& text, const std::string& file, const model::Machine& machine);
 
 /// Component errors of all tables in the ISG CSV format of the volumetric compensation of ISG and Beckhoff
-/// (TF5280) controllers: a block an axis, its argument (mm, deg) and its six errors (mm, rad) under ISO 230
-/// names; blanks between columns, // comments, # between blocks. Source: the makers' pages "ISG CSV format",
-/// "Units of measure", "List of parameters supported". Throws InputError where an axis has no ISO letter or a
-/// table is cubic (the controller interpolates linearly). tool.
+/// (TF5280) controllers. One block per axis: its argument (mm, deg) and its six errors (mm, rad) under ISO
+/// 230 names; blanks between columns, // comments, # between blocks. Source: the makers' pages "ISG CSV
+/// format", "Units of measure", "List of parameters supported". Throws InputError if an axis has no ISO
+/// letter or a table is cubic (the controller interpolates linearly). tool.
 std::string isg_csv(const model::Machine& machine);
 
 /// Reads the component errors of such a file. Throws InputError with file, line and word: a position error,

@@ -111,8 +111,7 @@ std::vector<LeftOut> beyond_tables(const model::Machine& machine, const model::S
   }
   const double um = 1000 * model::deviation(rest, states).colwise().norm().maxCoeff();
   if (!(um > kNothing_um)) return {};
-  return {
-      {"errors that stand outside the tables (position errors, scale factors, reversal, other terms)", um}};
+  return {{"errors outside the tables (position errors, scale factors, reversal, other terms)", um}};
 }
 
 void refuse(const model::Machine& machine, const std::string& format, const std::vector<LeftOut>& left_out,

@@ -7,7 +7,7 @@
 
 namespace vernier::exchange {
 
-/// Something that a format cannot say, and how much it is.
+/// An error that a format cannot represent, and its size.
 struct LeftOut {
   std::string what;
   double um = 0;

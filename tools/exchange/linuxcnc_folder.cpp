@@ -12,7 +12,7 @@
 namespace vernier::exchange {
 namespace {
 
-// What the component can take (comp/equation.h), and a pin's name (HAL_NAME_LEN less "vernier.0.input.").
+// Limits of the component (comp/equation.h), and of a pin's name (HAL_NAME_LEN less "vernier.0.input.").
 constexpr std::size_t kMostJoints = 8, kMostInputs = 24, kLongestName = 23;
 
 std::vector<const model::Input*> sensors(const model::Machine& machine) {
@@ -104,7 +104,7 @@ std::string hal_file(const model::Machine& machine) {
          "setp vernier.0.enable 1\n";
 }
 
-// What the controller itself refuses needs no holding.
+// Motions that the controller refuses need no hold.
 std::string narrower_limits(const model::Machine& machine) {
   std::string text;
   for (std::size_t n = 0; n < machine.axes.size(); ++n) {
@@ -129,7 +129,7 @@ std::string ini_lines(const model::Machine& machine, const std::string& folder) 
       "[VERNIER]\n"
       "# Where the component runs in the servo thread: right after motion-controller, which `halcmd show "
       "thread` numbers\n"
-      "# from 1; 3 where only motion-command-handler stands before that.\n"
+      "# from 1; 3 if only motion-command-handler is before that.\n"
       "POSITION = 3\n"
       "STORE = {0}/store\n"
       "PUBLIC_KEY = {0}/vernier.pub\n"

@@ -8,14 +8,15 @@
 
 namespace vernier::exchange {
 
-/// One line of a screw-compensation file. A trim is what the controller adds to the command: a correction.
+/// One line of a screw-compensation file. A trim is the value that the controller adds to the command: a
+/// correction.
 struct ScrewPoint {
   double nominal = 0;  // mm or deg
   double forward_trim = 0, reverse_trim = 0;
 };
 
-/// Type 0 holds where the axis really is (nominal, forward, reverse; the controller makes trim = nominal -
-/// actual of it), type 1 the trims themselves. Source: LinuxCNC src/emc/motion/usrmotintf.cc, usrmotLoadComp.
+/// Type 0 contains the actual positions of the axis (nominal, forward, reverse; the controller makes trim =
+/// nominal - actual of it), type 1 the trims. Source: LinuxCNC src/emc/motion/usrmotintf.cc, usrmotLoadComp.
 enum class ScrewType { kActual = 0, kTrim = 1 };
 
 /// Lines that the controller keeps at most (EMCMOT_COMP_SIZE).
@@ -37,7 +38,7 @@ struct ScrewTable {
 ScrewTable screw_table(const model::Machine& machine, std::size_t axis, const model::States& at,
                        double tolerance_um);
 
-/// Text of a file: three numbers a line, nothing else (the controller stops reading at any other line).
+/// Text of a file: only lines of three numbers (the controller stops reading at any other line).
 std::string screw_text(const std::vector<ScrewPoint>& points, ScrewType type);
 
 /// Reads a file. Throws InputError with file, line and word: not three numbers, positions that do not

@@ -18,9 +18,9 @@ struct BoardLook {
 /// Throws as upload::Client. tool.
 BoardLook look_at(upload::Client& board);
 
-/// Why the image with this fingerprint is not in effect, as a sentence; empty: it is. In effect means: the
-/// image runs, the board is active, no fault is latched, nothing is held, and the whole correction of every
-/// axis is in. tool.
+/// The reason why the image with this fingerprint is not in effect, as a sentence; empty: it is in effect. In
+/// effect means: the image runs, the board is active, no fault is latched, no correction is held, and the
+/// whole correction of every axis is applied. tool.
 std::string not_in_effect(const BoardLook& look, const upload::BoardInfo& info, std::uint64_t fingerprint);
 
 /// Reason why no image can come into effect on this board before somebody changes its state; empty: an image

@@ -15,9 +15,10 @@ namespace vernier::fleet {
 /// Reads one board as metrics. tool.
 class BoardReader {
  public:
-  /// Opens the board. Throws InputError where it is away, LimitNotMet where it is another one than asked for.
+  /// Opens the board. Throws InputError if it is not available, LimitNotMet if it is another board than
+  /// requested.
   explicit BoardReader(const GatewayBoard& board);
-  /// What the board does just now: names of tools/docs/fleet.md. Throws as upload::Client.
+  /// Present state of the board: names of tools/docs/fleet.md. Throws as upload::Client.
   std::vector<Metric> read();
 
  private:
@@ -29,7 +30,7 @@ class BoardReader {
   std::vector<Metric> check_;
 };
 
-/// The metrics of a file that `vernier check --json` wrote at time_us; none where it is none.
+/// The metrics of a file that `vernier check --json` wrote at time_us; empty for another file.
 std::vector<Metric> check_metrics(const std::string& json, std::int64_t time_us);
 
 }  // namespace vernier::fleet

@@ -17,7 +17,7 @@ SparkplugPayload death_of(std::uint64_t number) {
   return payload;
 }
 
-// Names and types: what a birth promises.
+// Names and types that a birth message declares.
 std::string shape_of(const std::vector<Metric>& metrics) {
   std::string shape;
   for (const Metric& metric : metrics)

@@ -18,12 +18,12 @@ class EdgeNode {
            std::uint64_t death_number);
 
   MqttConnection& connection() { return connection_; }
-  /// The node's birth with metrics beside bdSeq and Rebirth; devices are unborn after it.
+  /// The node's birth with metrics in addition to bdSeq and Rebirth; devices are unborn after it.
   bool birth(const std::vector<Metric>& metrics);
   bool born() const { return born_; }
-  /// Data of a device, its birth before it where names or types are new.
+  /// Data of a device; before it the birth of the device if names or types are new.
   bool data(const std::string& device, SparkplugPayload payload);
-  /// The device is away; nothing where it was never born.
+  /// Publishes that the device is away; no message if it was never born.
   bool death(const std::string& device);
   /// Publishes the death certificate of the node, as its will does, and disconnects.
   void part();

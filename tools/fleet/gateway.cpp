@@ -176,7 +176,9 @@ class GatewayPublisher {
     desk_.with_spool([&](Spool& spool) {
       if (text_of(command.find(kSpoolMetric)) != spool.id()) return;
       if (*stored > spool.last()) {
-        say_("the registry knows later records than this store: it is an older one, and begins anew");
+        say_(
+            "the registry has later records than this store: the store is an older copy, and starts with a "
+            "new id");
         spool.begin_anew();
         sent_ = 0;
         return;

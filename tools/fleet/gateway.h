@@ -8,13 +8,13 @@
 
 namespace vernier::fleet {
 
-/// A line for people: what began, ended or failed.
+/// A line for people: start, end or failure of something.
 using Say = std::function<void(const std::string&)>;
 
-/// Reads boards, keeps what they say in a spool, and publishes it as a Sparkplug edge node whose devices are
-/// the machines, until `stop`. A record leaves the spool when the registry has said that it is stored:
-/// brokers, registries, boards and the gateway itself may be away or die at any time. Throws InputError where
-/// the spool cannot be had, DatabaseError where it fails later. tool.
+/// Reads boards, keeps their data in a spool, and publishes them as a Sparkplug edge node whose devices are
+/// the machines, until `stop`. A record leaves the spool when the registry has confirmed that it is stored:
+/// brokers, registries, boards and the gateway may be unavailable or fail at any time. Throws InputError if
+/// the spool cannot be opened, DatabaseError if it fails later. tool.
 void run_gateway(const GatewayFile& file, const std::atomic<bool>& stop, const Say& say);
 
 }  // namespace vernier::fleet

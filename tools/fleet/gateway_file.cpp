@@ -137,13 +137,13 @@ GatewayFile parse_gateway_file(const std::string& text, const std::string& path)
   section.end();
   const toml::array* const boards = root.get_as<toml::array>("board");
   if (boards == nullptr || boards->empty())
-    throw text::InputError({path, 0}, "board", "no [[board]] stands here");
+    throw text::InputError({path, 0}, "board", "the file has no [[board]]");
   for (const toml::node& node : *boards) {
     file.boards.push_back(board_of(table_of(&node, path, "board"), path));
     const std::string& name = file.boards.back().machine;
     if (std::count_if(file.boards.begin(), file.boards.end(),
                       [&](const GatewayBoard& one) { return one.machine == name; }) > 1)
-      throw text::InputError({path, node.source().begin.line}, name, "this machine stands here twice");
+      throw text::InputError({path, node.source().begin.line}, name, "this machine occurs twice");
   }
   return file;
 }

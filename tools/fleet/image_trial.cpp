@@ -48,7 +48,7 @@ const char* name_of(TrialEnd::Kind kind) {
     case Kind::kAway:
       return "away";
     case Kind::kInterrupted:
-      return "waiting";  // who interrupts has not judged
+      return "waiting";  // an interrupted call has no result
   }
   return "unknown";
 }
@@ -104,7 +104,7 @@ std::string ImageTrial::clear_trial(const SlotsReply& slots, std::uint64_t own_i
   const bool own = own_issued != 0 && slots.newest_issued == own_issued;
   if (!own && !options_.take_over_trial)
     return fmt::format(
-        "{} is on trial for {:.0f} s more, begun by somebody else: confirm or revert it first (vernier "
+        "{} is on trial for {:.0f} s more, begun by another caller: confirm or revert it first (vernier "
         "upload "
         "--confirm, --revert), or call with --take-over-trial; nothing was sent",
         text::fingerprint_text(slots.trial_fingerprint), slots.trial_left_ms * 1e-3);

@@ -30,12 +30,12 @@ struct TrialEnd {
 /// "kept", "taken-back", ...: the state in the registry.
 const char* name_of(TrialEnd::Kind kind);
 
-/// One machine's turn: the image on trial, watched to be in effect, judged, then kept or taken back. Nothing
-/// is signed or sent before the board has proved that it is the machine's, and the proof is asked for again
-/// before each look, before the image is kept and before it is taken back. tool.
+/// The steps for one machine: its image is put on trial, watched to be in effect, evaluated, then confirmed
+/// or reverted. No data are signed or sent before the board has proved that it is the board of the machine.
+/// The proof is repeated before each look, before the image is confirmed and before it is reverted. tool.
 class ImageTrial {
  public:
-  /// Opens the board. Throws InputError where it does not answer, LimitNotMet where it is another board. All
+  /// Opens the board. Throws InputError if it does not answer, LimitNotMet if it is another board. All
   /// arguments outlive the trial.
   ImageTrial(const RolloutMachine& machine, const RolloutOptions& options, RolloutBook& book,
              registry::MachineLocks& locks, const std::atomic<bool>& stop);
@@ -68,8 +68,8 @@ class ImageTrial {
   std::uint64_t fingerprint_, issued_ = 0, faults_before_ = 0;
 };
 
-/// Is a machine that was kept still well? Looks until it is or options.settle_s are over. The board must
-/// prove who it is, have the image confirmed and have it in effect.
+/// Checks a machine with a kept image, until it passes or options.settle_s are over. The board must prove its
+/// identity, have the image confirmed and have it in effect.
 struct KeptLook {
   std::string why;  // why not; empty: it is
   bool away = false;

@@ -23,7 +23,7 @@ constexpr auto kRebirthEvery = 5s;
 
 std::uint64_t ms_now() { return static_cast<std::uint64_t>(text::now_ms()); }
 
-/// What is known of an edge node on this connection.
+/// Known data of an edge node on this connection.
 struct NodeState {
   bool born = false, dead = false;
   std::uint64_t next_seq = 0, death = 0;
@@ -136,7 +136,8 @@ void run_ingest(const IngestOptions& options, const std::atomic<bool>& stop, con
         throw;
       }
     } catch (const std::runtime_error& error) {
-      // A server is away for a while; a file that is none at the beginning is a word wrongly typed.
+      // A server may be unavailable for a while. A file that is not a registry at the beginning is a typing
+      // error.
       if (!begun && !registry::is_server(options.registry)) throw;
       if (before != error.what()) say(error.what());
       before = error.what();

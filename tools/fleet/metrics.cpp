@@ -71,7 +71,7 @@ void put_live(std::string& text, const std::vector<registry::LiveState>& live, s
   Family samples(text, "vernier_machine_samples_total", "counter", "Samples stored.");
   for (const registry::LiveState& one : live)
     samples.add({{"machine", one.machine}}, static_cast<double>(one.samples));
-  Family state(text, "vernier_machine_info", "gauge", "What the machine's board does and runs, as labels.");
+  Family state(text, "vernier_machine_info", "gauge", "State and image of the machine's board, as labels.");
   for (const registry::LiveState& one : live)
     state.add({{"machine", one.machine}, {"mode", one.mode}, {"fault", one.fault}, {"image", one.image}}, 1);
   Family value(text, "vernier_machine_value", "gauge",
@@ -130,7 +130,7 @@ void serve_metrics(const std::string& registry, const std::string& address, cons
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
-  // Connections that ask nothing hold a thread no longer than this, and not the last one.
+  // Idle connections hold a thread for this time at most, and never the last thread.
   constexpr int kPatience_s = 1, kThreads = 32;
   server.set_read_timeout(kPatience_s);
   server.set_keep_alive_timeout(kPatience_s);

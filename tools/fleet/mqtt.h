@@ -8,15 +8,15 @@
 
 namespace vernier::fleet {
 
-/// Where a broker is and who asks it.
+/// Address of a broker and the credentials of the client.
 struct Broker {
   std::string address = "tcp://localhost:1883";  // or ssl://HOST:8883
   std::string user, password;                    // empty: none
   std::string authority;  // file (PEM) of the authority that signs the broker; ssl only
 };
 
-/// Throws InputError where an address has not the form tcp://HOST[:PORT] or ssl://HOST[:PORT]: no patience
-/// would find such a broker.
+/// Throws InputError if an address has not the form tcp://HOST[:PORT] or ssl://HOST[:PORT], because no retry
+/// can find such a broker.
 void require_broker_address(const std::string& address);
 
 struct MqttMessage {
@@ -36,7 +36,7 @@ class MqttConnection {
  public:
   /// Connects. Throws InputError naming the address.
   MqttConnection(const Broker& broker, const std::string& client, const MqttWill& will);
-  ~MqttConnection();  // without a farewell, unless part() was called: the will is said
+  ~MqttConnection();  // without part() no disconnect message is sent: the broker publishes the will
   MqttConnection(const MqttConnection&) = delete;
   MqttConnection& operator=(const MqttConnection&) = delete;
 
@@ -46,7 +46,7 @@ class MqttConnection {
   bool publish(const std::string& topic, const std::string& payload, int qos = 0, bool retained = false);
   /// What came, at most `most`; waits up to `patience` for the first.
   std::vector<MqttMessage> take(std::chrono::milliseconds patience, std::size_t most = 1000);
-  /// Farewell: the will is not said.
+  /// Disconnects in order: the broker does not publish the will.
   void part();
 
  private:

@@ -61,7 +61,8 @@ class RolloutCall {
   void stages() {
     for (const auto& [machine, state] : states_)
       if (state.state == "taken-back")
-        return stand("this rollout stands since " + machine + " (" + state.said + "): --go-on lets it go on");
+        return stand("this rollout is stopped since " + machine + " (" + state.said +
+                     "): --go-on continues it");
     look_again();
     std::size_t away = 0;
     for (std::size_t i = 0; i < machines_.size() && end_.stood.empty(); ++i) {
@@ -69,7 +70,7 @@ class RolloutCall {
       if (stop_) return stand("interrupted");
       if (!is_kept(machines_[i]) && !bring_to(machines_[i])) ++away;
     }
-    // Who stopped elsewhere must not be called kept on the word of an earlier look.
+    // A machine that stopped elsewhere must not be reported as kept because of an earlier look.
     if (!end_.stood.empty() && !stop_) return look_again();
     if (away > 0) stand(fmt::format("{} boards were away: call it again", away));
   }
@@ -101,11 +102,11 @@ class RolloutCall {
         continue;
       }
       write(machine, look.away ? "away" : "not-in-effect", "was kept, but now: " + look.why);
-      stand(machine.name + ": was kept, but now: " + look.why + ": the rollout stands");
+      stand(machine.name + ": was kept, but now: " + look.why + ": the rollout stops");
     }
   }
 
-  /// Enters the board's own key where none is entered. Throws LimitNotMet where another machine has this key.
+  /// Enters the board's key if no key is entered. Throws LimitNotMet if another machine has this key.
   void learn_key(RolloutMachine& machine) {
     if (machine.claim.key) return;
     upload::Client board(upload::open_transport(upload::parse_url(machine.url)));
@@ -144,9 +145,9 @@ class RolloutCall {
     write(machine, name_of(end.kind), end.why);
     if (end.kind == TrialEnd::Kind::kKept) kept_(machine);
     if (end.kind == TrialEnd::Kind::kTakenBack)
-      stand(machine.name + ": " + end.why + ": taken back, and the rollout stands");
+      stand(machine.name + ": " + end.why + ": reverted, and the rollout stops");
     else if (end.kind != TrialEnd::Kind::kKept && end.kind != TrialEnd::Kind::kAway)
-      stand(machine.name + ": " + end.why + ": the rollout stands");
+      stand(machine.name + ": " + end.why + ": the rollout stops");
     return end.kind != TrialEnd::Kind::kAway;
   }
 

@@ -15,9 +15,9 @@ namespace vernier::fleet {
 
 /// How a call ended.
 struct RolloutEnd {
-  std::string stood;                // why the rollout stands; empty: every machine keeps its image
+  std::string stood;                // why the rollout stopped; empty: every machine keeps its image
   std::set<std::string> in_effect;  // machines that had their image in effect at the last look of this call
-  std::vector<std::string> notes;   // what was not proved, a sentence each
+  std::vector<std::string> notes;   // items that were not proved, one sentence each
 };
 
 /// Brings images to boards by stages. Each image is on trial first; its effect is watched, the judge command

@@ -44,8 +44,7 @@ void RolloutBook::run(const std::string& set, const std::string& machine,
                   set, n + 1, n + 2, n + 2, n + 3),
       values);
   if (registry_.database().written() != 1)
-    throw registry::LockLost(machine +
-                             ": another caller has taken this machine over; nothing was written down");
+    throw registry::LockLost(machine + ": another caller has taken this machine over; no entry was written");
 }
 
 void RolloutBook::write(const RolloutMachine& machine, const char* state, const std::string& said) {

@@ -13,7 +13,7 @@ namespace vernier::fleet {
 /// A machine of a rollout, in its order.
 struct RolloutMachine {
   std::string name, url;
-  upload::BoardClaim claim;  // who its board must be; a name at least
+  upload::BoardClaim claim;  // required identity of its board; a name at least
   std::vector<std::uint8_t> image;
   std::int64_t stage = 0;
 };
@@ -27,11 +27,11 @@ struct RolloutState {
   std::string said;   // why
   std::string image;  // fingerprint, 16 hexadecimal digits
   std::int64_t stage = 0, at_us = 0;
-  std::uint64_t issued = 0;  // time of signing of the last trial that this rollout began; 0: none
+  std::uint64_t issued = 0;  // time of signing of the last trial of this rollout; 0: no trial
 };
 
-/// A rollout's rows of the registry. They are written while the lock of the machine is held, and else not.
-/// All calls throw DatabaseError; those that write throw LockLost. tool.
+/// A rollout's rows of the registry. They are written only while the lock of the machine is held. All calls
+/// throw DatabaseError; those that write throw LockLost. tool.
 class RolloutBook {
  public:
   RolloutBook(registry::Registry& registry, std::string name, const registry::MachineLocks& locks)

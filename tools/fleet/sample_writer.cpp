@@ -38,7 +38,7 @@ double number_of(const SparkplugPayload& payload, const char* name) {
 
 }  // namespace
 
-/// What one transaction writes, and what is known once it is committed.
+/// Data of one transaction, and the state that is valid after its commit.
 struct SampleWriter::Batch {
   struct Newest {
     std::int64_t at_us = 0, samples = 0;
@@ -137,7 +137,7 @@ std::map<std::string, Receipt> SampleWriter::write(const std::vector<DeviceData>
   try {
     write(batch);
   } catch (...) {
-    cursors_.clear();  // what is stored is the database's to say
+    cursors_.clear();  // the database reports what is stored
     throw;
   }
   for (auto& [gateway, receipt] : receipts) receipt.stored = cursor(receipt.spool, gateway).stored;

@@ -11,7 +11,7 @@
 
 namespace vernier::fleet {
 
-/// A device's data as they came: whose, through which gateway, what.
+/// A device's data as received: the machine, the gateway and the data.
 struct DeviceData {
   std::string gateway, machine;
   SparkplugPayload payload;
@@ -30,8 +30,8 @@ struct Receipt {
 class SampleWriter {
  public:
   explicit SampleWriter(registry::Registry& registry) : registry_(registry) {}
-  /// Receipts by gateway, for all that was written or must be sent again. Throws DatabaseError: nothing of it
-  /// was written.
+  /// Receipts by gateway, for all data that were written or must be sent again. Throws DatabaseError: no data
+  /// were written.
   std::map<std::string, Receipt> write(const std::vector<DeviceData>& data);
   /// A machine, or all of a gateway's (machine empty), can be heard or not.
   void online(const std::string& gateway, const std::string& machine, bool online);

@@ -30,14 +30,14 @@ struct SparkplugPayload {
   const Metric* find(std::string_view name) const;
 };
 
-/// Bytes as they travel, and back; nothing where they are no payload. Metrics of types that are not read
-/// here, that are null or whose text is none (UTF-8 without NUL) are left out. tool.
+/// Converts a payload to bytes, and back; `nullopt` if the bytes are not a payload. Metrics are skipped if
+/// their type is not read here, if they are null, or if their text is not UTF-8 without NUL. tool.
 std::string encode(const SparkplugPayload& payload);
 std::optional<SparkplugPayload> decode(std::string_view bytes);
 
-/// A whole number, whichever integer type it came as; nothing for other values.
+/// A whole number of any integer type; `nullopt` for other values.
 std::optional<std::uint64_t> count_of(const Metric* metric);
-/// A text; nothing for other values.
+/// A text; `nullopt` for other values.
 std::optional<std::string> text_of(const Metric* metric);
 
 enum class SparkplugKind : std::uint8_t { kNBirth, kNDeath, kNData, kNCmd, kDBirth, kDDeath, kDData, kDCmd };
@@ -48,7 +48,7 @@ struct SparkplugTopic {
   SparkplugKind kind = SparkplugKind::kNData;
 };
 std::string topic_text(const SparkplugTopic& topic);
-/// Nothing where it is no topic of an edge node.
+/// `nullopt` if it is not a topic of an edge node.
 std::optional<SparkplugTopic> parse_topic(std::string_view text);
 /// The topic on which a host application publishes its state.
 std::string state_topic(const std::string& host);
@@ -57,10 +57,11 @@ std::string state_text(bool online, std::uint64_t time_ms);
 /// True if the text reports that the host is online; `nullopt` for any other text.
 std::optional<bool> online_of(std::string_view state);
 
-/// Is this a name that a topic can carry: not empty, none of + / #, printable?
+/// True if a topic can contain this name: not empty, no + / #, printable.
 bool fits_a_topic(std::string_view name);
 
-/// Names of the metrics by which a gateway and the registry agree on what is stored (tools/docs/fleet.md).
+/// Names of the metrics with which a gateway and the registry agree on the stored records
+/// (tools/docs/fleet.md).
 inline constexpr std::string_view kSpoolMetric = "Vernier/Spool", kNumberMetric = "Vernier/Number",
                                   kAfterMetric = "Vernier/After", kStoredMetric = "Vernier/Stored",
                                   kResendMetric = "Vernier/Resend", kRebirthMetric = "Node Control/Rebirth",

@@ -18,18 +18,18 @@ struct SpoolRecord {
   std::string payload;
 };
 
-/// What a gateway has taken and no registry has confirmed yet, in a file: bounded, durable, numbered. A
-/// record leaves it when the registry has stored it, or, counted, when there is no room. tool.
+/// Data that a gateway has read and no registry has confirmed yet, in a file: bounded, durable, numbered. A
+/// record leaves it when the registry has stored it. It is also removed, and counted, when the file is full.
+/// tool.
 class Spool {
  public:
   /// owner: the gateway; the file of another gateway (a copied medium) gets a new id. most: number of records
   /// that fit. Throws InputError if the file cannot be opened or created.
   Spool(const std::string& file, const std::string& owner, std::uint64_t most);
 
-  /// Of this spool among all: fresh where the file was made, so that numbers never mean two things.
+  /// Unique id of this spool: new if the file was created, so that a number never has two meanings.
   const std::string& id() const { return id_; }
-  /// Writes records down with numbers, and forgets those up to stored(); all of it or nothing. Throws
-  /// DatabaseError.
+  /// Writes records with numbers, and removes those up to stored(), in one transaction. Throws DatabaseError.
   void take(std::vector<SpoolRecord>& records);
   /// The records after `number`, at most `most`, in order.
   std::vector<SpoolRecord> after(std::uint64_t number, std::size_t most);
@@ -41,17 +41,17 @@ class Spool {
   std::uint64_t dropped() const { return dropped_; }
   /// The last number that is no longer here.
   std::uint64_t gone() const { return gone_; }
-  /// The registry has numbers that this spool never gave: the file is an older one, put back. What is here is
-  /// numbered anew, under a fresh id.
+  /// Called if the registry has numbers that this spool never gave: the file is an older, restored one. Its
+  /// records get new numbers under a new id.
   void begin_anew();
   /// The number of this birth, one more at each call (Sparkplug's bdSeq, 0..255).
   std::uint64_t next_birth();
 
  private:
-  /// Of a file beside the store (flock(2)), so that others may look into the store meanwhile.
+  /// Lock of a file beside the store (flock(2)): others may read the store meanwhile.
   class Lock {
    public:
-    /// Throws InputError where another process, or this one, has it.
+    /// Throws InputError if another process, or this one, has it.
     explicit Lock(const std::string& file);
     ~Lock();
     Lock(const Lock&) = delete;

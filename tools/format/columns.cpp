@@ -85,7 +85,7 @@ constexpr ColumnGroup run() {
   return group;
 }
 
-/// The order is that of messages and of the reference page: readings, what stands beside them, the rest.
+/// The order is that of messages and of the reference page: readings, the columns that they need, the rest.
 constexpr std::array kGroups = {
     readings(columns::kPoint, 3, "mm", ReadingForm::kPoint, false,
              "measured tool point in the measuring frame; any of the three"),

@@ -41,10 +41,10 @@ inline constexpr const char* kClock = "clock";
 inline constexpr const char* kBlock = "block";
 }  // namespace columns
 
-/// What a column is for.
+/// Purpose of a column.
 enum class ColumnUse : std::uint8_t {
   kReading,      // holds a reading
-  kBeside,       // what a reading needs in its row: a centre, a normal
+  kBeside,       // needed by a reading in its row: a centre, a normal
   kUncertainty,  // of the readings of the row
   kMotion,       // state of the machine along its path
   kLabel         // groups the rows
@@ -63,19 +63,19 @@ struct ColumnGroup {
   /// with another unit, the column is a user's column.
   bool later = false;
   bool filled = false;              // no cell may be empty
-  bool in_terms = false;            // expressions read it by this name, so nothing else may have it
+  bool in_terms = false;            // expressions read it by this name: the name is reserved
   const char* or_unit = nullptr;    // a second dimension that it may have
   const char* if_absent = nullptr;  // what holds without the column
 
   std::span<const char* const> list() const { return std::span(names).first(count); }
 };
 
-/// All columns that have a meaning whatever the machine.
+/// All columns that have a meaning for every machine.
 std::span<const ColumnGroup> column_groups();
 
 /// One of them by its name; nullptr: no column of the format has it. Names are case-sensitive.
 const ColumnGroup* find_column(std::string_view name);
-/// The columns that hold readings of a form; those that stand beside them.
+/// The columns that hold readings of a form; the columns that belong to them.
 const ColumnGroup& reading_columns(ReadingForm form);
 std::vector<const ColumnGroup*> columns_beside(ReadingForm form);
 
@@ -119,7 +119,8 @@ inline constexpr std::array kAxisColumns = {
                     Dimension::kAngularAcceleration, "mm/s^2", true,
                     "acceleration of the axis at the reading", "0"},
     AxisColumnEntry{AxisQuantity::kCorrection, "correction", Dimension::kLength, Dimension::kAngle, "um",
-                    false, "what a board added to the commanded position of the axis in this row", "0"},
+                    false, "correction that a board added to the commanded position of the axis in this row",
+                    "0"},
 };
 
 constexpr const AxisColumnEntry& entry_of(AxisQuantity quantity) {
@@ -141,7 +142,7 @@ struct AxisColumnName {
   AxisQuantity quantity;
   std::string axis;
 };
-/// Which quantity of which axis a name is; nullopt: of none. The axis of that very name comes first.
+/// Axis and quantity of a name; nullopt: no axis. An axis with exactly this name comes first.
 std::optional<AxisColumnName> axis_column_named(std::string_view name,
                                                 const std::function<bool(const std::string&)>& is_axis);
 
@@ -150,13 +151,14 @@ std::string words_of(std::span<const char* const> names);
 /// "x y z rx …": the columns of all readings, for messages.
 std::string reading_column_names();
 
-/// Is a column a reading in a file with this header? A column of the first version is, by its name. One of a
-/// later version is only with what belongs to it: `from` beside `distance`, an angle's unit for `ix` and
-/// `iy`, all of `ax ay az` without a unit. `find`: a column of the header; nullptr: it has none of this name,
-/// or the machine file uses the name for an input.
+/// True if a column is a reading in a file with this header. A column of the first version is a reading by
+/// its name. A column of a later version is a reading only with its companions: `from` with `distance`, an
+/// angle's unit for `ix` and `iy`, all of `ax ay az` without a unit. `find`: a column of the header; nullptr:
+/// the header has no column of this name, or the machine file uses the name for an input.
 bool is_reading(const CsvColumn& column, const std::function<const CsvColumn*(std::string_view)>& find);
 
-/// Does an expression read a quantity of this name (t, feed, nx …)? Then nothing else may have the name.
+/// True if an expression reads a quantity of this name (t, feed, nx …). Then the name must not be used
+/// otherwise.
 bool is_name_of_terms(std::string_view name);
 
 /// The reading that holds a rotary axis' angle: rx, ry, rz of A, B, C (ISO 841); nullopt for other axes.

@@ -53,7 +53,7 @@ CsvFile parse_csv(const std::string& text, const std::string& file) {
       for (const std::string& field : fields) {
         csv.columns.push_back(column_of(field, place));
         if (!names.insert(csv.columns.back().name).second)
-          throw text::InputError(place, csv.columns.back().name, "this column stands twice");
+          throw text::InputError(place, csv.columns.back().name, "this column occurs twice");
       }
       continue;
     }

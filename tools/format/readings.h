@@ -38,7 +38,7 @@ enum class ReadingForm : std::uint8_t {
   kInclination
 };
 
-/// One form of reading. Its columns are in columns.h: those that hold the reading, and those beside it.
+/// One form of reading. Its columns are in columns.h: those with the reading, and those that belong to it.
 struct ReadingFormEntry {
   ReadingForm form;
   bool rotation;        // the reading is an angle, deg; else a length, mm
@@ -132,7 +132,7 @@ constexpr bool is_inclination(ReadingKind kind) { return form_of(kind) == Readin
 /// The kind of that name; nullopt: no kind has it.
 std::optional<ReadingKind> kind_named(std::string_view name);
 
-/// What a sentence calls the residual of a kind: "X error", "rotation error about Z", "length error".
+/// Name of the residual of a kind in a sentence: "X error", "rotation error about Z", "length error".
 std::string subject_of(ReadingKind kind);
 
 /// A reading as `vernier new --reading` names it: one form, or several that one instrument reads together.

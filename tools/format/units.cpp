@@ -54,7 +54,7 @@ constexpr std::array<Unit, 38> kUnits = {{
 }};
 constexpr Unit kPerMm = {"1/mm", Dimension::kCurvature, 1, 0};
 
-/// Signs in UTF-8 and what the formats write for them; a longer sign before one that begins it.
+/// Signs in UTF-8 and their text in the formats; a longer sign before a sign that begins it.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kSigns = {{
     {"\u00b5", "u"},      // micro sign
     {"\u03bc", "u"},      // Greek small mu

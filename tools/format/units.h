@@ -37,15 +37,15 @@ struct Unit {
   double factor, offset;
 };
 
-/// The unit of that name (case-sensitive), with the signs that people type for it (µ, °, ²:
-/// `usual_spelling`); nothing for an unknown one. "" is the pure number.
+/// The unit of that name (case-sensitive), also with usual signs (µ, °, ²: `usual_spelling`); `nullopt` for
+/// an unknown one. "" is the pure number.
 std::optional<Unit> find_unit(std::string_view name);
 
 /// The text with signs of the keyboard: µ (both of Unicode's) as u, °C as degC, ° as deg, ″ as arcsec, ² as
 /// ^2, a middle dot left out. tool.
 std::string usual_spelling(std::string_view unit);
 
-/// The name that find_unit has for it; the text itself where it has none. tool.
+/// The name that find_unit has for it; the text itself if find_unit does not know it. tool.
 std::string canonical_unit(std::string_view unit);
 
 /// All names, for messages.

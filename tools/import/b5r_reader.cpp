@@ -18,7 +18,7 @@
 namespace vernier::importer {
 namespace {
 
-// Line ends stay as they are, so that offsets count in the text as it is on disk.
+// Line ends are not changed: offsets count in the text as it is on disk.
 constexpr unsigned kParseFlags = pugi::parse_default & ~static_cast<unsigned>(pugi::parse_eol);
 
 class B5rReader {
@@ -162,7 +162,7 @@ class B5rReader {
   std::vector<BallbarFeature> read_features(const pugi::xml_node& parent) const {
     std::vector<BallbarFeature> features;
     for (const auto node : parent.children("FEATURE")) {
-      if (text::trimmed(node.text().get()).empty()) continue;  // printed only where it was computed
+      if (text::trimmed(node.text().get()).empty()) continue;  // printed only if it was computed
       features.push_back({node.attribute("NAME").value(), node.attribute("DT").value(), number(node)});
     }
     return features;

@@ -117,7 +117,7 @@ class Writer {
     }
   }
 
-  // An axis outside the plane of this file stands still on the programmed centre.
+  // An axis outside the plane of this file is at rest at the programmed centre.
   void add_motion(const BallbarFile& file, const CirclePoint& point) {
     const auto each = [&](const double(&values)[2]) {
       for (const auto& axis : axes_)

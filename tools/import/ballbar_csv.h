@@ -9,8 +9,8 @@
 namespace vernier::importer {
 
 struct BallbarCsvOptions {
-  /// Time between the records of two runs, s, where the instrument does not log it. The default is what the
-  /// dwell (5 s) and the feeds in and out between the runs of the usual program take.
+  /// Time between the records of two runs, s, if the instrument does not log it. The default is the time of
+  /// the dwell (5 s) and of the feeds in and out between the runs of the usual program.
   double pause_s = 9.0;
 };
 

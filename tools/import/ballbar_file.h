@@ -14,7 +14,7 @@ struct BallbarFeature {
 };
 
 struct BallbarAnalysis {
-  std::string name, version;  // "ISO230_4", "1996"; version empty where the file gives none
+  std::string name, version;  // "ISO230_4", "1996"; version empty if the file gives no version
   std::vector<BallbarFeature> features;
 };
 
@@ -28,12 +28,12 @@ struct BallbarSimulation {
 /// accepted (repair_time_base).
 struct RunClock {
   std::vector<double> turned_deg;  // per sample: from angle 0 in the direction of motion, not wrapped
-  std::vector<double> sample;      // its number, had none been lost
+  std::vector<double> sample;      // its number if no sample had been lost
   std::vector<char> on_circle;     // 0: feed in or out, no part of the repeating motion
   double turn_samples = 0;         // of a whole turn
 };
 
-/// One pass over the circle in one sense, overshoot arcs included.
+/// One pass over the circle in one direction, overshoot arcs included.
 struct BallbarRun {
   std::string label;      // "CCW", "CW"
   int direction = 0;      // +1 counter-clockwise (from +A towards +B), -1 clockwise
@@ -41,7 +41,7 @@ struct BallbarRun {
   std::size_t end = 0;    // and of its last one (inclusive)
   double sample_rate_hz = 0;
   double first_deg = 0,
-         last_deg = 360;  // the arc that start..end spans, first_deg < last_deg whatever the direction
+         last_deg = 360;           // the arc from start to end, first_deg < last_deg for both directions
   std::vector<double> reading_mm;  // length - nominal length
   std::vector<BallbarFeature> features;
   std::optional<RunClock> clock;  // nullopt: constant speed, one turn (or arc) from start to end
@@ -57,11 +57,11 @@ struct BallbarFile {
   std::vector<BallbarRun> runs;  // at least one
   std::vector<BallbarAnalysis> analyses;
   std::vector<BallbarSimulation> simulations;
-  std::vector<std::string> notes;  // what was assumed, one sentence each
+  std::vector<std::string> notes;  // assumptions, one sentence each
 };
 
-/// The file's printed result `feature` of analysis `analysis` of that version ("" for none); nothing where it
-/// has none. tool.
+/// The file's printed result `feature` of analysis `analysis` of that version ("" for no version); `nullopt`
+/// if the file has no such result. tool.
 std::optional<double> printed_result(const BallbarFile& file, const std::string& analysis,
                                      const std::string& version, const std::string& feature);
 

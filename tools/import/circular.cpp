@@ -74,7 +74,7 @@ Hysteresis hysteresis_by_index(const CircularPass& ccw, const CircularPass& cw, 
   return worst;
 }
 
-// Samples of one sense sorted by angle, to be read between them.
+// Samples of one direction sorted by angle, for interpolation.
 class RadiusAtAngle {
  public:
   RadiusAtAngle(const CircularPass& pass, const FittedCircle& mean) {

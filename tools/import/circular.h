@@ -6,7 +6,7 @@
 
 namespace vernier::importer {
 
-/// One pass over a circle in one sense, in time order.
+/// One pass over a circle in one direction, in time order.
 struct CircularPass {
   std::string label;
   int direction = +1;                // +1 from +A towards +B, -1 the other way round
@@ -30,7 +30,7 @@ struct CircularPassResult {
   std::vector<double> circular_um;  // of each sample, in the order given
 };
 
-/// Greatest difference of the radii of the two senses at one place, about the mean of both centres.
+/// Greatest difference of the radii of the two directions at one angle, about the mean of both centres.
 struct Hysteresis {
   double um = 0;
   double deg = 0;
@@ -54,7 +54,7 @@ struct CircularResult {
   /// the least-squares circle in true distances. The linearised circle of the other values lacks the
   /// eccentricity squared over four radii.
   std::optional<double> mean_bidirectional_radial_um;
-  std::optional<Hysteresis> hysteresis;  // sample i of one sense with sample i from the end of the other
+  std::optional<Hysteresis> hysteresis;  // sample i of one direction with sample i from the end of the other
   std::optional<Hysteresis> hysteresis_by_angle;  // at the same angle, linear between samples
 };
 

@@ -71,7 +71,7 @@ void set_option(ColumnMap& map, const std::string& key, const std::string& value
         place, key, "unknown statement; known are column, set, separator, decimal, header, comment, skip");
 }
 
-/// A number as measurement files write it, or nothing.
+/// A number in the form of measurement files, or `nullopt`.
 std::optional<std::string> number_cell(std::string text, bool decimal_comma) {
   if (decimal_comma) std::replace(text.begin(), text.end(), ',', '.');
   if (!text::parse_number(text)) return std::nullopt;

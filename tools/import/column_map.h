@@ -12,7 +12,7 @@ namespace vernier::importer {
 /// Where a column of the measurement file comes from.
 struct MappedColumn {
   std::string source;      // a number from 1, or a name in the header line; empty for a constant
-  std::string constant;    // the value, where it is the same in every row
+  std::string constant;    // the value, if it is the same in every row
   std::string name, unit;  // of the measurement file
   text::Place place;       // line of the map; no file for an argument
 };
@@ -51,12 +51,13 @@ struct ImportTable {
   void add(const std::string& name, const std::string& unit, const std::vector<double>& values);
 };
 
-/// The columns of a file that the map names, every number read and written with a decimal point. Columns
-/// in which the format keeps words stay as they are. Throws InputError with file, line and word: no such
-/// column, not a number, an unknown unit, a name twice. tool.
+/// The columns of a file that the map names, every number read and written with a decimal point. Columns with
+/// words are not changed. Throws InputError with file, line and word: no such column, not a number, an
+/// unknown unit, a name twice. tool.
 ImportTable mapped_table(const std::string& text, const std::string& file, const ColumnMap& map);
 
-/// The table as a measurement file; reads it back as one. Throws InputError where that fails. tool.
+/// Writes the table as a measurement file and reads it back to test it. Throws InputError if that fails.
+/// tool.
 std::string measurement_csv(const ImportTable& table);
 
 }  // namespace vernier::importer

@@ -12,7 +12,7 @@ struct DelimitedFormat {
   char separator = 0;  // ',' ';' '\t'; ' ' is any run of blanks; 0: detected from the first line
   bool decimal_comma = false;
   std::size_t skip = 0;       // lines at the top that are no data
-  std::string comment = "#";  // lines that begin so are left out; empty: none
+  std::string comment = "#";  // lines that begin with it are skipped; empty: no such lines
   bool header = false;        // the first line that is left names the columns
 };
 
@@ -30,8 +30,8 @@ struct DelimitedFile {
 DelimitedFile parse_delimited(const std::string& text, const std::string& file,
                               const DelimitedFormat& format);
 
-/// The separator that a name means: comma, semicolon, tab, space, auto. place: of the name, where it is not
-/// an argument. Throws InputError.
+/// The separator of a name: comma, semicolon, tab, space, auto. place: of the name, if it is not an argument.
+/// Throws InputError.
 char separator_of(const std::string& name, const text::Place& place = {});
 
 }  // namespace vernier::importer

@@ -48,10 +48,10 @@ struct DiagnosticsSetup {
   double feed_mm_min = 1000;  // scales the servo mismatch only
   double reversal_gap_deg =
       12;  // samples nearer than this to 0/90/180/270 deg are left out (reversal spikes)
-  double pitch_a_mm = 0, pitch_b_mm = 0;  // of the cyclic errors that are fitted along; 0: none
+  double pitch_a_mm = 0, pitch_b_mm = 0;  // of the cyclic errors that are fitted as well; 0: not fitted
 };
 
-/// Radial deviation in um per unit of each diagnostic, at that angle and sense. tool.
+/// Radial deviation in um per unit of each diagnostic, at that angle and direction. tool.
 /// Source: found by recomputing a file's own simulation (tests/data/ballbar/README.md).
 std::array<double, kDiagnosticsCount> diagnostics_basis(double angle_deg, int direction,
                                                         const DiagnosticsSetup& setup);
@@ -59,7 +59,7 @@ std::array<double, kDiagnosticsCount> diagnostics_basis(double angle_deg, int di
 /// Peak-to-peak of a cyclic error of one axis, for one direction of the axis and one direction of the circle.
 struct CyclicAmplitude {
   char axis = 'A';
-  bool forward = true;  // the axis moves in its positive sense
+  bool forward = true;  // the axis moves in its positive direction
   int direction = +1;
   double peak_to_peak_um = 0;
 };

@@ -10,7 +10,7 @@ namespace vernier::importer {
 /// Parses JSON. Throws InputError with the line of the offending byte and the word there. tool.
 nlohmann::json parse_json(const std::string& path, std::string_view text);
 
-/// 1-based line on which the value at `pointer` begins or ends ("/Runs/0/Readings/3"), 0 where there is no
+/// 1-based line on which the value at `pointer` begins or ends ("/Runs/0/Readings/3"), 0 if the text has no
 /// such value. tool.
 std::size_t json_line(std::string_view text, const std::string& pointer);
 

@@ -25,7 +25,7 @@ struct LaserReading {
   double deviation_um = 0;
 };
 
-/// The file as it stands.
+/// The unchanged contents of the file.
 struct LaserText {
   std::map<std::string, std::string> said;  // key in small letters: value
   std::vector<double> targets_mm;
@@ -63,7 +63,7 @@ class LaserReader {
     section_ = section;
     collects_ = false;
     if (!sections_.insert(section).second)
-      throw text::InputError(place_, section, "this section stands twice");
+      throw text::InputError(place_, section, "this section occurs twice");
   }
 
   void take(const std::string& line) {
@@ -129,7 +129,7 @@ class LaserReader {
   LaserText read_;
 };
 
-/// 1 or -1 by the order of the targets in their lines, 0 where that is neither.
+/// 1 or -1 by the order of the targets in their lines, 0 for any other order.
 int listed_sense(const std::vector<LaserReading>& run, const std::vector<double>& targets_mm) {
   bool up = true, down = true;
   for (std::size_t i = 1; i < run.size(); ++i) {
@@ -154,11 +154,11 @@ void check_counts(const LaserText& read, const std::string& file) {
     for (const LaserReading& one : run)
       if (!seen.insert(one.target).second)
         throw text::InputError({file, one.line}, std::to_string(one.target),
-                               fmt::format("this target stands twice in run {}", number));
+                               fmt::format("this target occurs twice in run {}", number));
   }
 }
 
-/// The axis said by a person, else the one that the file names: "X", "X-AXIS", "Axis X".
+/// The axis given by the user, else the axis of the file: "X", "X-AXIS", "Axis X".
 std::string axis_of(const LaserText& read, const std::string& said, const std::string& file) {
   std::string found = said;
   const auto own = read.said.find("axis");
@@ -167,7 +167,7 @@ std::string axis_of(const LaserText& read, const std::string& said, const std::s
       if (word.size() == 1 && found.empty()) found = word;
   const std::string place_word = own == read.said.end() ? "Axis" : own->second;
   const text::Place place = own == read.said.end() ? text::Place{file, 0} : read.axis_at;
-  if (found.empty()) throw text::InputError(place, place_word, "which axis was measured? Say it: --axis X");
+  if (found.empty()) throw text::InputError(place, place_word, "which axis was measured? Give it: --axis X");
   if (found.size() == 1 && found[0] >= 'a' && found[0] <= 'z') found[0] = static_cast<char>(found[0] - 32);
   if (found != "X" && found != "Y" && found != "Z")
     throw text::InputError(
@@ -187,7 +187,7 @@ bool is_filler(const LaserText& read, std::size_t number, const std::vector<Lase
 LaserFile read_laser_file(const std::string& text, const std::string& file, const std::string& axis,
                           RunSenses senses) {
   if (text.find('\0') != std::string::npos)
-    throw text::InputError({file, 0}, "", "zero bytes: a file of dynamic capture or no text at all");
+    throw text::InputError({file, 0}, "", "zero bytes: a file of dynamic capture, or not a text file");
   const LaserText read = LaserReader(text, file).read();
   check_counts(read, file);
   const auto said = [&](const char* key) {
@@ -196,7 +196,7 @@ LaserFile read_laser_file(const std::string& text, const std::string& file, cons
   };
   if (const std::string owner = said("owner"); !owner.empty() && text::in_small_letters(owner) != "linear")
     throw text::InputError({file, 0}, owner,
-                           "not of the linear measurement: its unit is not said in the file");
+                           "not of the linear measurement: the file does not give its unit");
   LaserFile result{axis_of(read, axis, file),
                    said("filetype"),
                    said("machine"),
@@ -229,7 +229,7 @@ LaserFile read_laser_file(const std::string& text, const std::string& file, cons
     if (senses == RunSenses::kAsListed) sense = listed_sense(run, read.targets_mm);
     if (sense == 0)
       throw text::InputError({file, run.front().line}, fmt::format("run {}", number),
-                             "its targets neither rise nor fall: say --senses alternate or forward");
+                             "its targets neither rise nor fall: give --senses alternate or forward");
     const std::string pass = std::to_string(++passes[sense]);
     for (const LaserReading& one : run) {
       const double target = read.targets_mm[one.target - 1];

@@ -6,13 +6,13 @@
 
 namespace vernier::importer {
 
-/// In which senses the runs went, where the order of their lines does not say it.
+/// Directions of the runs, if the order of their lines does not give them.
 enum class RunSenses { kAsListed, kAlternate, kForward };
 
 /// Contents of a file of linear laser runs.
 struct LaserFile {
   std::string axis, filetype, machine, date;
-  std::size_t targets = 0, runs = 0, left_out = 0;  // runs of nothing but zeros that fill a test of one sense
+  std::size_t targets = 0, runs = 0, left_out = 0;  // runs of zeros only, which fill a unidirectional test
   ImportTable table;                                // X[mm], dirX, run, x[mm]
 };
 

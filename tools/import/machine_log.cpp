@@ -127,7 +127,8 @@ LoggedTable with_log(const ImportTable& tracker, const std::string& text, const 
   input.dwells =
       find_dwells(time, axes, Eigen::VectorXd::Constant(axes.cols(), options.still), options.dwell_s);
   if (input.dwells.empty())
-    throw text::InputError({log_file, 0}, "", "the machine never stands still so long: --dwell, --still");
+    throw text::InputError({log_file, 0}, "",
+                           "the machine is never at rest for that time: change --dwell or --still");
   input.stand = stands(machine, axes, input.dwells);
   input.point = points_of(tracker);
   input.distance_tolerance_mm = options.tolerance_mm;

@@ -10,8 +10,8 @@
 namespace vernier::importer {
 
 struct LogOptions {
-  double dwell_s = 0.5;     // shorter standstills are none
-  double still = 0.01;      // mm or deg: an axis that stays within stands still
+  double dwell_s = 0.5;     // shorter standstills are ignored
+  double still = 0.01;      // mm or deg: an axis that stays within it is at rest
   double tolerance_mm = 2;  // ways of machine and nominal machine between two points
 };
 
@@ -23,10 +23,10 @@ struct LoggedTable {
   std::vector<std::size_t> unmatched_line;  // of points in the tracker's file
 };
 
-/// Gives the points of a tracker's table (x y z, and t where its clock is known) the axis positions and
-/// inputs that a machine's log has in the dwell in which each was measured: means of numbers, the first of
-/// words, `t` by the log's clock. text: the log, a CSV of measurement columns with `t` and every axis of the
-/// machine, in time order. Throws InputError with file, line and word. tool.
+/// Assigns to the points of a tracker's table (x y z, and t if its clock is known) the axis positions and
+/// inputs of a machine's log. Values are those of the dwell in which the point was measured: means of
+/// numbers, the first of words, `t` by the log's clock. text: the log, a CSV of measurement columns with `t`
+/// and every axis of the machine, in time order. Throws InputError with file, line and word. tool.
 LoggedTable with_log(const ImportTable& tracker, const std::string& text, const std::string& log_file,
                      const model::Machine& machine, const LogOptions& options);
 

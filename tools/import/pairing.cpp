@@ -108,7 +108,7 @@ void find_clock(const PairingInput& input, Pairing& result) {
   result.offset_std_s = std::sqrt(variance / static_cast<double>(n) + variance * mean * mean / spread);
 }
 
-/// Takes apart the pairs whose point lies outside its dwell by the clock of all; true where there were any.
+/// Separates the pairs whose point is outside its dwell by the common clock; true if there were such pairs.
 bool drop_by_clock(const PairingInput& input, Pairing& result) {
   find_clock(input, result);
   if (!result.offset_s) return false;
@@ -125,7 +125,7 @@ bool drop_by_clock(const PairingInput& input, Pairing& result) {
   return any;
 }
 
-/// The same for points far from where one rigid motion puts their dwell.
+/// The same for points far from the position of their dwell by one rigid motion.
 bool drop_by_place(const PairingInput& input, Pairing& result) {
   std::vector<std::size_t> paired;
   for (std::size_t i = 0; i < result.dwell.size(); ++i)

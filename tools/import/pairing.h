@@ -15,8 +15,8 @@ struct Dwell {
   double middle_s() const { return (begin_s + end_s) / 2; }
 };
 
-/// Stretches of at least `least_s` in which every axis stays within its tolerance of where it stood at their
-/// beginning. time: s, rising; axes: rows x axes; tolerance: one an axis, same unit. tool.
+/// Stretches of at least `least_s` in which every axis stays within its tolerance of its position at their
+/// beginning. time: s, rising; axes: rows x axes; tolerance: one per axis, same unit. tool.
 std::vector<Dwell> find_dwells(const Eigen::VectorXd& time, const Eigen::MatrixXd& axes,
                                const Eigen::VectorXd& tolerance, double least_s);
 
@@ -24,7 +24,7 @@ struct PairingInput {
   std::vector<Dwell> dwells;
   /// Tool point of the nominal machine in each dwell, mm (3 x dwells); empty: distances are not used.
   Eigen::Matrix3Xd stand;
-  Eigen::Matrix3Xd point;  // what the instrument measured, mm, in its frame (3 x points), in its order
+  Eigen::Matrix3Xd point;  // measured by the instrument, mm, in its frame (3 x points), in its order
   std::optional<Eigen::VectorXd> time;  // of each point by the instrument's clock, s
   double distance_tolerance_mm = 2;  // by how much machine and nominal machine may differ between two points
 };
@@ -37,11 +37,11 @@ struct Pairing {
   std::optional<double> rms_mm;  // of the paired points after the best rigid motion
 };
 
-/// Which dwell each point was measured in, where the trigger is missing or points were lost: the alignment of
-/// both sequences whose ways between neighbours (which no frame changes) and times agree best, dwells and
-/// points left out where nothing fits. Order is kept. Then one clock and one rigid motion for all: pairs that
-/// do not obey them are taken apart again. Throws InputError where neither times nor stands are given and the
-/// numbers differ. tool.
+/// Finds the dwell of each point if the trigger is missing or points were lost. Aligns both sequences so that
+/// distances between neighbours (which no frame changes) and times agree best. Dwells and points without a
+/// partner are skipped; the order is kept. Then one clock and one rigid motion are fitted for all; pairs that
+/// do not fit are separated again. Throws InputError if neither times nor nominal tool points are given and
+/// the numbers differ. tool.
 Pairing pair_points(const PairingInput& input);
 
 }  // namespace vernier::importer

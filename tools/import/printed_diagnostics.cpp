@@ -32,7 +32,7 @@ std::size_t diagnostic(const std::string& name) {
   return static_cast<std::size_t>(found - kDiagnosticsNames.begin());
 }
 
-// What the named terms together do to the radius over all samples, um.
+// Joint effect of the named terms on the radius over all samples, um.
 double effect_um(const std::vector<DiagnosticsSample>& samples, const DiagnosticsSetup& setup,
                  const DiagnosticsResult& found, const std::vector<std::string>& terms) {
   Extent extent;
@@ -70,7 +70,8 @@ void take_linear(const std::vector<DiagnosticsSample>& samples, const Diagnostic
     values["AF_" + name + "_IC"] = effect_um(samples, setup, found, {name});
 }
 
-// Those printed are of the clockwise sense; the file's curve of the other sense holds others.
+// The printed values are those of the clockwise direction; the file's curve of the other direction contains
+// others.
 void take_cyclic(const DiagnosticsResult& found, Values& values) {
   for (const auto& cyclic : found.cyclic)
     if (cyclic.direction < 0)

@@ -12,14 +12,14 @@ namespace vernier::importer {
 
 inline constexpr const char* kDiagnosticsAnalysis = "RENISHAW_DIAGNOSTICS";
 
-/// What was computed, by what it was computed from and the printed name; and about which names something is
-/// to be said: why one cannot be computed, or may differ.
+/// Computed results, with the data and the printed name for each; and remarks on names: why one cannot be
+/// computed, or may differ.
 struct RecomputedResults {
   std::map<std::string, std::map<std::string, double>> values;
   std::map<std::string, std::string> why;
 };
 
-/// Mean of the feeds of a test's passes, mm/min; nothing where one has none. tool.
+/// Mean of the feeds of a test's passes, mm/min; `nullopt` if a pass has no feed. tool.
 std::optional<double> mean_feed_mm_min(const CircularResult& circle);
 
 /// The file's own model curve as samples of a test: its SIMULATION series, both on the grid of the clockwise
@@ -27,9 +27,9 @@ std::optional<double> mean_feed_mm_min(const CircularResult& circle);
 /// (tests/data/ballbar/README.md).
 std::vector<DiagnosticsSample> model_curve(const BallbarFile& file);
 
-/// The diagnostics that a file prints: the linear ones, cyclic errors and their effects from its model curve,
-/// values at the ends, shares and ranks from these, roundness about its centre and the rest from the
-/// readings. tool.
+/// The diagnostics that a file prints: the linear ones, cyclic errors and their effects from the model curve
+/// of the file, values at the ends, shares and ranks from these, roundness about its centre and the others
+/// from the readings. tool.
 RecomputedResults recompute_diagnostics(const BallbarFile& file, const BallbarAnalysis& analysis,
                                         const CircularResult& circle);
 

@@ -29,7 +29,7 @@ Values run_values(const CircularPassResult& pass) {
 
 void one_sense(const CircularPassResult& pass, Values& values) {
   const std::string end = pass.direction > 0 ? "_CCW" : "_CW";
-  if (values.contains("AF_CIRCULAR_DEVIATION" + end)) return;  // of the first pass in that sense
+  if (values.contains("AF_CIRCULAR_DEVIATION" + end)) return;  // of the first pass in that direction
   values["AF_CIRCULAR_DEVIATION" + end] = values["AF_RADIAL_DEVIATION" + end] = pass.circular_deviation_um;
   values["AF_MAX_CIRCULAR_DEVIATION" + end] = pass.max_circular_um;
   values["AF_MIN_CIRCULAR_DEVIATION" + end] = pass.min_circular_um;
@@ -75,13 +75,13 @@ void compare(const std::string& place, const std::vector<BallbarFeature>& featur
       if (found == values.end()) continue;
       result.computed = found->second;
       result.from = from;
-      // Half a digit, and a little for the rounding of a number that lies just between two.
+      // Half a digit, plus a small amount for the rounding of a number just between two.
       result.equal = std::abs(found->second - feature.value) <= 0.5001 * last_digit(feature.unit);
     }
     if (const auto why = computed.why.find(feature.name); why != computed.why.end()) {
       result.why = why->second;
     } else if (!result.computed) {
-      result.why = "not known here, or the file lacks what it is computed from";
+      result.why = "not known here, or the file lacks its input data";
     }
     results.push_back(result);
   }

@@ -9,15 +9,15 @@
 
 namespace vernier::importer {
 
-/// A result that the file prints beside the same one computed here, both in the printed unit.
+/// A result that the file prints, and the same one computed here, both in the printed unit.
 struct PrintedResult {
   std::string place;  // "CCW", "ISO230_4 1996" …
   std::string name, unit;
   double printed = 0;
   std::optional<double> computed;
   bool equal = false;  // to the last digit that the file prints
-  /// What it was computed from: "readings"; "model curve", the file's own SIMULATION, for how its software
-  /// fits that curve to the readings is not published; "printed results". Without `computed`: empty.
+  /// Source of the result: "readings"; "model curve", the file's SIMULATION, because the fit of that curve to
+  /// the readings is not published; "printed results". Without `computed`: empty.
   std::string from;
   std::string why;  // why it was not computed, or what may make it differ
 };

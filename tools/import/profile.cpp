@@ -73,7 +73,7 @@ Eigen::VectorXd angle_profile(const BallbarRun& run) {
 }
 
 ProfileShift profile_shift(const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
-  // Features narrower than 10 deg (ringing after a reversal) lie on the other side in the other sense.
+  // Features narrower than 10 deg (ringing after a reversal) are on the other side in the other direction.
   constexpr double kWindowDeg = 10;
   constexpr Index kQuarter = kProfilePoints / 4;
   const auto half = static_cast<Index>(kWindowDeg / kStepDeg / 2);

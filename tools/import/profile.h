@@ -12,7 +12,7 @@ inline constexpr Eigen::Index kProfilePoints = 720;  // of a turn, half a degree
 /// the circle together, centre and radius taken off. Places without a reading are interpolated. tool.
 Eigen::VectorXd angle_profile(const BallbarRun& run);
 
-/// By how much a profile lies further on than another.
+/// Shift between two profiles.
 struct ProfileShift {
   double deg = 0;              // of `second` against `first`, -90..90
   double correlation = 0;      // at that shift, smoothed over 10 deg

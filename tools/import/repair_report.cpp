@@ -64,7 +64,7 @@ std::string um(const std::optional<double>& value) { return value ? fmt::format(
 
 void print_run(std::FILE* out, const RunRepair& run) {
   if (!run.repaired) {
-    fmt::print(out, "  {:<4} time base left as it is: {}\n", run.label, run.why_not);
+    fmt::print(out, "  {:<4} time base not changed: {}\n", run.label, run.why_not);
     return;
   }
   fmt::print(out, "  {:<4} a turn takes {:.1f} +- {:.1f} samples, not {:.0f}", run.label, run.turn_after,

@@ -9,7 +9,7 @@
 
 namespace vernier::importer {
 
-/// A repaired file and what repeats in it, before and after.
+/// A repaired file and its repeating error, before and after.
 struct RepairReport {
   TimeRepair repair;
   std::vector<RepeatingError> before,
@@ -20,7 +20,7 @@ struct RepairReport {
 /// tool.
 RepairReport repair_and_judge(const BallbarFile& file);
 
-/// What was changed and what it gained, for programs and for people. tool.
+/// The changes and their gain, for programs and for people. tool.
 nlohmann::ordered_json repair_json(const RepairReport& report);
 void print_repair(std::FILE* out, const RepairReport& report);
 

@@ -37,7 +37,7 @@ ErrorSamples collect(const BallbarFile& file, const BallbarRun& run, const std::
   return {Eigen::Map<Eigen::VectorXd>(angle.data(), n), Eigen::Map<Eigen::VectorXd>(reading.data(), n)};
 }
 
-// Every fifth group of three samples, or all the others: what a table between them predicts.
+// Every fifth group of three samples, or all the others: predicted by a table between them.
 ErrorSamples part(const ErrorSamples& all, Index fold, bool held) {
   std::vector<Index> keep;
   for (Index i = 0; i < all.count(); ++i) {
@@ -46,7 +46,7 @@ ErrorSamples part(const ErrorSamples& all, Index fold, bool held) {
   return {all.angle_deg(keep), all.reading_um(keep)};
 }
 
-// Centre and radius, and a table of what they leave.
+// Centre and radius, and a table of their residuals.
 class Model {
  public:
   Model(const ErrorSamples& samples, std::size_t stations) : table_(static_cast<Index>(stations)) {

@@ -16,7 +16,7 @@ struct RepeatingStep {
   double left_out_um = 0;    // samples of the turn left out in fives, each fifth predicted from the rest
   double fit_um = 0;
   std::optional<double> other_turn_um, other_direction_um;  // held out: never seen by fit or choice
-  std::optional<double> other_turn_usual_um;  // from the median size: what the few worst samples do not carry
+  std::optional<double> other_turn_usual_um;  // from the median size: independent of the few worst samples
 };
 
 /// Models of growing order, fitted to the analysed turn of one run and judged on the rest of the record.

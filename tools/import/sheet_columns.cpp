@@ -26,8 +26,8 @@ namespace columns = format::columns;
 
 const std::string kSensePrefix = format::entry_of(format::AxisQuantity::kSense).prefix;
 
-/// Names of the measurement file that are taken as they are written. Numbers under a name of a later version
-/// of the format may be a person's own.
+/// Names of the measurement file that are accepted as they are written. Numbers under a name of a later
+/// version of the format may be a user's column.
 bool is_known_name(const std::string& name) {
   const format::ColumnGroup* const column = format::find_column(name);
   return column != nullptr && (!column->later || column->words);
@@ -170,7 +170,7 @@ class Guess {
   const SheetWishes& wishes_;
 };
 
-/// Index of the column that a person names; none: npos.
+/// Index of the column that a user names; npos if none is named.
 std::size_t find_heading(const sheet::SheetTable& table, const std::string& words) {
   for (const bool by_text : {true, false})
     for (std::size_t k = 0; k < table.headings.size(); ++k)
@@ -247,8 +247,8 @@ void leave(SheetColumn& column, const std::string& why) {
   column.why = why;
 }
 
-/// The axes that were measured along: a sense without a name is that of the only one, wherever the others
-/// stood.
+/// The measured axes: a direction without an axis belongs to the only measured axis, also if others have
+/// positions.
 std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
                                     const std::set<std::string>& axes,
                                     const std::set<std::string>& measured) {
@@ -261,7 +261,7 @@ std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
   return moved;
 }
 
-/// Where no heading names an axis and the titles do, a target or an actual position is along that one.
+/// If no heading names an axis and the titles do, a target or an actual position belongs to that axis.
 void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
                  const Guess& guess) {
   std::set<std::string> axes;
@@ -290,8 +290,8 @@ void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
   }
 }
 
-/// Two that were measured along an axis without a target: the position that the machine shows is what it was
-/// sent to, where another instrument read.
+/// Two measured positions along an axis without a target: the position shown by the machine counts as
+/// commanded if another instrument measured.
 void settle_display(const sheet::SheetTable& table, std::vector<SheetColumn>& columns, const Guess& guess) {
   std::map<std::string, std::size_t> count;
   for (const SheetColumn& column : columns)
@@ -321,7 +321,8 @@ void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           says_nominal_less_actual(table.headings[k].name, true);
 }
 
-/// Deviations and senses that name no axis belong to the only one; what stays open is left out and said.
+/// Deviations and directions without an axis belong to the only axis; columns that remain open are omitted
+/// and reported.
 void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
             const Guess& guess) {
   std::set<std::string> axes, measured;
@@ -354,7 +355,7 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     if (deviation && !axes.contains(column.name) && alone_measured.contains(column.name))
       column.to_target = true;
     else if (deviation && (column.name.empty() || !axes.contains(column.name)))
-      leave(column, "a deviation of which axis? Say it: --deviation \"X=" + table.headings[k].text + "\"");
+      leave(column, "a deviation of which axis? Give it: --deviation \"X=" + table.headings[k].text + "\"");
     else if (deviation && measured.contains(text::in_small_letters(column.name)))
       leave(column, "the measured position is there as " + text::in_small_letters(column.name));
     else if (column.name == kSensePrefix && moved.size() == 1)
@@ -387,7 +388,7 @@ void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& 
   }
 }
 
-/// A unit to say for a column that has none: the format's, of an axis mm.
+/// Suggested unit for a column without one: that of the format, for an axis mm.
 std::string unit_to_say(const std::string& name) {
   const std::string unit = format::column_unit(name);
   return unit.empty() ? "mm" : unit;
@@ -420,7 +421,7 @@ std::vector<format::Dimension> quantities_of(const SheetColumn& column, const Gu
   return list;
 }
 
-/// A length in bar, an angle in seconds of time: refused, with what the column needs.
+/// A length in bar, or an angle in seconds of time, is refused with the required unit.
 void check_quantity(const SheetColumn& column, const Guess& guess, const std::string& heading,
                     const text::Place& place) {
   if (column.use == SheetColumn::Use::kLeft || column.words || column.unit.empty()) return;
@@ -449,8 +450,9 @@ void settle_senses(const sheet::Sheet& sheet, const std::vector<std::size_t>& ro
       if (cell == "0" || cell == "2") cell = "-1";
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (const std::string& cell = cells[i]; !cell.empty() && cell != "0" && cell != "1" && cell != "-1")
-      throw text::InputError({sheet.file, rows[i]}, cell,
-                             "a sense is 1 or -1 (0: nothing moved), or a word such as forward or back");
+      throw text::InputError(
+          {sheet.file, rows[i]}, cell,
+          "an approach direction is 1 or -1 (0: no motion), or a word such as forward or back");
 }
 
 /// The angle that a rotary axis turns by, as the measurement file names it.
@@ -458,7 +460,7 @@ std::string angle_of(const std::string& axis, const text::Place& place) {
   if (auto angle = format::angle_about(axis)) return *angle;
   throw text::InputError(
       place, axis,
-      "a deviation in degrees: about which direction does it turn? Say it: --column \"rz[deg]=HEADING\" "
+      "a deviation in degrees: about which direction is it? Give it: --column \"rz[deg]=HEADING\" "
       "with what was measured");
 }
 
@@ -602,7 +604,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
     }
     columns[at] = wish.column;
     if (columns[at].unit.empty()) columns[at].unit = table.headings[at].unit;
-    columns[at].why = wish.place.file.empty() ? "as said" : "by the profile";
+    columns[at].why = wish.place.file.empty() ? "as given" : "by the profile";
   }
   settle_axis(sheet, table, columns, guess);
   settle_display(table, columns, guess);
@@ -640,11 +642,12 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   }
   const text::Place heading{sheet.file, sheet.line[table.heading_row]};
   if (!without.empty())
-    throw text::InputError(heading, "", "no unit: say it for all (--unit mm) or for each, such as" + without);
+    throw text::InputError(heading, "",
+                           "no unit: give it for all (--unit mm) or for each, such as" + without);
   if (!measured)
     throw text::InputError(heading, "",
                            "nothing measured among the columns (" + format::reading_column_names() +
-                               ", or a deviation of an axis): say which it is, such as --column "
+                               ", or a deviation of an axis): assign one, such as --column "
                                "\"x[mm]=HEADING\" or --deviation \"X[um]=HEADING\"; --preview shows what "
                                "was understood");
   for (std::size_t k = 0; k < columns.size(); ++k)

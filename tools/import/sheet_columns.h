@@ -16,9 +16,9 @@ struct SheetColumn {
   Use use = Use::kColumn;
   std::string name, unit;  // of the measurement file; of a deviation its axis
   std::string why;         // "by its heading", "--column", "the profile"; of one left out the reason
-  bool words = false;      // kept as it stands, a label of its rows
-  bool turned = false;     // of a deviation: said to be nominal - actual, its sign is turned
-  bool to_target = false;  // of a deviation: the measured position is there, the target is what is made
+  bool words = false;      // kept unchanged, a label of its rows
+  bool turned = false;     // of a deviation: labelled nominal - actual, its sign is reversed
+  bool to_target = false;  // of a deviation: the measured position is given, the target is computed
 };
 
 /// Columns as the user describes them: assignments by heading or number, constants, and the unit of headings
@@ -33,13 +33,13 @@ struct SheetWishes {
   std::vector<Assignment> assignments;
   std::vector<MappedColumn> constants;  // "run=a", "u[um]=2"
   std::string unit;
-  std::vector<std::string> axes;  // of the machine, where it is known; else X Y Z A B C U V W J1 …
+  std::vector<std::string> axes;  // of the machine, if it is known; else X Y Z A B C U V W J1 …
 };
 
 /// Adds "x[mm]=X ist" (also "X ist=x[mm]", as the other imports accept it: `table` defines which side is a
 /// heading). Throws InputError.
 void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words);
-/// Adds "X[um]=Abweichung": the position of the axis plus this deviation is what was measured.
+/// Adds "X[um]=Abweichung": the measured value is the position of the axis plus this deviation.
 void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place = {});
 
 /// A profile: how a table is read, once and for all. A statement a line, # remarks:
@@ -47,7 +47,7 @@ void assign_deviation(SheetWishes& wishes, const std::string& words, const text:
 ///   column X ist = x[mm]     deviation Abw. = X[um]     leave Bemerkung     set run = a
 /// Throws InputError with file, line and word. tool.
 void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std::string& file);
-/// The same for what was read, so that the next file of this kind needs no more words. tool.
+/// The same for the recognised columns: the next file of this kind needs no further settings. tool.
 std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           const std::vector<SheetColumn>& columns, const SheetWishes& wishes);
 
@@ -57,7 +57,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
                                           const SheetWishes& wishes);
 
 /// The rows of data as a measurement file's table. Throws InputError with file, line and word: a cell that is
-/// no number (its likely meaning with it), a column without a unit, a name twice, nothing measured. tool.
+/// not a number (with its probable meaning), a column without a unit, a name twice, no measured column. tool.
 ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                            const std::vector<SheetColumn>& columns, const SheetWishes& wishes);
 

@@ -14,7 +14,7 @@ struct SheetWords {
   std::string separator, decimal, comment, sheet, unit;
   std::optional<std::size_t> skip;
   std::vector<std::string> columns, deviations, constants, left;
-  std::vector<std::string> axes;  // of the machine, where it is known
+  std::vector<std::string> axes;  // of the machine, if it is known
 };
 
 /// A spreadsheet as it was understood: everything up to the rows.
@@ -26,8 +26,8 @@ struct SheetReading {
   std::size_t runs = 0;  // columns of runs that were made one (unfold_runs)
 };
 
-/// Reads text or workbook. `wishes`: what a profile said, over which `words` go. Throws InputError with file,
-/// line and word. tool.
+/// Reads text or workbook. `wishes`: the settings of a profile; `words` override them. Throws InputError with
+/// file, line and word. tool.
 SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
                            SheetWishes wishes = {});
 
@@ -35,7 +35,9 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
 std::string how_read(const sheet::Sheet& sheet);
 /// "x[mm]", "position of X + this, [um]", "left out".
 std::string becomes(const SheetColumn& column);
-/// [{heading, use: column | deviation | left, name, unit, why}], sign where a deviation's was turned.
+/// [{heading, use: column
+/// deviation
+/// left, name, unit, why}], with sign if the sign of a deviation was reversed.
 nlohmann::ordered_json columns_json(const SheetReading& reading);
 
 }  // namespace vernier::importer

@@ -17,7 +17,7 @@ bool says_target(const std::string& word);
 bool says_measured(const std::string& word);
 bool says_deviation(const std::string& word);
 
-/// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no sense. tool.
+/// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no direction. tool.
 int sense_said(std::string_view word);
 
 /// True if a deviation is described as nominal - actual: "(nominal-actual)", "= Soll - Ist". `whole`: also if
@@ -27,7 +27,7 @@ bool says_nominal_less_actual(std::string_view text, bool whole);
 /// The cells above the headings of a table. tool.
 std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table);
 
-/// The only axis that the titles name ("Achse: X", "X-Achse", "Axis X"); empty: none or several. tool.
+/// The only axis that the titles name ("Achse: X", "X-Achse", "Axis X"); empty: no axis or several. tool.
 std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table);
 
 }  // namespace vernier::importer

@@ -31,7 +31,7 @@ std::vector<std::string> words(const std::string& names) {
   return result;
 }
 
-/// Are all of these columns there? None: false; some: an error.
+/// True if all of these columns are present, false if none is. An error if only some are.
 bool has_all(const ImportTable& table, const std::string& names) {
   std::string missing;
   std::size_t found = 0;

@@ -21,16 +21,16 @@ Eigen::MatrixXd readings_um(const BallbarRun& run) {
   return series;
 }
 
-// What a run is found to be before its angle is anchored.
+// Properties of a run before its angle is anchored.
 struct Found {
   std::vector<timebase::RepeatBlock> blocks;
   std::vector<timebase::LagJump> jumps;
   double turn = 0, turn_uncertainty = 0;
-  std::vector<double> sample;  // numbers, had none been lost
+  std::vector<double> sample;  // numbers if no sample had been lost
   std::size_t feed_in = 0, feed_out = 0;
 };
 
-// The two passes may differ in feed by what a wrong START and END make of it.
+// The two passes may differ in feed by the effect of a wrong START and END.
 timebase::RepeatOptions repeat_options() {
   timebase::RepeatOptions options;
   options.search = 0.2;
@@ -77,7 +77,7 @@ double at_sample(const Eigen::MatrixXd& series, const std::vector<double>& sampl
 
 // The record and its later pass on one list of sample numbers.
 struct PairOfPasses {
-  Eigen::MatrixXd first, second;  // NaN where one has no reading
+  Eigen::MatrixXd first, second;  // NaN if one has no reading
 };
 
 PairOfPasses pair_passes(const Eigen::MatrixXd& series, const std::vector<double>& sample, double turn) {
@@ -112,7 +112,7 @@ PassAgreement agreement(const PairOfPasses& pair, Index from, Index block) {
 }
 
 // Blocks at the beginning whose level the second pass does not repeat: the machine was still feeding in. The
-// measure is what the better quarter of the blocks does.
+// limit is derived from the better quarter of the blocks.
 std::size_t feed_in(const PairOfPasses& pair, Index block) {
   std::vector<double> difference;
   for (Index i = 0; i + block <= pair.first.rows(); i += block) {
@@ -136,7 +136,7 @@ std::optional<Found> examine(const BallbarRun& run, RunRepair& repair) {
   repair.turn_after = repair.turn_before;
   const Eigen::MatrixXd series = readings_um(run);
   if (static_cast<double>(series.rows()) < 1.5 * repair.turn_before) {
-    repair.why_not = "less than one and a half turns: nothing repeats";
+    repair.why_not = "less than one and a half turns: no part repeats";
     return std::nullopt;
   }
   const Eigen::VectorXd implied = Eigen::VectorXd::Constant(series.rows(), repair.turn_before);
@@ -197,7 +197,7 @@ void anchor(const BallbarRun& reference, BallbarRun& run, RunRepair& repair) {
   constexpr double kLeast = 0.5;  // correlation of two profiles of one circle
   repair.start_correlation = shift.correlation;
   if (shift.correlation < kLeast) return;
-  // A profile runs from +A towards +B whatever the sense.
+  // A profile runs from +A towards +B for both directions.
   for (double& turned : run.clock->turned_deg) turned -= run.direction * shift.deg;
   repair.start_shift_deg = -shift.deg;
   repair.start_uncertainty_deg = shift.uncertainty_deg;

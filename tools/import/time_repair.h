@@ -20,21 +20,21 @@ struct RecordGap {
 /// How well the second pass repeats the first at the same angle.
 struct PassAgreement {
   double difference_um = 0;  // rms over what both passes have, mean and slope of each block taken off
-  double level_um = 0;       // the same with nothing taken off
+  double level_um = 0;       // the same without a correction
   double correlation = 0;    // mean concordance of the blocks
   std::size_t samples = 0;
 };
 
-/// What the repair of one run changed.
+/// Changes by the repair of one run.
 struct RunRepair {
   std::string label;
   bool repaired = false;
-  std::string why_not;                     // where it is not
+  std::string why_not;                     // reason if it is not repaired
   double turn_before = 0, turn_after = 0;  // samples of a whole turn
   double turn_uncertainty = 0;
   std::vector<RecordGap> gaps;
   double start_shift_deg = 0;  // by which the angle of the file's first analysed sample was changed
-  std::optional<double> start_uncertainty_deg, start_correlation;  // where it was found from another run
+  std::optional<double> start_uncertainty_deg, start_correlation;  // if it was found from another run
   std::string start_from;                                          // label of that run; empty: kept
   std::size_t feed_in = 0, feed_out = 0;  // samples at the ends that are no part of the repeating motion
   PassAgreement before, after;

@@ -126,7 +126,7 @@ std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& path
   const std::size_t each = runs / circles.size();
   std::size_t next = 0;  // run of the whole path
   for (const std::string& path : paths) {
-    // Angles depend on the circle: the file is read anew for each that has a run in it.
+    // Angles depend on the circle: the file is read again for each circle that has a run in it.
     const std::size_t first = next, count = read_ballbar_trace(path, of_circle(circles[0])).runs.size();
     for (std::size_t c = first / each; c < circles.size() && c * each < first + count; ++c) {
       BallbarFile file = read_ballbar_trace(path, of_circle(circles[c]));

@@ -7,7 +7,7 @@
 
 namespace vernier::importer {
 
-/// What a file of Ballbar Trace does not hold and the operator must say.
+/// Data that a file of Ballbar Trace does not contain and the operator must give.
 struct TraceSetup {
   std::string axis_a = "X", axis_b = "Y";
   double length_mm = 100;
@@ -18,7 +18,7 @@ struct TraceSetup {
   int direction_of_zero = +1;  // direction of "Direction": 0
 };
 
-/// A circle of a path: its plane, first axis first ("YZ"), and where its first reading lies.
+/// A circle of a path: its plane, first axis first ("YZ"), and the angle of its first reading.
 struct TraceCircle {
   std::string plane;
   double start_deg = 180;
@@ -33,7 +33,7 @@ std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& path
                                             const std::vector<TraceCircle>& circles);
 
 /// Reads a file of Renishaw Ballbar Trace (JSON: Runs[].Direction 0 or 1, Runs[].Readings, ErrorUnits). All
-/// readings lie in the arc, none is overshoot. Throws InputError with file, line and word. tool.
+/// readings are in the arc, none is overshoot. Throws InputError with file, line and word. tool.
 BallbarFile read_ballbar_trace(const std::string& path, const TraceSetup& setup);
 
 }  // namespace vernier::importer

@@ -82,7 +82,7 @@ bool says_run(const std::string& word) {
   return kRunWords.contains(word);
 }
 
-/// A sign between a word and what follows joins them ("Lauf-1"), else it is a sense.
+/// A sign between a word and the next word joins them ("Lauf-1"), else it is a direction.
 bool joins(const std::vector<Token>& tokens, std::size_t k) {
   if (tokens[k].text != "-" && tokens[k].text != "\u2013") return false;
   const bool behind = k > 0 && tokens[k].glued, before = k + 1 < tokens.size() && tokens[k + 1].glued;
@@ -144,7 +144,7 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
   return column;
 }
 
-/// Runs that have no number are counted as they come, where a sense comes more than once.
+/// Runs without a number are counted in their order, if a direction occurs more than once.
 void number_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<RunColumn>& runs) {
   const bool numbered =
       std::any_of(runs.begin(), runs.end(), [](const RunColumn& one) { return !one.run.empty(); });
@@ -154,7 +154,7 @@ void number_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
     if (!numbered) one.run = std::to_string(++count[one.sense]);
     if (!seen.emplace(one.run, one.sense).second)
       throw text::InputError({sheet.file, sheet.line[table.heading_row]}, table.headings[one.column].text,
-                             "this run stands twice in this sense");
+                             "this run occurs twice in this direction");
   }
 }
 
@@ -184,7 +184,7 @@ std::string unit_in(const std::string& title) {
   return sheet::parse_heading(title).unit;
 }
 
-/// What the readings are, as a heading of one column that the import understands.
+/// Kind of the readings, as a heading of one column that the import understands.
 sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                    const std::vector<RunColumn>& runs,
                                    const std::vector<std::size_t>& others) {

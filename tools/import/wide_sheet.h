@@ -7,11 +7,12 @@
 
 namespace vernier::importer {
 
-/// A sheet with a column for each run and sense ("Pos | 1+ | 1- | 2+ …", "Run 1 fwd", "hin 1", "Messung 1 ↑")
-/// is made a long one: a row for each reading, with the columns run and sense. What was read is a deviation
-/// by its heading or a title, else a position where it spreads as the positions do, else a deviation. Result:
-/// how many columns became one, 0 where the sheet is not of this kind and stays. Throws InputError: the same
-/// run and sense twice, a table that would be too large. tool.
+/// Converts a sheet with a column for each run and approach direction ("Pos | 1+ | 1- | 2+ …", "Run 1 fwd",
+/// "hin 1", "Messung 1 ↑") to a long one: one row per reading, with the columns run and sense. A reading is
+/// a deviation if its heading or a title says so. Otherwise it is a position if it spreads as the positions
+/// do, else a deviation. Result: number of columns that were joined, 0 if the sheet is not of this kind and
+/// is not changed. Throws InputError: the same run and direction twice, a table that would be too large.
+/// tool.
 std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table);
 
 }  // namespace vernier::importer

@@ -22,8 +22,8 @@ struct LintFinding {
   std::size_t line = 0;  // 0: the file as a whole
   LintWeight weight = LintWeight::kError;
   std::string word;     // the offending one, or empty
-  std::string what;     // what is the matter
-  std::string meaning;  // what was probably meant, and what to do; may be empty
+  std::string what;     // the problem
+  std::string meaning;  // probable meaning, and what to do; may be empty
 };
 
 /// "file:12: error: "word": what (meaning)". tool.

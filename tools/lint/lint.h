@@ -7,7 +7,7 @@
 
 namespace vernier::lint {
 
-/// What a file is by its looks.
+/// Kind of a file by its contents.
 enum class LintedKind { kMachine, kMeasurement, kSpreadsheet, kOther };
 LintedKind linted_kind_of(const std::string& bytes, const std::string& file);
 /// "machine", "measurement", "spreadsheet", "other".

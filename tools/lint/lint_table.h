@@ -10,7 +10,7 @@
 
 namespace vernier::lint {
 
-/// A column of a measurement file, whatever is wrong with it.
+/// A column of a measurement file, also if it has errors.
 struct LintColumn {
   std::string name, unit;
   bool label = false;         // words, not numbers
@@ -32,7 +32,7 @@ struct LintTable {
   const LintColumn* find(const std::string& name) const;
 };
 
-/// What names mean in a measurement file: of a machine, or of any where none is given (X Y Z A B C U V W J1
+/// Meanings of names in a measurement file: of a machine, or without a machine of any (X Y Z A B C U V W J1
 /// …).
 class LintNames {
  public:
@@ -46,9 +46,9 @@ class LintNames {
   bool is_input(const std::string& name) const {
     return machine_ != nullptr && machine_->find_input(name).has_value();
   }
-  /// Is a column of this table a reading (format::is_reading)?
+  /// True if a column of this table is a reading (format::is_reading).
   bool is_reading(const LintTable& table, const LintColumn& column) const;
-  /// The unit that a column of this name needs, as a base unit; "" none; "?" any.
+  /// The unit that a column of this name needs, as a base unit; "" without a unit; "?" any.
   std::string needed_unit(const std::string& name) const;
   /// All names that mean something.
   std::vector<std::string> known() const;

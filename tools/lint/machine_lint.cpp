@@ -201,7 +201,7 @@ std::string meaning_of(const Problem& problem, const std::string& text) {
   return "";
 }
 
-/// What the transforms use.
+/// Names that the transforms use.
 struct Used {
   std::set<std::size_t> statics, axes, inputs, table_values;  // table_values: axis * 6 + column
   bool feed = false;
@@ -223,7 +223,7 @@ Used used_by(const model::Machine& machine) {
   return used;
 }
 
-/// What a broken term would have used: names in the text of the transforms.
+/// Names that a broken term would have used, from the text of the transforms.
 void add_words(Used& used, const model::Machine& machine, const std::string& text) {
   std::string word;
   for (std::size_t at = std::min(text.find("<transforms"), text.size()); at <= text.size(); ++at) {
@@ -259,9 +259,8 @@ class Oddities {
     for (std::size_t i = 0; i < m_.inputs.size(); ++i) look_at(m_.inputs[i], i);
     for (const model::Table& table : m_.tables) look_at(table);
     if (m_.base_shifts.empty())
-      findings_.remark(
-          0, "BaseShift", "missing: the measuring frame is the frame of the machine",
-          "a tracker or CMM stands somewhere else; <BaseShift X=\"0\" …/> lets a fit find where");
+      findings_.remark(0, "BaseShift", "missing: the measuring frame is the frame of the machine",
+                       "a tracker or CMM has another frame; <BaseShift X=\"0\" …/> lets a fit find where");
     std::set<std::string> runs;
     for (const model::BaseShift& shift : m_.base_shifts)
       if (shift.run && m_.base_shifts.size() == 1)
@@ -311,7 +310,7 @@ class Oddities {
       findings_.add_of_kind(
           "nominal", LintWeight::kRemark, item.line, item.name,
           "free, without nominal: fit takes its value for nominal and writes it, compile wants it",
-          "nominal is what the control believes, mostly 0 for an error");
+          "nominal is the value that the control uses, mostly 0 for an error");
     if (!item.hidden && item.nominal && item.unit == "mm" && std::abs(item.value - *item.nominal) > 50)
       findings_.warn(item.line, item.name,
                      fmt::format("{} mm off its nominal", text::number_text(item.value - *item.nominal)),

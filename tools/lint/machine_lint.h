@@ -11,7 +11,7 @@ namespace vernier::lint {
 
 struct MachineLint {
   std::vector<LintFinding> findings;
-  std::optional<model::Machine> machine;  // where nothing is an error
+  std::optional<model::Machine> machine;  // if the file has no error
 };
 
 /// Reads a machine file to its end, past its errors (a wrong word is removed and the rest is read again).

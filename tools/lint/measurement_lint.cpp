@@ -186,7 +186,7 @@ class Look {
           findings_.error(table_.header_line, cell, "this column needs a unit like " + needs);
       }
       if (!seen.insert(column.name).second)
-        findings_.error(table_.header_line, column.name, "this column stands twice");
+        findings_.error(table_.header_line, column.name, "this column occurs twice");
       const format::ColumnGroup* const of_formats = format::find_column(column.name);
       column.label = of_formats != nullptr && of_formats->words;
       if (names_.needed_unit(column.name) == "?" &&
@@ -210,13 +210,13 @@ class Look {
     return true;
   }
 
-  /// What the header lacks.
+  /// Columns that are missing in the header.
   void look_for_columns() {
     const bool any = std::any_of(table_.columns.begin(), table_.columns.end(),
                                  [&](const LintColumn& c) { return names_.is_reading(table_, c); });
     if (!any)
       findings_.error(table_.header_line, "", "no measured column (" + format::reading_column_names() + ")",
-                      "small letters are what was measured, capitals where the machine was sent");
+                      "small letters are measured values, capitals commanded positions");
     for (const LintColumn& column : table_.columns) {
       if (!names_.is_reading(table_, column)) continue;
       for (const format::ColumnGroup* const group :
@@ -295,7 +295,7 @@ class Look {
       if (tail) row.cells.resize(width);
       if (std::all_of(row.cells.begin(), row.cells.end(),
                       [](const std::string& cell) { return cell.empty(); })) {
-        findings_.add_of_kind("hollow", LintWeight::kError, row.line, "", "a row of nothing but commas",
+        findings_.add_of_kind("hollow", LintWeight::kError, row.line, "", "a row that contains only commas",
                               "take it away; " + command(file_) + " does");
         continue;
       }

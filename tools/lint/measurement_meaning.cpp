@@ -44,7 +44,7 @@ class Meaning {
     const bool reading = names_.is_reading(table_, column);
     const format::ColumnGroup* const known = format::find_column(column.name);
     const auto of_axis = names_.of_axis(column.name);
-    // What a board added may be left out of a row; no other quantity of an axis.
+    // The correction of a board may be missing in a row; no other quantity of an axis may.
     const bool filled_column = (known != nullptr && known->filled) ||
                                (of_axis && of_axis->quantity != format::AxisQuantity::kPosition &&
                                 of_axis->quantity != format::AxisQuantity::kCorrection);
@@ -102,7 +102,7 @@ class Meaning {
     const char* const unit = turns ? "deg" : "mm";
     if (most - least < 1e-9)
       findings_.warn(table_.header_line, column.name,
-                     fmt::format("axis {} never moves: it stands at {} {} in all rows", column.name,
+                     fmt::format("axis {} never moves: it is at {} {} in all rows", column.name,
                                  text::number_text(least), unit),
                      "its errors cannot be distinguished from those of the set-up");
     if (machine_ == nullptr) return;
@@ -151,8 +151,7 @@ class Meaning {
         check += word == format::kCheckRole ? 1 : 0;
       }
     if (check == table_.rows.size())
-      findings_.warn(table_.header_line, columns::kRole,
-                     "all rows are check rows: nothing is left for a fit");
+      findings_.warn(table_.header_line, columns::kRole, "all rows are check rows: no row remains for a fit");
     if (check == 0)
       findings_.remark(table_.header_line, columns::kRole, "no check rows: the fit will not be tested",
                        "give some rows the role check, spread over the volume");
@@ -241,7 +240,7 @@ class Meaning {
     std::string meaning;
     if (near(1e3)) meaning = "the readings are in µm, or the positions in m?";
     if (near(1e-3)) meaning = "the readings are in m, or the positions in µm?";
-    // The heading may be what is wrong: µm under mm, or mm under µm.
+    // The heading may be wrong: µm under mm, or mm under µm.
     for (const char* name : columns::kPoint)
       if (const LintColumn* point = table_.find(name); point != nullptr) {
         if (near(1e3) && point->unit == "mm") meaning += " " + wrong_heading(name, "µm", "mm", "um");
@@ -255,7 +254,7 @@ class Meaning {
                 " --deviation \"X[mm]=x\" … adds them to the positions";
     if (!meaning.empty())
       findings_.warn(table_.header_line, columns::kPoint.front(),
-                     fmt::format("what was measured spreads over {:.4g} of what the machine was sent", ratio),
+                     fmt::format("the measured values spread over {:.4g} of the commanded positions", ratio),
                      meaning);
   }
 
@@ -266,7 +265,8 @@ class Meaning {
 
   /// Columns that are small by nature, corrections and uncertainties: µm under mm, or the other way.
   void look_at_sizes() {
-    constexpr double kMostCorrection_mm = 2, kLeast_mm = 1e-5;  // of what a board adds; of what is measured
+    constexpr double kMostCorrection_mm = 2,
+                     kLeast_mm = 1e-5;  // of a board's correction; of a measured value
     for (const LintColumn& column : table_.columns) {
       const auto of_axis = names_.of_axis(column.name);
       const bool correction = of_axis && of_axis->quantity == format::AxisQuantity::kCorrection;
@@ -289,11 +289,12 @@ class Meaning {
   }
 
   /// Cells further from the middle half of their column than a hundred times its width: 9999, a lost point.
-  /// A measured position is judged by what it differs from the commanded one.
+  /// For a measured position its difference from the commanded one is tested.
   void look_for_wild_cells(const LintColumn& column) {
     constexpr double kWild = 100;       // times the column's spread: a decimal point slips by ten
-    constexpr std::size_t kFewest = 8;  // cells: of fewer none is the odd one
-    // What a machine logs of itself may well jump: a heater is at its set-point but for the first minutes.
+    constexpr std::size_t kFewest = 8;  // cells: with fewer no outlier can be found
+    // Values that a machine logs of itself may jump: a heater is at its set-point except for the first
+    // minutes.
     if (!names_.is_reading(table_, column) && !names_.is_axis(column.name)) return;
     const LintColumn* position =
         column.name.size() == 1
@@ -309,13 +310,13 @@ class Meaning {
     if (sorted.size() < kFewest) return;
     std::sort(sorted.begin(), sorted.end());
     const double low = sorted[sorted.size() / 4], high = sorted[sorted.size() * 3 / 4], width = high - low;
-    // Readings that are the same to the last digit say nothing about how far they spread.
+    // Readings that are equal to the last digit contain no information on their scatter.
     if (!(width > 0)) return;
     for (std::size_t row = 0; row < values.size(); ++row)
       if (values[row] > high + kWild * width || values[row] < low - kWild * width)
         findings_.add_of_kind(
             "wild " + column.name, LintWeight::kWarning, line(row), column.cell[row],
-            fmt::format("{} is outside its column by {:.3g} times the spread of the column", column.name,
+            fmt::format("{} differs from its column by {:.3g} times the spread of the column", column.name,
                         (values[row] > high ? values[row] - high : low - values[row]) / width),
             "a slip, a lost point or a number for \"no reading\"? Leave the cell empty");
   }

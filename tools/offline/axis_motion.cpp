@@ -27,7 +27,8 @@ std::vector<double> AxisMotion::stretches(const ProgramMove& move) const {
       constexpr double kStep = 1e-7;  // of the move, for a difference
       return move.at(s + kStep)[axis] - move.at(s - kStep)[axis];
     };
-    // A look may fall on the reversal itself, where there is no slope: it counts from the last that has one.
+    // An evaluated position may be on the reversal itself, without a slope: the last position with a slope
+    // counts.
     double last = 0, last_slope = 0;
     for (int k = 0; k <= kLooks; ++k) {
       double low = last, high = (k + 0.5) / (kLooks + 1);
@@ -71,7 +72,7 @@ model::States AxisMotion::along(const ProgramMove& move, const std::vector<doubl
       const double way = slope[static_cast<Index>(i)];
       states.axis[i][row] = point[static_cast<Index>(i)];
       states.velocity[i][row] = path > 0 ? move.feed / 60 * way / path : 0;
-      // At a reversal the slope is 0 and its sign chance: the sense is that of the whole stretch.
+      // At a reversal the slope is 0 and its sign random: the direction is that of the whole stretch.
       states.direction[i][row] = sense_[i];
       if (std::isfinite(turn_[i])) states.since[i][row] = std::abs(point[static_cast<Index>(i)] - turn_[i]);
     }
@@ -80,7 +81,8 @@ model::States AxisMotion::along(const ProgramMove& move, const std::vector<doubl
 }
 
 int AxisMotion::looks(const ProgramMove& move, double from, double to, double deviation_mm) const {
-  // What a table of stations does not hide between two looks; how many they are, and chords for the length.
+  // Features that a table of stations does not hide between two evaluated positions; their number, and chords
+  // for the length.
   constexpr double kStep_mm = 1, kStep_deg = 0.1;
   constexpr int kFewest = 8, kMost = 200000, kChords = 64;
   constexpr double kPerPeriod = 32, kPerStation = 4;

@@ -20,8 +20,8 @@ struct ProgramMove {
   Eigen::VectorXd at(double share) const;
 };
 
-/// The motion that belongs to the places of a program's moves: speeds, senses, and how far each axis has come
-/// since it last turned round.
+/// The motion at the positions of a program's moves: speeds, directions, and the travel of each axis since
+/// its last reversal.
 class AxisMotion {
  public:
   /// at: one row, with the inputs.
@@ -29,9 +29,9 @@ class AxisMotion {
 
   /// Shares between which the directions of all axes do not change: 0, reversals, 1.
   std::vector<double> stretches(const ProgramMove& move) const;
-  /// The axes set out from one place to another, none turning round between.
+  /// Axes that move from one position to another without a reversal in between.
   void set_out(const Eigen::VectorXd& from, const Eigen::VectorXd& to);
-  /// Positions with the motion at shares of a move, all within what was set out for.
+  /// Positions with the motion at shares of a move, all within the planned range.
   model::States along(const ProgramMove& move, const std::vector<double>& shares) const;
   /// Number of equal parts of a stretch that are evaluated. A part is at most a millimetre or a tenth of a
   /// degree; each period of a cyclic error of the chain has 32 parts, each interval between stations 4. Parts

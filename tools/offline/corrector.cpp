@@ -56,7 +56,7 @@ void Corrector::count(const model::States& states, const Eigen::MatrixXd& comman
   }
   const model::Machine &from = options_.back ? nominal_ : machine_, &to = options_.back ? machine_ : nominal_;
   const Eigen::Matrix3Xd left = model::forward(from, there).position - model::forward(to, states).position;
-  constexpr double kReached = 1e-6;  // mm, beyond what the axes cannot reach at all
+  constexpr double kReached = 1e-6;  // mm, in addition to errors that the axes cannot correct
   const Eigen::Matrix3Xd before = model::forward(from, states).position - model::forward(to, states).position;
   for (Eigen::Index i = 0; i < left.cols(); ++i) {
     summary_.left_mm = std::max(summary_.left_mm, left.col(i).norm());

@@ -12,12 +12,12 @@ namespace vernier::offline {
 struct CorrectorOptions {
   bool with_rotary =
       false;  // all axes put point and tool direction right, not the linear ones the point alone
-  /// Positions of a machine as it is are given, and the commands of an ideal one that would be there are
-  /// asked.
+  /// The positions of the machine with its errors are given; the commands of an ideal machine at the same
+  /// tool point are computed.
   bool back = false;
 };
 
-/// What was done to the positions of a list or program.
+/// Changes of the positions of a list or program.
 struct CorrectionSummary {
   std::size_t positions = 0;      // of a list; of a program those that were looked at
   std::size_t not_converged = 0;  // of these
@@ -28,15 +28,15 @@ struct CorrectionSummary {
   double largest_um(const model::Machine& machine) const;
 };
 
-/// Commands with the correction in them: axis positions that bring the tool of the machine as it is to where
-/// its nominal chain has it.
+/// Commands with the correction: axis positions that bring the tool of the machine with errors to the tool
+/// point of its nominal chain.
 class Corrector {
  public:
   explicit Corrector(const model::Machine& machine, CorrectorOptions options = {});
 
   const model::Machine& machine() const { return machine_; }
-  /// Axis positions (axes x states) to command for states that are as if the machine were ideal; motion and
-  /// inputs count as they are. Throws InputError where the chain is not finite. tool.
+  /// Axis positions (axes x states) to command for states of an ideal machine; motion and inputs are used as
+  /// given. Throws InputError if the chain is not finite. tool.
   Eigen::MatrixXd commands(const model::States& states);
   /// Adds positions to the summary.
   void count(const model::States& states, const Eigen::MatrixXd& commands);
@@ -49,7 +49,7 @@ class Corrector {
   CorrectionSummary summary_;
 };
 
-/// First words of what is written, by which a file that was corrected before is known.
+/// First words of the output, by which a file that was corrected before is recognised.
 inline constexpr const char* kCorrectedMark = "corrected by vernier";
 
 /// Throws InputError, naming the line, if a text states that it was corrected. tool.

@@ -38,14 +38,14 @@ struct CorrectedStretch {
   std::vector<double> shares;
   model::States states;
   Eigen::MatrixXd commands;
-  Eigen::MatrixXd between;  // at one place between every two of them, which nothing is laid through
+  Eigen::MatrixXd between;  // at one position between every two of them, not used for the fit
 };
 
 bool is_one_of(const Word& word, std::initializer_list<double> codes) {
   return word.letter == 'G' && std::find(codes.begin(), codes.end(), word.value) != codes.end();
 }
 
-/// What is written is absolute, and its arcs have their centre as a step, whatever was read.
+/// The output is absolute, and its arcs have their centre as a step, for every kind of input.
 bool is_distance_mode(const Word& word) { return is_one_of(word, {90, 91}); }
 std::string text_of(const Word& word) { return is_one_of(word, {90.1}) ? "G91.1" : word.text; }
 
@@ -169,7 +169,7 @@ class Translator {
         target[at] += value;
       else
         throw text::InputError(place_, word.text,
-                               "a step from where the axis stands, which is not known: --at");
+                               "a step from an unknown position of the axis: give it with --at");
       reached.push_back(*axis);
     }
     return target;
@@ -186,13 +186,13 @@ class Translator {
       if (known_[i] == 0)
         throw text::InputError(
             place_, std::string(1, letters_[i]),
-            "where this axis stands is not known yet: name it in the first move, or with --at");
+            "the position of this axis is not known yet: name it in the first move, or with --at");
     if (arc && !start_known)
       throw text::InputError(place_, words.front().text, "an arc from a place that is not known: --at");
     if (arc) move.arc = arc_of(words, arc_reading(), move.from, move.to, place_);
     const bool rapid = motion_ == Motion::kRapid;
     move.feed = rapid || inverse_time_ ? 0 : feed_;
-    // A rapid move is no path, and what comes from a place that is not known is none that could be cut.
+    // A rapid move is no path. A move from an unknown position is not a cut either.
     write(words, move, rapid || !start_known ? end_of(move, start_known) : vertices(move));
     position_ = move.to;
   }
@@ -359,7 +359,7 @@ class Translator {
     return words;
   }
 
-  /// The step to the centre, from the begin as it is written.
+  /// The step to the centre, from the start point as it is written.
   std::string centre_words(const Eigen::Vector2d& centre, const std::array<Index, 2>& axes) const {
     std::string words;
     const double count = std::pow(10, digits());
@@ -386,7 +386,7 @@ class Translator {
   double unit_ = 1, feed_ = 0;  // mm or inch; mm/min, under G93 1/min
   bool absolute_ = true, absolute_centre_ = false, inverse_time_ = false;
   VectorXd position_;  // of the machine, as the program means it
-  VectorXd command_;   // what was written last; empty: nothing yet
+  VectorXd command_;   // last written positions; empty: not written yet
   std::vector<char> known_;
   PartProgram result_;
 };

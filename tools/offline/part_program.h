@@ -8,7 +8,7 @@
 
 namespace vernier::offline {
 
-/// Part of a cutting move in which no axis turns round; of a rapid move nothing.
+/// Part of a cutting move in which no axis reverses; empty for a rapid move.
 struct ProgramStretch {
   std::size_t line = 0;
   bool rapid = false;
@@ -19,7 +19,7 @@ struct ProgramStretch {
 struct PartProgramOptions {
   /// How far the written path may leave the one that a correction at every moment would make, mm.
   double deviation_mm = 0.0005;
-  /// Machine position of the program's zero, by axis: 0 where the program's coordinates are the machine's.
+  /// Machine position of the program's zero, by axis: 0 if the program uses machine coordinates.
   std::vector<double> zero;
   int digits = 5;                                    // behind the point
   bool arcs = true;                                  // G2 and G3 are written; else chords alone

@@ -47,9 +47,9 @@ class ArcFit {
 
  private:
   static constexpr double kNoTurn = 1e-9;  // of a full turn: rounding
-  /// A rounded end must not make a control take a nearly whole turn for none, or none for a whole one.
+  /// Rounding of an end must not change a nearly full turn to no turn in a control, or the reverse.
   static constexpr double kMostTurn = 0.75 * kTurn;
-  static constexpr double kLeastChord = 1e-3;  // mm: a hundred times what is written
+  static constexpr double kLeastChord = 1e-3;  // mm: a hundred times the written resolution
   static constexpr Index kLookedAt = 64;       // points that the centre is fitted to; all are judged
 
   Vector2d place(Index k) const { return {points_(guide_.axis[0], k), points_(guide_.axis[1], k)}; }
@@ -60,8 +60,8 @@ class ArcFit {
     for (Index k = from + step; k < to; k += step) take(place(k));
   }
 
-  /// Centre on the bisector of the chord. The farthest point's distance is a convex function of it, so nearly
-  /// linear is what it is made of: the least squares first, then the least largest near it.
+  /// Centre on the bisector of the chord. The farthest point's distance is a convex, nearly linear function
+  /// of it: least squares first, then the smallest maximum near it.
   std::optional<Vector2d> bow_through(Index from, Index to, double turn) const {
     const Vector2d begin = place(from), chord = place(to) - begin;
     const double half = chord.norm() / 2;
@@ -96,7 +96,7 @@ class ArcFit {
 
   /// Centre of a circle through the first point, by least squares over the others.
   std::optional<Vector2d> circle_through(Index from, Index to, double turn) const {
-    constexpr double kClosed = 0.1;  // of what a path may be off
+    constexpr double kClosed = 0.1;  // share of the allowed error of a path
     const Vector2d begin = place(from);
     if ((place(to) - begin).norm() > kClosed * most_) return std::nullopt;
     const Vector2d opposite = place(nearest(from, to, turn / 2));

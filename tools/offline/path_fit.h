@@ -10,15 +10,15 @@ namespace vernier::offline {
 /// Where along an arc of the program the points of a path lie: guides the arcs that are put in its place.
 struct ArcGuide {
   std::array<Eigen::Index, 2> axis{};  // rows of the plane's axes
-  std::vector<double> angle;           // of each point about the program's centre, rad, in one sense
+  std::vector<double> angle;           // of each point about the program's centre, rad, in one direction
 };
 
-/// A block of a path: a straight line, or an arc about a centre in the plane of the guide, in its sense,
+/// A block of a path: a straight line, or an arc about a centre in the plane of the guide, in its direction,
 /// along which all other axes move evenly with the angle.
 struct PathPiece {
   Eigen::Index to = 0;  // the point that it ends in; it begins where the piece before ended
   std::optional<Eigen::Vector2d> centre;
-  bool whole = false;  // a whole turn: ends where it began in its plane
+  bool whole = false;  // a full turn: ends at its start point in its plane
 };
 
 /// Finds few blocks from the first point to the last: each block is as long as possible, with all points

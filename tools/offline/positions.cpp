@@ -24,7 +24,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Digits behind the point of what is written: a tenth of a nanometre, a ten-millionth of a degree.
+/// Decimals of the output: a tenth of a nanometre, a ten-millionth of a degree.
 constexpr int kDigits = 7;
 
 /// The columns of one file as numbers.
@@ -143,7 +143,7 @@ model::States solved(const PositionTable& table, const model::Machine& machine, 
   for (std::size_t row = 0; row < states.count; ++row) {
     const auto at = static_cast<Index>(row);
     const model::Poses one{target.position.col(at), {target.rotation[row]}};
-    // From where the row before stands: the nearest of several solutions.
+    // From the position of the previous row: the nearest of several solutions.
     model::States start = model::select_states(states, {row > 0 ? row - 1 : row});
     constexpr int kRestarts = 48;  // as tolerance/placed_part.cpp
     const kinematics::InverseResult result =

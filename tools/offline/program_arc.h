@@ -8,7 +8,7 @@
 
 namespace vernier::offline {
 
-/// What a block's arc depends on beside its words.
+/// State that defines a block's arc in addition to its words.
 struct ArcReading {
   int plane = 17;  // G17, G18, G19
   bool clockwise = false;

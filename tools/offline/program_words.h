@@ -12,11 +12,11 @@ namespace vernier::offline {
 struct Word {
   char letter = 0;  // upper case; ( for remarks, % and / for themselves
   double value = 0;
-  std::string text;  // as it stands
+  std::string text;  // unchanged
 };
 
-/// The words of a block. Throws InputError for a remark without its end, and for what is neither a word nor a
-/// remark: parameters, expressions, loops. tool.
+/// The words of a block. Throws InputError for a remark without an end, and for text that is neither a word
+/// nor a remark: parameters, expressions, loops. tool.
 std::vector<Word> words_of(const std::string& line, const text::Place& place);
 
 /// Value of the first word with this letter.

@@ -9,12 +9,12 @@
 
 namespace vernier::part {
 
-/// A machine file whose nominal chain is that of the five-axis machine with B head and C table. Errors may be
-/// anything that the file can say; its free statics are the parameters of the part.
+/// A machine file whose nominal chain is that of the five-axis machine with B head and C table. Its errors
+/// may be any that the file format can represent; its free statics are the parameters of the part.
 struct BHeadMachine {
   model::Machine machine;
   double pivot_mm = 0;                // B axis to tool tip, read off the nominal chain
-  std::array<std::size_t, 5> axis{};  // where X Y Z B C stand among the machine's axes
+  std::array<std::size_t, 5> axis{};  // indices of X Y Z B C among the machine's axes
 
   /// Joint values of the origin of the work coordinates: tip at (0, 0, 0), tool vertical, C = 0.
   JointPose origin() const { return {0, 0, pivot_mm, 0, 0}; }
@@ -22,8 +22,8 @@ struct BHeadMachine {
   model::States states(const std::vector<JointPose>& joints) const;
 };
 
-/// Checks the nominal chain against the closed direct solution at poses over the ranges of the axes. Throws
-/// InputError where an axis is missing or the chain is another. tool.
+/// Checks the nominal chain against the closed forward kinematics at poses over the ranges of the axes.
+/// Throws InputError if an axis is missing or the chain is another. tool.
 BHeadMachine b_head_machine(model::Machine machine);
 
 /// tables/machines/five_axis_bhead_ctable.xml as it was when the program was built: the machine of the paper

@@ -81,7 +81,7 @@ std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const s
     const model::Frame here = actual.pose(i, twists), there = ideal.pose(i);
     const Eigen::Vector3d arm = height_mm[i] * here.rotation.col(2);
     result[i].shift = here.origin - there.origin + (arm - height_mm[i] * there.rotation.col(2));
-    // A chain need not use every static: what it has no derivative for stays zero.
+    // A chain need not use every static: entries without a derivative are zero.
     result[i].by = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(wanted.size()));
     for (std::size_t k = 0; k < twists.size(); ++k) {
       const auto at = std::find(wanted.begin(), wanted.end(), actual.keys()[k]) - wanted.begin();

@@ -8,17 +8,17 @@
 
 namespace vernier::part {
 
-/// A point of the part: flank 0 (A) or 1 (B), and where on it.
+/// A point of the part: flank 0 (A) or 1 (B), and its position on the flank.
 struct PartPoint {
   std::size_t flank = 0;
   double u = 0, v = 0;
 };
 
-/// Where and along what the tool's displacement is taken. Contact: the cutter is a rigid body, and its
-/// displacement is taken at the height of the point, along the surface's normal there. Tip: the paper's
-/// reading, displacement of the tool tip along N(u,1). In plane: as contact, but only the horizontal part of
-/// the displacement, along the horizontal part of the normal (unit length), which is what a profile at
-/// constant height shows of a wall that is nearly vertical.
+/// Point and direction of the evaluated tool displacement. Contact: the cutter is a rigid body; its
+/// displacement is evaluated at the height of the point, along the surface normal there. Tip: as in the
+/// paper, displacement of the tool tip along N(u,1). In plane: as contact, but only the horizontal part of
+/// the displacement, along the horizontal part of the normal (unit length): the value that a profile at
+/// constant height shows of a nearly vertical wall.
 enum class DefectReading : std::uint8_t { kContact, kTip, kInPlane };
 
 struct DefectOptions {
@@ -40,9 +40,9 @@ std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const s
 /// Indices of the statics of `by` and of the Jacobian of a part, in the order of the machine file.
 std::vector<std::size_t> free_statics(const model::Machine& machine);
 
-/// What the errors of a machine do to the part, at N points.
+/// Effect of the errors of a machine on the part, at N points.
 struct PartDefect {
-  std::vector<JointPose> joints;  // where the machine stands when the point is cut
+  std::vector<JointPose> joints;  // machine positions when the point is cut
   Eigen::Matrix3Xd position,
       normal;                 // nominal surface, workpiece coordinates; normal of the reading: unit, outward
   Eigen::VectorXd defect_mm;  // along the normal, positive: material left; exact, not linearised

@@ -24,17 +24,17 @@ EnvelopePoint envelope_point(const FlankPose& pose, const Cutter& cutter, double
 double overcut_formula_mm(const FlankPose& pose, const Cutter& cutter, double v);
 
 /// Distance of the envelope point of u at `v` to the true surface, along its outward normal; negative is
-/// overcut. 0 where the nearest point is beyond an end of the part.
+/// overcut. 0 if the nearest point is beyond an end of the part.
 double envelope_distance_mm(const RuledSurface& surface, const Cutter& cutter, double u, double v,
                             NormalReading reading = {});
 
-/// The largest value over 0 <= u <= 1 and where it stands.
+/// The largest value over 0 <= u <= 1 and its position.
 struct Worst {
   double value_mm = 0, u = 0;
 };
 
-/// Largest overcut by the paper's formula at `v`. Every knot is looked at (the largest value may be a cusp
-/// there), and the largest of 40 samples a span is refined within its span to 1e-9 of u.
+/// Largest overcut by the paper's formula at `v`. Every knot is evaluated (the largest value may be a cusp
+/// there), and the largest of 40 samples per span is refined within its span to 1e-9 of u.
 Worst worst_formula(const RuledSurface& surface, const Cutter& cutter, double v, NormalReading reading);
 
 /// Largest overcut as a distance (positive), likewise.

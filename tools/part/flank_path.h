@@ -15,8 +15,8 @@ struct Cutter {
 };
 
 /// The paths that the paper defines. Analytical: equations 1 to 3, along the top curve. The programs give a
-/// lower curve and the axis by an upper one, and the control sets the tool off at right angles to the lower
-/// curve and the axis (CUT3DC): TP5C1 touches at Z0, TP6C2 at Z11.
+/// lower curve and the axis by an upper one. The control offsets the tool perpendicular to the lower curve
+/// and the axis (CUT3DC): TP5C1 touches at Z0, TP6C2 at Z11.
 enum class ToolPath : std::uint8_t { kAnalytical, kTp5c1, kTp6c2 };
 
 /// Where on the part's height a path touches: Cutter::touch.
@@ -25,8 +25,8 @@ constexpr double touch_of(ToolPath path) {
   return path == ToolPath::kAnalytical ? 1 : path == ToolPath::kTp5c1 ? 0 : kLowerOfTp6c2;
 }
 
-/// How the normal of the path is taken. The paper prints N = +-(R x T), which has no unit length, since
-/// T(u,1) is up to 16 deg away from a right angle to R; and it does not say on which side.
+/// Definition of the normal of the path. The paper prints N = +-(R x T), which has no unit length, since
+/// T(u,1) is up to 16 deg away from a right angle to R; it does not give the side.
 struct NormalReading {
   bool unit = true;
   bool outward = true;
@@ -43,8 +43,8 @@ struct FlankPose {
 };
 
 /// Tip = C1 + radius * N - length * R: with N(u,1) the analytical flank path of the paper's equations 1 to 3.
-/// The cutter touches the surface along the whole generatrix only where the surface is not twisted; what it
-/// cuts too much is in tools/part/envelope.h. tool.
+/// The cutter touches the surface along the whole generatrix only if the surface is not twisted; the excess
+/// cut is computed in tools/part/envelope.h. tool.
 FlankPose flank_pose(const RuledSurface& surface, const Cutter& cutter, double u, NormalReading reading = {});
 
 }  // namespace vernier::part

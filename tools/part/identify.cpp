@@ -92,7 +92,7 @@ class PartProblem {
     return left;
   }
 
-  /// Sum of squares at a point, and what a step is made of.
+  /// Sum of squares at a point, and the data for a step.
   double cost(const Eigen::VectorXd& point, Eigen::MatrixXd& normal, Eigen::VectorXd& gradient) const {
     Eigen::MatrixXd jacobian;
     const Eigen::VectorXd left = weight_.cwiseProduct(residual(point, &jacobian));
@@ -130,8 +130,8 @@ struct Solution {
   bool converged = false;
 };
 
-/// Newton with the inverse of the start kept: the errors are so small that the chain is all but linear in
-/// them, and the directions that the points cannot see stay as they are.
+/// Newton with the inverse of the start: the errors are so small that the chain is nearly linear in them, and
+/// the directions that the points do not determine do not change.
 Solution solve(const PartProblem& problem, const fit::Observability& seen) {
   constexpr int kMost = 50;           // Newton's steps, at most
   constexpr double kSettled = 1e-12;  // of the step that the first iteration made
@@ -142,7 +142,7 @@ Solution solve(const PartProblem& problem, const fit::Observability& seen) {
   while (!solution.converged && solution.iterations < kMost) {
     problem.cost(solution.point, normal, gradient);
     const Eigen::VectorXd step = seen.covariance * gradient;
-    const double size = step.dot(normal * step);  // what the step gains
+    const double size = step.dot(normal * step);  // gain of the step
     first = std::max(first, size);
     solution.point += step;
     ++solution.iterations;
@@ -205,7 +205,7 @@ Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
   const PartProblem problem(machine, part, options);
   const text::Place place{part.file, 0};
   if (problem.free().empty())
-    throw text::InputError({machine.machine.file, 0}, "static", "nothing is free to be fitted");
+    throw text::InputError({machine.machine.file, 0}, "static", "no static is free");
   if (static_cast<Eigen::Index>(part.points.size()) < problem.size())
     throw text::InputError(place, std::to_string(part.points.size()) + " points",
                            "fewer points than unknowns");

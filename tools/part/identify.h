@@ -12,8 +12,8 @@ namespace vernier::part {
 
 struct IdentifyOptions {
   DefectOptions defect;
-  /// The part was aligned to its model by best fit: six numbers of a rigid motion are fitted beside the
-  /// errors (`part.X` ... `part.rZ`; mm and deg about the work origin).
+  /// The part was aligned to its model by best fit: six numbers of a rigid motion are fitted together with
+  /// the errors (`part.X` ... `part.rZ`; mm and deg about the work origin).
   bool aligned = false;
   /// The cutter's radius is fitted too (`tool.radius`: actual - programmed, mm): one too small leaves
   /// material on both flanks.
@@ -23,7 +23,7 @@ struct IdentifyOptions {
 struct IdentifiedError {
   std::string name, unit;
   double value = 0;
-  std::optional<double> std;  // nothing where the points do not determine it
+  std::optional<double> std;  // nullopt if the points do not determine it
 };
 
 struct Identification {

@@ -35,7 +35,7 @@ void follow(Rotary& here, double before_rad, bool whole_turns) {
   if (!whole_turns && std::remainder(count, 2.0) != 0) here.b_rad = -here.b_rad;
 }
 
-/// C in stretches where it is free: evenly between the neighbours, held at the ends of the path.
+/// C in stretches where it is free: evenly between the neighbours, constant at the ends of the path.
 void fill_free(std::vector<Rotary>& path) {
   for (std::size_t i = 0; i < path.size();) {
     if (!path[i].free) {
@@ -53,7 +53,7 @@ void fill_free(std::vector<Rotary>& path) {
   }
 }
 
-/// The other solution, a half turn away, where it needs smaller angles of the table.
+/// The other solution, half a turn away, if it needs smaller angles of the table.
 void choose_smaller(std::vector<Rotary>& path) {
   const auto [low, high] = std::minmax_element(
       path.begin(), path.end(), [](const Rotary& a, const Rotary& b) { return a.c_rad < b.c_rad; });

@@ -17,8 +17,8 @@ struct ToolPose {
   Eigen::Vector3d tip, axis;
 };
 
-/// Which of the two solutions of tan(C) = -j/i is taken. Continuous: C turns as little as possible from pose
-/// to pose and B changes sign where the tool passes the vertical. Positive B: C jumps by 180 deg there.
+/// Choice of the solution of tan(C) = -j/i. Continuous: C turns as little as possible from pose to pose and B
+/// changes sign when the tool passes the vertical. Positive B: C jumps by 180 deg there.
 enum class RotarySolution : std::uint8_t { kContinuous, kPositiveB };
 
 /// Direct solution (the paper's equation 9): the nominal machine. pivot_mm: B axis to tool tip.

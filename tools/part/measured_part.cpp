@@ -13,8 +13,8 @@
 namespace vernier::part {
 namespace {
 
-/// A nominal point so far from both flanks is none of theirs (the flanks are known to rounding; files have
-/// three or four decimals).
+/// Largest distance of a nominal point from a flank; a point beyond it belongs to no flank (the flanks are
+/// known to rounding; files have three or four decimals).
 constexpr double kOnSurfaceMm = 0.05;
 
 std::string point_text(const Eigen::Vector3d& p) {

@@ -11,10 +11,10 @@ namespace vernier::part {
 /// One column of a file, in mm or deg. The file outlives it.
 class PartColumn {
  public:
-  /// Throws InputError where it is missing though required, or has a unit of another dimension. tool.
+  /// Throws InputError if it is required and missing, or has a unit of another dimension. tool.
   PartColumn(const format::CsvFile& csv, const std::string& name, format::Dimension dimension, bool required);
   bool present() const { return index_.has_value(); }
-  /// Throws InputError where the cell is no number. tool.
+  /// Throws InputError if the cell is not a number. tool.
   double at(std::size_t row) const;
 
  private:

@@ -42,8 +42,8 @@ std::string defect_csv(const std::vector<PartPoint>& points, const PartDefect& d
 /// Axes of the machine that the path leads beyond their min or max, as "B 17.84 deg is beyond max 15".
 std::vector<std::string> beyond_limits(const BHeadMachine& machine, const PartPath& path);
 
-/// Throws InputError where the cutter is too thick for a hollow of the flank (its centre would run backwards)
-/// or not longer than the flank.
+/// Throws InputError if the cutter is too thick for a hollow of the flank (its centre would run backwards) or
+/// not longer than the flank.
 void check_cutter(const RuledSurface& surface, const Cutter& cutter);
 
 }  // namespace vernier::part

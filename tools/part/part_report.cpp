@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kDrawn = 521;  // points of a curve: one a pixel or so
+constexpr std::size_t kDrawn = 521;  // points of a curve: about one per pixel
 
 std::vector<double> along() {
   std::vector<double> u;
@@ -57,7 +57,7 @@ ordered_json defect_section(const PartJob& job, const ordered_json& result) {
   ordered_json rows = ordered_json::array();
   for (const ordered_json& flank : d["tip_along_flank"])
     rows.push_back({flank["flank"], flank["min_mm"], flank["max_mm"]});
-  return {{"title", "What the machine's errors do to the part"},
+  return {{"title", "Effect of the machine's errors on the part"},
           {"prose",
            {"The part is clamped where it was cut and its offsets were set at the work origin; no "
             "alignment to the model."}},
@@ -94,7 +94,7 @@ ordered_json overcut_section(const PartJob& job, const ordered_json& result) {
     rows.push_back({one["flank"], one["formula_as_printed"]["mm"], one["formula_unit_normal"]["mm"],
                     one["formula_inward_normal"]["mm"], one["distance"][0]["mm"], one["distance"][1]["mm"],
                     one["distance"][2]["mm"]});
-  return {{"title", "What a cylinder cannot cut on a twisted flank"},
+  return {{"title", "Limits of a cylinder on a twisted flank"},
           {"prose",
            {"Largest overcut of the flank path, by the two readings of the printed formula, by the formula "
             "with the normal on the wrong side, and as distance of the envelope to the surface."}},

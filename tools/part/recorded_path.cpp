@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kReachMm = 1;  // the cutter on the other flank, or far off, cuts nothing here
+constexpr double kReachMm = 1;  // beyond it the cutter does not cut at the point
 constexpr int kSections = 40;   // of a step; 1e-8 of it
 
 JointPose between(const JointPose& a, const JointPose& b, double share) {
@@ -26,8 +26,8 @@ JointPose between(const JointPose& a, const JointPose& b, double share) {
           mix(a.c_deg, b.c_deg)};
 }
 
-/// Where the cutter's cylinder begins along the normal of a point, mm; not a number where it does not, above
-/// its tip, within reach.
+/// Position of the cutter's cylinder along the normal of a point, mm. Not a number if it is out of reach or
+/// below the tip.
 double reached_mm(const ToolPose& tool, double radius_mm, const SurfacePoint& at) {
   const Vector3d from = at.position - tool.tip;
   const Vector3d off = from - tool.axis * tool.axis.dot(from),

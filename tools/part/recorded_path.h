@@ -14,15 +14,16 @@ struct RecordedPath {
   std::vector<JointPose> joints;
 };
 
-/// Reads the columns of the axes X Y Z B C as `vernier record` writes them; others are of no concern.
-/// `zero`: what the record shows where the part's axis positions are 0. Throws InputError with file, line and
-/// word. tool.
+/// Reads the columns of the axes X Y Z B C as `vernier record` writes them; other columns are ignored.
+/// `zero`: the recorded values at which the part's axis positions are 0. Throws InputError with file, line
+/// and word. tool.
 RecordedPath read_recorded(const std::string& text, const std::string& file, const JointPose& zero = {});
 
-/// What a recorded path leaves on the part at a point, along the surface's normal, positive: material left.
+/// Material that a recorded path leaves on the part at a point, along the surface's normal, positive:
+/// material left.
 struct RecordedPoint {
   double recorded_mm = 0;  // by the recorded positions
-  double path_mm = 0;      // by the path that they ought to follow: what a cylinder cannot cut
+  double path_mm = 0;      // of the ideal path: material that a cylinder cannot cut
   std::size_t sample = 0;  // that cut it
 
   double controller_mm() const { return recorded_mm - path_mm; }
@@ -33,17 +34,17 @@ struct RecordedDeviations {
   std::vector<RecordedPoint> points;
 };
 
-/// At each point the cutter reaches farthest in along the normal of the surface where a recorded pose, or one
-/// on the straight way of the axes between two of them, has its flank cut the normal deepest: the ray is cut
-/// with the cylinder. Poses count by the nominal machine: these are deviations of the positions, not of the
-/// machine. Throws InputError where no pose comes within 1 mm of a point. tool.
+/// Computes for each point how far the cutter reaches in along the normal of the surface. The ray is cut with
+/// the cylinder of the flank at recorded poses and at poses on the straight path of the axes between two of
+/// them; the deepest cut counts. Poses are evaluated with the nominal machine: the results are deviations of
+/// the positions, not of the machine. Throws InputError if no pose comes within 1 mm of a point. tool.
 RecordedDeviations recorded_deviations(const BHeadMachine& machine, const RecordedPath& recorded,
                                        const std::vector<PartPoint>& points, const Cutter& cutter);
 
 /// `file`, `points`, and of each kind of deviation the least, the largest and the rms.
 nlohmann::ordered_json recorded_json(const RecordedDeviations& deviations);
 
-/// One row a point: where it is, the deviations, the defect of the machine, and all together.
+/// One row per point: its position, the deviations, the defect of the machine, and their sum.
 std::string recorded_csv(const std::vector<PartPoint>& points, const PartDefect& defect,
                          const RecordedDeviations& deviations);
 

@@ -27,12 +27,13 @@ SurfacePoint surface_point(const RuledSurface& surface, double u, double v);
 struct SurfaceFoot {
   double u = 0, v = 0;
   double distance_mm = 0;   // along the outward normal; negative: within the material (overcut)
-  double across_mm = 0;     // what the distance does not explain: the foot is beyond an end of the curve
+  double across_mm = 0;     // offset of the foot point beyond an end of the curve
   bool beyond_end = false;  // u was held at 0 or 1
 };
 
-/// Nearest point of the surface by Gauss-Newton from (u, v), held to 0 <= u <= 1, v free. point: mm. Throws
-/// std::runtime_error where the iteration does not settle (start farther off than the curve's radius). tool.
+/// Nearest point of the surface by Gauss-Newton from (u, v), limited to 0 <= u <= 1, v free. point: mm.
+/// Throws std::runtime_error if the iteration does not converge (start farther off than the curve's radius).
+/// tool.
 SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point, double u, double v);
 
 /// The same with a start found by searching the whole surface.

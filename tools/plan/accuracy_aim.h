@@ -11,7 +11,7 @@ namespace vernier::plan {
 /// The aim as numbers that are linear in the parameters: U95 = 2 sqrt(trace(rows C rows^T)), mm.
 struct AimRows {
   Eigen::MatrixXd rows;  // by the machine's own parameters, in the order of `own`
-  /// Of a part's characteristics: which rows, and what they were divided by.
+  /// Of a part's characteristics: their rows and divisors.
   struct Piece {
     std::string name;
     Eigen::Index first = 0, count = 0;

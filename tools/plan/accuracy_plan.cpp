@@ -27,7 +27,7 @@ using Eigen::MatrixXd;
 
 /// Poses to choose from: over the volume, and where accuracy is wanted.
 constexpr std::size_t kOverVolume = 500, kAtAim = 300;
-/// Standard deviation of a set-up that nothing is known of, mm and rad: as far as it matters anything.
+/// Standard deviation of an unknown set-up, mm and rad: large enough to have no influence.
 constexpr double kAnywhere = 10;
 /// Readings with this much less noise show the part of the uncertainty that no number of readings reduces.
 constexpr double kFarBetter = 1e-3;
@@ -59,7 +59,7 @@ class AccuracyPlanner {
         own_.push_back(static_cast<Index>(i));
     if (own_.empty())
       throw text::InputError({knowledge.machine.file, 0}, knowledge.machine.name,
-                             "the machine file frees nothing that could be measured");
+                             "the machine file has no free parameter that could be measured");
     aim_ = aim_rows(knowledge, aim, own_);
     size_ = static_cast<Index>(knowledge.parameters.size()) + 9;
     weight_ = MatrixXd::Zero(size_, size_);
@@ -270,7 +270,7 @@ class AccuracyPlanner {
   std::vector<Index> own_;
   AimRows aim_;
   Index size_ = 0;           // parameters, six of a new set-up, three of the run
-  MatrixXd weight_, prior_;  // what a covariance does at the aim; before the first reading
+  MatrixXd weight_, prior_;  // weight of a covariance at the aim; state before the first reading
   model::States offered_;
   MatrixXd jacobian_, covariance_;
 };
@@ -293,7 +293,7 @@ Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& m
   if (!knowledge.reads[0] && !knowledge.reads[1] && !knowledge.reads[2])
     throw text::InputError({measurement.files.empty() ? "" : measurement.files[0], 0},
                            format::words_of(format::columns::kPoint),
-                           "a plan for accuracy is one of readings of the tool point; this has none");
+                           "a plan for accuracy needs readings of the tool point; this file has none");
   const fit::NoiseModel& noise = fitted.noise;
   const double unit_mm = usual_reading_mm(measurement);
   const double own = std::sqrt(noise.own * noise.own + noise.pose * noise.pose + noise.drift * noise.drift);

@@ -6,7 +6,7 @@
 namespace vernier::plan {
 namespace {
 
-/// What the worst side reaches with each offer; the others' sum, as far as they need it, breaks ties.
+/// Result of the worst side with each offer; ties are decided by the sum of the others, up to their goal.
 std::size_t best_offer(const Sides& sides, double& value) {
   constexpr double kTie = 1e-3;  // of a gain: nearer ones are the same, and the order decides
   Eigen::ArrayXd worst, sum;

@@ -11,14 +11,15 @@ namespace vernier::plan {
 struct Sides {
   std::vector<Discrimination> side;
   std::vector<double> needed;
-  /// Non-centrality over what is needed, of the worst of the first `count` entries.
+  /// Non-centrality divided by the required value, of the worst of the first `count` entries.
   double reached(std::size_t count) const;
   double reached() const { return reached(side.size()); }
   void assume(const std::vector<std::size_t>& chosen);
 };
 
-/// Adds offers (with repeats) to `chosen`, always the one that helps the worst side most, until `least`
-/// are chosen and `reached()` is at least `goal`, or `most` are chosen or no offer helps. tool.
+/// Adds offers (with repeats) to `chosen`, always the one that improves the worst side most. Ends when
+/// `least` are chosen and `reached()` is at least `goal`, when `most` are chosen, or when no offer improves
+/// it. tool.
 void choose_rows(Sides& sides, std::vector<std::size_t>& chosen, std::size_t least, std::size_t most,
                  double goal);
 

@@ -18,7 +18,7 @@ class Discrimination {
                  std::size_t existing);
 
   std::size_t offers() const { return first_.size() - 1 - existing_; }
-  /// Takes these offers (with repeats) into account beside the existing rows; costs a factorisation.
+  /// Adds these offers (with repeats) to the existing rows; needs a factorisation.
   void assume(const std::vector<std::size_t>& chosen);
   double non_centrality() const { return lambda_; }
   /// What each offer would add: r' (I + J_row (J'J)^-1 J_row')^-1 r, r its difference after the refit.

@@ -33,7 +33,7 @@ class FirstPlanner {
           .push_back(static_cast<Index>(i));
     if (own_.empty())
       throw text::InputError({machine.file, 0}, machine.name,
-                             "the machine file frees nothing that could be measured");
+                             "the machine file has no free parameter that could be measured");
     const MatrixXd all(model::linearise(machine, rows, parameters).jacobian);
     // In units of what each parameter may plausibly be: what moves the tool point by so much, rms.
     scale_ = Eigen::VectorXd::Ones(all.cols());
@@ -188,8 +188,8 @@ class FirstPlanner {
   std::vector<Index> shifts_, own_;
   Eigen::VectorXd scale_;
   MatrixXd jacobian_;    // of the poses offered, three rows each, in units of the scales
-  MatrixXd weight_;      // what a covariance of the parameters makes of the tool point, mm^2
-  MatrixXd covariance_;  // of the parameters, after what was chosen
+  MatrixXd weight_;      // maps a covariance of the parameters to the tool point, mm^2
+  MatrixXd covariance_;  // of the parameters, after the chosen poses
 };
 
 }  // namespace

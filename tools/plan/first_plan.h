@@ -10,7 +10,7 @@ namespace vernier::plan {
 
 struct FirstPlanOptions {
   /// Expanded uncertainty (k = 2) of the tool point over the work volume at which the plan is long enough,
-  /// um; none: that of one reading.
+  /// um; nullopt: that of one reading.
   std::optional<double> accuracy_um;
   double reading_um = 5;     // standard uncertainty of a coordinate that will be read
   double expected_um = 100;  // by how much a parameter may plausibly move the tool point, rms over the volume
@@ -25,15 +25,15 @@ struct FirstPlan {
   std::size_t references = 0;          // of them: the first pose again, that a drift shows
   double before_um = 0, after_um = 0;  // expanded uncertainty over the volume, without and with the fit poses
   double random_um = 0;                // the same from as many poses at random
-  double least_um = 0;  // from all poses that could be chosen: what the readings cannot go below
-  bool reached = true;  // the accuracy that was asked for
+  double least_um = 0;                 // from all possible poses: lower limit of such readings
+  bool reached = true;                 // the accuracy that was asked for
 };
 
-/// The poses, one by one, that lower the expected uncertainty of the tool point over the work volume and all
-/// its tools most (I-optimal, exchange of none: Fedorov 1972, 2.5), for the parameters that the machine file
-/// frees. What moves the whole is the set-up's and counts for nothing. Measured in the order of a way through
-/// the axes' travels, the first pose repeated, check poses in between. Throws InputError for an axis without
-/// a range, or nothing free. tool.
+/// Chooses the poses one by one that lower most the expected uncertainty of the tool point over the work
+/// volume and all its tools (I-optimal, without exchange: Fedorov 1972, 2.5), for the free parameters of the
+/// machine file. A rigid motion belongs to the set-up and is not counted. The poses are in the order of a
+/// path through the axes' travels; the first pose is repeated, check poses are in between. Throws InputError
+/// for an axis without a range, or without a free parameter. tool.
 FirstPlan first_plan(const model::Machine& machine, const FirstPlanOptions& options = {});
 
 /// Expanded uncertainty (k = 2) of the tool point over the work volume, um, after readings at any poses, in

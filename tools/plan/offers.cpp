@@ -12,7 +12,7 @@
 namespace vernier::plan {
 namespace {
 
-constexpr double kTemperatureStep = 5;     // K, what a shop can do to a machine without harm
+constexpr double kTemperatureStep = 5;     // K, a change that a workshop can make without harm
 constexpr double kLoadFactor = 1.5;        // beyond the largest recorded load
 constexpr double kEdge = 0.02;             // of the range, kept free for the approach
 constexpr double kWorkingDayS = 8 * 3600;  // eight hours: later is another day
@@ -154,7 +154,7 @@ class Offerer {
       model::begin_run(rows.states, row, kPlanRun);
       rows.states.visit[static_cast<Eigen::Index>(row)] = 0;
     }
-    // Where a tool will point is not known before it stands there.
+    // The direction of a tool is not known before the machine is at the pose.
     if (rows.direction.cols() > 0)
       rows.direction.rightCols(static_cast<Eigen::Index>(count_)).setConstant(std::nan(""));
     fixed_pose_.assign(rows.rows(), 0);
@@ -163,7 +163,7 @@ class Offerer {
         fixed_pose_[o.row] = 1;
   }
 
-  /// The offered rows are commanded where the templates were, and nothing is added to them.
+  /// The offered rows are commanded at the positions of the templates, without a correction.
   void plan_without_correction(model::Measurement& rows) const {
     const auto from = static_cast<Eigen::Index>(result_.existing), count = static_cast<Eigen::Index>(count_);
     for (std::size_t a = 0; a < rows.correction.size(); ++a) {
@@ -197,8 +197,8 @@ class Offerer {
       result_.rows.candidates[i].value[at] = spread.pick(candidate_levels_[i]);
   }
 
-  /// The template's motion, at another speed and in either sense: the same path, so that accelerations go
-  /// with the square.
+  /// The template's motion, at another speed and in either direction: the same path, so that accelerations
+  /// are proportional to the square of the speed.
   void draw_motion(Eigen::Index at, Spread& spread) {
     model::States& s = result_.rows.states;
     const double speed = spread.pick(speeds_), sense = spread.next() < 0.5 ? -1 : 1;

@@ -68,7 +68,7 @@ class Planner {
     plan_.b_true.needed = sides.needed[1];
     note(sides, &Separation::now);
     plan_.lead_of_a = lead_of_a();
-    // Told by what the rows could show, or by what they do show.
+    // Distinguished by the expected or by the present evidence of the rows.
     plan_.told_already = sides.reached(kPair) >= 1 || std::abs(plan_.lead_of_a) > plan_.worse().needed;
     if (!plan_.told_already || options_.points) choose(offers);
     if (plan_.rows.rows() > 0 && plan_.separable)
@@ -194,7 +194,7 @@ class Planner {
     while (drop_unreached()) choose_at_most(offers, bystanders_.empty() ? most : moderate);
   }
 
-  /// Takes the bystanders out that the plan does not rule out. False: there are none.
+  /// Removes the bystanders that the plan does not exclude. False: no such bystander.
   bool drop_unreached() {
     const Sides real = sides_of(append_rows(existing_, plan_.rows), existing_.rows() + plan_.rows.rows());
     std::vector<FittedRival> kept;
@@ -217,7 +217,7 @@ class Planner {
     const std::size_t least = options_.points.value_or(kLeastPoints);
     std::vector<std::size_t> chosen;
     double goal = 1;
-    constexpr int kRounds = 4;  // of what the real order costs, at most
+    constexpr int kRounds = 4;  // of selection; each one compensates the loss by the real order
     for (int round = 0; round < kRounds; ++round) {
       choose_rows(sides, chosen, least, most, goal);
       exchange_rows(sides, chosen);

@@ -46,7 +46,7 @@ std::string best_of_effect(const diagnose::Evidence& evidence, const effects::Ef
   std::vector<diagnose::Scored> scored = scanner.scan(none, {});
   if (scored.empty())
     throw text::InputError("\"" + effect.id +
-                           "\": these rows show nothing of it at any place (give an add string)");
+                           "\": these rows do not show it at any location (give an add string)");
   const auto value = [&](const diagnose::Scored& item) {
     constexpr double kPriceOfDegenerate = 6;  // as much evidence as a form that holds a simpler one needs
     return value_of(item, evidence) - (degenerate(item, list[item.candidate]) ? kPriceOfDegenerate : 0);

@@ -38,8 +38,8 @@ FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidenc
 /// Fall of chi^2 in units of the noise less the price of the unknowns (BIC).
 double value_of(const diagnose::Scored& scored, const diagnose::Evidence& evidence);
 
-/// The parts of `--separate`: cut at a comma only where what follows begins with the id of an effect.
-/// Throws InputError where they are not two. tool.
+/// The parts of `--separate`: separated at a comma only if the text after it begins with the id of an effect.
+/// Throws InputError if the number of parts is not two. tool.
 std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
                                       const std::vector<effects::Effect>& effects);
 

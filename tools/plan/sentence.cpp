@@ -106,7 +106,7 @@ Explanation::Contrast Explanation::speed() const {
 Explanation::Contrast Explanation::sense(std::size_t axis) const {
   Contrast c;
   const model::Column& old = existing_.states.direction[axis];
-  constexpr double kOneSided = 0.9;  // mean of the senses from which on rows were taken in one sense
+  constexpr double kOneSided = 0.9;  // mean direction above which rows count as taken in one direction
   const double usual = old.mean();
   if (std::abs(usual) < kOneSided) return c;
   std::vector<std::size_t> which;
@@ -190,7 +190,7 @@ std::string Explanation::sentence() const {
   const Separation& worse = plan_.worse();
   std::string beyond;
   for (const std::string& name : plan_.not_settable)
-    beyond += fmt::format(" {} is logged but nothing that a plan can set.", name);
+    beyond += fmt::format(" {} is logged, but a plan cannot set it.", name);
   if (plan_.told_already && plan_.rows.rows() == 0)
     return fmt::format(
         "The rows measured so far already distinguish the two: {} explains them better than {} by {:.3g} "
@@ -208,7 +208,8 @@ std::string Explanation::sentence() const {
     if (!contrast.usable) continue;
     const Answer answers = answer(contrast);
     const double score = std::abs(answers.a - answers.b) / (1 + std::abs(answers.a) + std::abs(answers.b));
-    constexpr double kWorthSaying = 0.05;  // of what both say: less no reading shows
+    constexpr double kWorthSaying =
+        0.05;  // share of the prediction: a smaller one is not visible in a reading
     if (score < std::max(best + 1e-6, kWorthSaying)) continue;
     best = score;
     where = contrast.where;

@@ -16,7 +16,7 @@
 namespace vernier::plan {
 namespace {
 
-/// A feed for approaches where none is recorded, mm/min, and the share of the range that an approach takes.
+/// A feed for approaches if none is recorded, mm/min, and the share of the range for an approach.
 constexpr double kApproachFeed = 1000, kApproachShare = 0.05;
 
 struct SheetColumn {
@@ -137,7 +137,7 @@ class MoveWriter {
     const double feed = s.feed[at] > 0 ? s.feed[at] : speed > 0 ? 60 * speed : kApproachFeed;
     out_ += fmt::format("G1{} F{}\n", words(from), cell_text(std::max(feed, kApproachFeed)));
     if (speed > 0 && turned(from, to, at)) {
-      // The axes that stand still come from their own side first.
+      // The axes at rest first come from their required side.
       std::vector<double> ready = to;
       for (std::size_t a = 0; a < to.size(); ++a)
         if (s.velocity[a][at] != 0) ready[a] = from[a];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a plan is asked for and what it holds: values, no algorithm.
+// Input and result of a plan: values, no algorithm.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -18,7 +18,7 @@ namespace vernier::plan {
 
 struct PlanOptions {
   double confidence = 0.95;           // that the chi^2 difference names the right one
-  std::optional<std::size_t> points;  // exactly so many; none: as few as the confidence needs
+  std::optional<std::size_t> points;  // exact number; nullopt: as few as the confidence needs
   std::size_t most_points = 60;       // more are no plan
   std::size_t most_bystanders = 4;    // other effects that a diagnosis would weigh beside the two
   std::size_t offers = 1000;          // rows to choose from
@@ -33,11 +33,11 @@ struct Separation {
 struct Plan {
   FittedRival a, b;
   model::Machine machine;   // that `rows` is bound to
-  model::Measurement rows;  // planned rows in time order, readings 0; empty: nothing helps
+  model::Measurement rows;  // planned rows in time order, readings 0; empty: no row helps
   Separation a_true, b_true;
   double lead_of_a = 0;                    // by how much B explains the rows so far worse than A (BIC)
-  bool told_already = false;               // that, or what they could show, is enough to name one of them
-  bool separable = false;                  // the planned rows reach what the confidence needs
+  bool told_already = false;               // that, or the expected evidence, is enough to name one of them
+  bool separable = false;                  // the planned rows reach the required confidence
   std::vector<std::string> not_settable;   // inputs that an alternative uses and that cannot be set
   std::vector<std::string> ruled_out;      // other effects that explain the rows so far, and will no more
   std::vector<std::string> not_ruled_out;  // ... and that no such plan distinguishes from the two
@@ -45,19 +45,19 @@ struct Plan {
   const Separation& worse() const;
 };
 
-/// What is known of a machine before the next reading.
+/// Knowledge of a machine before the next reading.
 struct Knowledge {
   model::Machine machine;
   model::ParameterSet parameters;
   Eigen::MatrixXd covariance;  // of them, convention included
   double reading_mm = 0.005;   // standard deviation of a coordinate that will be read, independent noise only
   double run_mm = 0;           // ... of what all readings of a run share
-  bool new_set_up = true;      // the next readings are in a set-up that nothing is known of
+  bool new_set_up = true;      // the next readings are in an unknown set-up
   std::array<bool, 3> reads{true, true, true};  // x, y, z
 };
 
-/// Where the machine has to be accurate: a part's features, else where its axes work (`<volume>`), with all
-/// tools of the file.
+/// Region of the required accuracy: a part's features, else the working ranges of the axes (`<volume>`), with
+/// all tools of the file.
 struct AccuracyAim {
   std::string words;  // "the volume"
   std::optional<tolerance::PlacedPart> part;
@@ -74,19 +74,19 @@ struct AccuracyOptions {
   std::function<void(double)> progress;
 };
 
-/// Points and time against what they are expected to bring.
+/// Number of points and time, with the expected result.
 struct AccuracyStep {
   std::size_t points = 0;
   double minutes = 0, u95_um = 0;
 };
 
-/// What the uncertainty rests on.
+/// Basis of the uncertainty.
 struct AccuracyLimit {
   std::string name;  // of a source, as tools/tolerance names it
   double share = 0;  // of the variance that is left
 };
 
-/// What is expected of one characteristic of a part, or of the whole.
+/// Expected result for one characteristic of a part, or for the whole.
 struct AccuracyOf {
   std::string name;
   double now_um = 0, after_um = 0;  // U95
@@ -95,7 +95,7 @@ struct AccuracyOf {
 struct AccuracyPlan {
   model::States states;             // in the order in which they are measured
   double now_um = 0, after_um = 0;  // U95, rms over the aim
-  double floor_um = 0;              // what no number of such readings goes below
+  double floor_um = 0;              // lower limit for any number of such readings
   double random_um = 0;  // after as many poses drawn evenly over the volume (rms over several draws)
   bool reached = true;
   std::vector<AccuracyStep> steps;

@@ -36,7 +36,7 @@ std::vector<Wave> window(const std::vector<double>& positions, double low, doubl
 
 std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
                                      std::size_t count) {
-  constexpr int kDraws = 60;                     // of positions, of which the best stand
+  constexpr int kDraws = 60;                     // sets of positions, of which the best is used
   constexpr std::size_t kFirst = 3 * kPerRange;  // below, waves differ by less than three over the range
   const double span = high - low;
   std::vector<double> distinct = taken;

@@ -21,13 +21,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// A scatter below a thousandth of what is stated is rounding, and no measure for anything.
+// A scatter below a thousandth of the stated one is rounding and is not used as a measure.
 constexpr double kLeastVariance = 1e-6;
 constexpr std::size_t kFewest = 3;  // machines, times, and readings of a machine whose rate is asked for
 // Number of machines whose wander is estimated: more machines give no better estimate and take as long as all
 // other steps.
 constexpr std::size_t kMostAsked = 60;
-// Fall of -2 log likelihood at which wandering is no chance: chi^2 of two at 1e-3. It counts whatever it is.
+// Decrease of -2 log likelihood at which wander is significant: chi^2 of two at 1e-3.
 constexpr double kWorthSaying = 13;
 // A rate that depends on one reading is no drift: without any one of its readings it must still be
 // significant at this level.

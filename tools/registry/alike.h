@@ -14,7 +14,7 @@ struct AlikeOptions {
   double false_alarms = 0.01;  // probability of reporting any drift, common or individual, if none exists
 };
 
-/// A machine that drifts beside the others; the quantity's unit.
+/// A machine with an individual drift; the quantity's unit.
 struct OwnDrift {
   std::string machine;
   double per_day = 0, std = 0;
@@ -29,9 +29,9 @@ struct Drift {
   double common_p = 1;      // chance of such a common movement of quiet machines
   double common_swing = 0;  // largest less smallest of the common curve
   double scatter = 1;       // of the readings about the answer, over their stated uncertainty
-  double wander = 0;        // how far each machine wanders by itself, over the same; 0: not at all
+  double wander = 0;        // individual wander of each machine, divided by the same; 0: no wander
   double wander_days = 0;   // ... and for how long
-  std::vector<std::pair<std::int64_t, double>> curve;  // of what is common: time, value (0 at the first)
+  std::vector<std::pair<std::int64_t, double>> curve;  // of the common part: time, value (0 at the first)
   std::vector<OwnDrift> own;                           // the clearest first
 };
 

@@ -8,7 +8,7 @@
 namespace vernier::registry {
 namespace {
 
-// Not text::parse_number: evidence may be beyond what the formats take for a number.
+// Not text::parse_number: evidence may exceed the range of numbers in the formats.
 template <typename Number>
 Number read(const Cell& cell, const char* what) {
   if (!cell) return 0;

@@ -18,7 +18,7 @@ Transaction::~Transaction() {
 
 void refuse_foreign(Database& database, const std::string& ours) {
   const bool server = database.skip_locked()[0] != '\0';
-  // On a server others may stand beside; a file is one program's.
+  // A server may have other tables as well; a file belongs to one program.
   const std::string tables =
       server ? "SELECT tablename FROM pg_tables WHERE schemaname = ANY (current_schemas(false)) AND "
                "tablename IN ('machine', 'calibration', 'sample', 'live', 'job', 'rollout')"
@@ -30,7 +30,7 @@ void refuse_foreign(Database& database, const std::string& ours) {
   if (found.empty() || !database.run(own, {ours}).empty()) return;
   throw text::InputError(
       {}, database.name(),
-      "holds tables of something else (" + found[0][0].value_or("") + "): nothing is written");
+      "holds tables of another program (" + found[0][0].value_or("") + "): nothing is written");
 }
 
 void insert_rows(Database& database, const std::string& head, const std::vector<Row>& rows,

@@ -12,14 +12,14 @@ namespace vernier::registry {
 using Cell = std::optional<std::string>;
 using Row = std::vector<Cell>;
 
-/// The database has failed or is away; what was begun did not happen.
+/// The database has failed or is not available; the present transaction was not executed.
 class DatabaseError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A database that holds the registry: statements are written once, in what SQLite (3.35 on) and PostgreSQL
-/// share. tool.
+/// A database that contains the registry. Statements are written once, in the common syntax of SQLite (3.35
+/// on) and PostgreSQL. tool.
 class Database {
  public:
   virtual ~Database() = default;
@@ -31,8 +31,8 @@ class Database {
   virtual const char* begin() const = 0;
   /// Clause with which a SELECT skips rows that another caller has locked; empty if writers wait in a queue.
   virtual const char* skip_locked() const = 0;
-  /// Microseconds since 1970 by the database's own clock (a file's: that of this computer): one clock for all
-  /// who use it. Throws DatabaseError.
+  /// Microseconds since 1970 by the database's clock (for a file: of this computer): one clock for all
+  /// callers. Throws DatabaseError.
   virtual std::int64_t now_us() = 0;
   /// "PostgreSQL 15.8 at ..." for people.
   virtual std::string name() const = 0;
@@ -55,7 +55,7 @@ class Transaction {
   bool done_ = false;
 };
 
-/// Throws InputError where a database has tables, and none of the name `ours`: it is something else's.
+/// Throws InputError if a database has tables, but no table `ours`: it belongs to another program.
 void refuse_foreign(Database& database, const std::string& ours);
 
 /// Many rows in as few statements as fit: "INSERT INTO … (…)" + rows + tail. Rows are of one width.

@@ -34,7 +34,7 @@ class PatientQueue {
   PatientQueue(const std::string& place, const std::atomic<bool>& stop) : place_(place), stop_(stop) {
     open();
   }
-  /// What `use` answers; it is asked again after the registry was away. Nothing once `stop` is said.
+  /// The answer of `use`; called again after the registry was not available. `nullopt` once `stop` is set.
   template <class Use>
   auto with(Use use) -> std::optional<decltype(use(std::declval<JobQueue&>()))> {
     for (;;) {

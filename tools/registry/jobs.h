@@ -19,7 +19,7 @@ struct Job {
   std::int64_t attempt = 0, lease_us = 0, ended_us = 0, status = 0;
 };
 
-/// How many jobs of a batch stand where.
+/// Number of jobs of a batch in each state.
 struct JobCounts {
   std::int64_t waiting = 0, taken = 0, done = 0, failed = 0;
 };
@@ -35,15 +35,15 @@ class JobQueue {
   /// command is replaced by the name, as one word of a shell.
   std::int64_t add(const std::string& batch, const std::string& command,
                    const std::vector<std::string>& machines);
-  /// The next job that is free, now this worker's for lease_s; nothing where none is.
+  /// Takes the next free job for this worker for lease_s; `nullopt` if no job is free.
   std::optional<Job> take(const std::string& batch, const std::string& worker, double lease_s,
                           std::int64_t most_attempts);
   /// False: it is no longer this attempt's.
   bool renew(const Job& job, double lease_s);
-  /// Writes down how it ended (status 0: done); false: it is no longer this attempt's, and nothing was
-  /// written.
+  /// Records the end of a job (status 0: done); false: the job no longer belongs to this attempt, and no
+  /// entry was written.
   bool finish(const Job& job, std::int64_t status, const std::string& said);
-  /// Is anything of the batch left that is not done or failed?
+  /// True if the batch has a job that is neither done nor failed.
   bool is_open(const std::string& batch);
   /// Jobs that failed wait again; how many.
   std::int64_t again(const std::string& batch);
@@ -62,9 +62,9 @@ struct WorkOptions {
   std::int64_t most_attempts = 3;  // a command that takes its worker with it is not tried for ever
 };
 
-/// Takes jobs and runs their commands with the shell, one after the other, until none of the batch is open or
-/// `stop`; a command that runs then is ended and its job given back. `ended` hears of every job. How many
-/// were done. The registry may be away for a while. tool.
+/// Takes jobs and runs their commands with the shell, one after the other, until no job of the batch is open
+/// or `stop` is set. At `stop` a running command is ended and its job returned. `ended` is called for every
+/// job. Returns the number of finished jobs. The registry may be unavailable for a while. tool.
 std::int64_t work(const WorkOptions& options, const std::atomic<bool>& stop,
                   const std::function<void(const Job&, const JobCounts&)>& ended);
 

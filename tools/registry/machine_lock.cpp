@@ -50,7 +50,7 @@ MachineLocks::MachineLocks(Registry& registry, std::vector<std::string> machines
             .at(0);
     if (words(row[0]) != holder_)
       throw text::LimitNotMet(fmt::format(
-          "{}: another caller is at work on this machine ({}, {}): nothing was done. If that caller was "
+          "{}: another caller is at work on this machine ({}, {}): no step was done. If that caller was "
           "killed, its lock ends at {}",
           machine, words(row[1]), words(row[0]), text::utc_text(whole(row[2]))));
   }
@@ -80,7 +80,7 @@ void MachineLocks::require() {
   if (!all)
     throw LockLost(
         "the lock in the registry ended before it was renewed: another caller may have these machines now; "
-        "nothing more was done to them");
+        "no further step was done on them");
   renewed_us_ = begun;
 }
 

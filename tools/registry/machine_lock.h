@@ -9,7 +9,7 @@
 
 namespace vernier::registry {
 
-/// The lock of a machine has gone to another caller: nothing more may be done to the machine.
+/// Another caller has the lock of a machine: no further step on the machine is allowed.
 class LockLost : public text::LimitNotMet {
  public:
   using text::LimitNotMet::LimitNotMet;
@@ -21,19 +21,20 @@ class LockLost : public text::LimitNotMet {
 class MachineLocks {
  public:
   /// Takes the locks of all machines, or of none. purpose: for people, e.g. "rollout spring". lease_s: 1 s at
-  /// least. Throws LimitNotMet naming the machine that another caller holds, and until when at the longest.
+  /// least. Throws LimitNotMet naming the machine that another caller has locked, and the latest end of that
+  /// lock.
   MachineLocks(Registry& registry, std::vector<std::string> machines, std::string purpose, double lease_s);
-  /// Gives back what is still held.
+  /// Releases the machines that are still locked.
   ~MachineLocks();
   MachineLocks(const MachineLocks&) = delete;
   MachineLocks& operator=(const MachineLocks&) = delete;
 
-  /// Prolongs the leases where a third of one has passed. Throws LockLost where a lease has ended or another
-  /// caller has taken the machine.
+  /// Renews the leases when a third of one has passed. Throws LockLost if a lease has ended or another caller
+  /// has locked the machine.
   void renew();
   /// As renew(), but immediate: called right before a step that cannot be undone.
   void require();
-  /// Who holds them, for statements that are only carried out while the lock is held.
+  /// The owner of the lock, for statements that are executed only while the lock is held.
   const std::string& holder() const { return holder_; }
 
  private:

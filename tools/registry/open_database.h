@@ -7,11 +7,11 @@
 
 namespace vernier::registry {
 
-/// Opens a database: `postgresql://…` is a server, anything else a file, made where it is not. Throws
-/// InputError where it cannot be reached or is none.
+/// Opens a database: `postgresql://…` is a server, any other text a file, which is created if it does not
+/// exist. Throws InputError if it cannot be reached or is not a database.
 std::unique_ptr<Database> open_database(const std::string& place);
 
-/// Is this the address of a server, which may be away for a while?
+/// True if this is the address of a server, which may be unavailable for a while.
 bool is_server(const std::string& place);
 
 }  // namespace vernier::registry

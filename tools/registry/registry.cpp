@@ -56,7 +56,8 @@ constexpr const char* kTables[] = {
     "NULL, PRIMARY KEY (name, machine))",
 };
 
-// Version 2, on top of version 1: who a machine's board is, one caller per machine, when a sample was heard.
+// Version 2, on top of version 1: identity of a machine's board, one caller per machine, time of receipt of a
+// sample.
 constexpr const char* kSecondVersion[] = {
     "ALTER TABLE machine ADD COLUMN board TEXT NOT NULL DEFAULT ''",
     "ALTER TABLE machine ADD COLUMN board_key TEXT NOT NULL DEFAULT ''",
@@ -237,7 +238,7 @@ const char* name_of(LiveAge::State state) {
 }
 
 std::int64_t Registry::forget_samples(std::int64_t before_us) {
-  // In pieces, so that who writes never waits long.
+  // In pieces: writers never wait long.
   constexpr std::int64_t kPiece = 10'000;
   std::int64_t all = 0, last = kPiece;
   while (last == kPiece) {

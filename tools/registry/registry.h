@@ -14,7 +14,7 @@ namespace vernier::registry {
 /// A machine of the fleet.
 struct FleetMachine {
   std::string name;  // also the device of its topics
-  std::string url;   // of its board; empty: none
+  std::string url;   // of its board; empty: no board
   std::string note;
   double check_days = 0;  // a check is due so long after the last one; 0: never
   std::int64_t added_us = 0;
@@ -22,7 +22,7 @@ struct FleetMachine {
   std::string board_key{};  // public half of the board's own key, 64 hexadecimal digits; empty: not entered
 };
 
-/// What runs on a machine and where it comes from.
+/// The image that runs on a machine and its origin.
 struct RecordedCalibration {
   std::string machine, model, model_hash, image, data, data_hash, signed_by, checked_against, checked_hash;
   std::int64_t at_us = 0;
@@ -42,7 +42,7 @@ struct FleetReading {
   double value = 0, std = 0;
 };
 
-/// What the registry last heard of a machine. `at_us` is the gateway's clock; `received_us` is the
+/// The last state of a machine in the registry. `at_us` is the gateway's clock; `received_us` is the
 /// registry's.
 struct LiveState {
   std::string machine, gateway, mode, fault, image;
@@ -68,11 +68,11 @@ LiveAge live_age(const LiveState& live, std::int64_t now_us, double stale_s);
 const char* name_of(LiveAge::State state);
 inline constexpr double kStaleAfter_s = 30;
 
-/// The fleet's registry: machines, what runs on them, what they said. The same on a server as in a file. All
-/// calls throw DatabaseError. tool.
+/// The fleet's registry: machines, their images, their states. A server and a file have the same contents.
+/// All calls throw DatabaseError. tool.
 class Registry {
  public:
-  /// Makes the tables where there are none. Throws InputError for a registry of a newer program.
+  /// Creates the tables if they do not exist. Throws InputError for a registry of a newer program.
   explicit Registry(std::unique_ptr<Database> database);
   Database& database() { return *database_; }
 
@@ -81,12 +81,12 @@ class Registry {
   std::vector<FleetMachine> machines();
   /// Throws InputError if no machine has that name.
   FleetMachine machine(const std::string& name);
-  /// Enters the key of a machine's board where none is entered. False: another machine's board has this key,
-  /// or one was entered meanwhile.
+  /// Enters the key of a machine's board if no key is entered. False: another machine's board has this key,
+  /// or a key was entered meanwhile.
   bool trust_board_key(const std::string& machine, const std::string& key);
 
   void put(const RecordedCalibration& calibration);
-  /// Newest first; of all machines where `machine` is empty.
+  /// Newest first; of all machines if `machine` is empty.
   std::vector<RecordedCalibration> calibrations(const std::string& machine);
 
   /// False: this check was there already.
@@ -96,7 +96,8 @@ class Registry {
   std::vector<FleetReading> readings(std::int64_t since_us);
 
   std::vector<LiveState> live();
-  /// Deletes samples that were taken before; how many. What was stored once is not taken again for that.
+  /// Deletes samples that were taken before a time; returns their number. A sample that was stored once is
+  /// not taken again.
   std::int64_t forget_samples(std::int64_t before_us);
 
  private:

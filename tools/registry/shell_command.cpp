@@ -47,7 +47,7 @@ ShellCommand::ShellCommand(const std::string& command) {
   }
   if (pid_ == 0) {
     ::setpgid(0, 0);
-    // Who is killed without a word takes what it runs along; else two attempts would run side by side.
+    // A killed worker takes its command with it; else two attempts would run side by side.
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != mother) ::_exit(127);
     sigset_t none;

@@ -14,7 +14,7 @@ std::string command_for(const std::string& command, const std::string& machine);
 /// Its output is read, and the last line of the output is kept. tool.
 class ShellCommand {
  public:
-  /// Throws InputError where no process can be had.
+  /// Throws InputError if no process can be started.
   explicit ShellCommand(const std::string& command);
   ~ShellCommand() { end(); }
   ShellCommand(const ShellCommand&) = delete;
@@ -25,7 +25,7 @@ class ShellCommand {
   bool ended() const { return pid_ == 0; }
   /// Exit status, or 128 + the signal that ended it.
   int status() const { return status_; }
-  /// The last line that is not empty of what it printed, 400 letters at most.
+  /// The last line of its output that is not empty, 400 letters at most.
   std::string last_line() const;
   /// Ends it, and all that it started, immediately.
   void end();

@@ -7,8 +7,8 @@
 
 namespace vernier::registry {
 
-/// The registry in a file. What is committed survives the program and, as far as the medium keeps its word,
-/// the power. Throws DatabaseError.
+/// The registry in a file. Committed data survive the end of the program and, if the medium is reliable, a
+/// power failure. Throws DatabaseError.
 std::unique_ptr<Database> open_sqlite(const std::string& file);
 
 }  // namespace vernier::registry

@@ -36,7 +36,7 @@ MatrixXd rows_of(const WanderSeries& series, const MatrixXd& columns) {
   return rows;
 }
 
-/// What a wandering would make of the readings.
+/// Effect of a wander on the readings.
 struct Judged {
   double unlikelihood = 0;   // -2 log likelihood of all machines, but for a constant
   double rate_variance = 0;  // of a machine's own rate, on average

@@ -6,16 +6,16 @@
 
 namespace vernier::registry {
 
-/// Readings of one machine in the order of their time: rows of the model, days, and what their stated
-/// uncertainty is to that of the fleet.
+/// Readings of one machine in the order of their time: rows of the model, days, and their stated uncertainty
+/// divided by that of the fleet.
 struct WanderSeries {
   std::vector<Eigen::Index> row;
   std::vector<double> days, weight;
 };
 
-/// How far each machine wanders beside the readings' own scatter, and how long it remembers: an
-/// Ornstein-Uhlenbeck process (over times short beside `days` a random walk). ratio: its variance over that
-/// of a reading; 0: readings are independent.
+/// Wander of each machine in addition to the scatter of the readings, and its correlation time: an
+/// Ornstein-Uhlenbeck process (a random walk over times short compared with `days`). ratio: its variance
+/// divided by that of a reading; 0: readings are independent.
 struct Wander {
   double ratio = 0, days = 0;
   double gain = 0;  // fall of -2 log likelihood against independent readings

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kShortRow = 24;  // numbers; shorter rows gain nothing
+constexpr std::size_t kShortRow = 24;  // numbers; packing does not help shorter rows
 
 bool is_numeric_row(const Json& value) {
   return value.is_array() && value.size() > kShortRow &&

@@ -35,11 +35,11 @@ std::string compare_report_html(const nlohmann::ordered_json& result);
 /// tool.
 std::string improvement_report_html(const nlohmann::ordered_json& result);
 
-/// The page of `diagnose`: verdict in words, ladder, candidates, next measurements, where the model fails.
-/// Draws the JSON result of FORMATS section 3 (machine, files[], verdict, explanation, rms_um, check_rms_um,
-/// noise_um, candidates[], runner_up, ladder[], next_measurement[] of texts or objects with `sentence`) and,
-/// where there, findings[] and structure{} (tools/results/structure_json.h), notes[], detail (as above).
-/// Candidates may also have score, signature, impostors[], why_not. tool.
+/// The page of `diagnose`: verdict in words, stepwise model, candidates, next measurements, locations where
+/// the model fails. Draws the JSON result of FORMATS section 3 (machine, files[], verdict, explanation,
+/// rms_um, check_rms_um, noise_um, candidates[], runner_up, ladder[], next_measurement[] of texts or objects
+/// with `sentence`) and, if present, findings[] and structure{} (tools/results/structure_json.h), notes[],
+/// detail (as above). Candidates may also have score, signature, impostors[], why_not. tool.
 std::string diagnose_report_html(const nlohmann::ordered_json& result);
 
 /// The page of `improve`: the error falling step by step. ladder[{effect, add, label, rms_um, check_rms_um}],

@@ -82,7 +82,7 @@ std::string sentence(const residual::BeforeAfter& result) {
   return "It cannot be decided if the correction helped: " + how + ", which holds 0.";
 }
 
-/// How the two were compared, and what a reader should mind.
+/// Method of the comparison, and remarks for the reader.
 std::vector<std::string> remarks(const residual::BeforeAfter& result) {
   std::vector<std::string> list;
   if (result.paired)
@@ -94,7 +94,8 @@ std::vector<std::string> remarks(const residual::BeforeAfter& result) {
     list.push_back(fmt::format("left out, at poses that only one has: {} rows before, {} after",
                                result.unmatched_before, result.unmatched_after));
   if (result.corrected_before > 0)
-    list.push_back(fmt::format("{} rows of `before` say that a correction was on", result.corrected_before));
+    list.push_back(
+        fmt::format("{} rows of `before` state that a correction was on", result.corrected_before));
   return list;
 }
 
@@ -105,7 +106,7 @@ std::string name_of(const residual::ReductionGroup& group) {
 }
 
 std::vector<std::string> cells(const residual::ReductionGroup& group) {
-  // What the set-up took away is 0 to the digits of its fit.
+  // A component that the set-up removed is 0 to the digits of its fit.
   const auto shown = [](double value) { return std::abs(value) < 1e-5 ? 0 : value; };
   const auto two = [&](double before, double after) {
     return fmt::format("{:.4g} -> {:.4g}", shown(before), shown(after));

@@ -17,7 +17,7 @@ nlohmann::ordered_json before_after_json(const residual::BeforeAfter& result);
 /// The same for people: the verdict first, then the table.
 void print_before_after(std::FILE* out, const residual::BeforeAfter& result);
 
-/// What the report draws (improvement_report_html).
+/// Data for the report (improvement_report_html).
 nlohmann::ordered_json before_after_page(const residual::BeforeAfter& result, const std::string& machine,
                                          const std::vector<std::string>& files);
 

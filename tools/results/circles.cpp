@@ -35,7 +35,7 @@ std::size_t normal_of(const RunPoints& points, double radius) {
   return 3;
 }
 
-/// Mean sense and span of the angles; a run that goes to and fro has no sense.
+/// Mean direction and span of the angles; a run that goes to and fro has no direction.
 CircleRun run_of(const RunPoints& points, std::array<std::size_t, 2> plane) {
   CircleRun run;
   run.observation = points.observation;

@@ -11,7 +11,7 @@
 
 namespace vernier::results {
 
-/// One run of a circular test as it lies in a measurement: which observations, at which angles.
+/// One run of a circular test in a measurement: its observations and their angles.
 struct CircleRun {
   std::string label;
   int direction = +1;
@@ -33,7 +33,7 @@ struct Circle {
 std::vector<Circle> find_circles(const model::Machine& machine, const model::Measurement& measurement);
 
 /// ISO 230-4 analysis of a circle's fit rows (check rows are overshoot or held out). Throws
-/// std::invalid_argument where a run has too few of them.
+/// std::invalid_argument if a run has too few fit rows.
 importer::CircularResult analyse(const Circle& circle, const model::Measurement& measurement);
 
 }  // namespace vernier::results

@@ -23,7 +23,7 @@ void each_column(const model::Machine& machine, const model::Measurement& measur
                  const VisitColumn& visit);
 
 /// The circular tests among the rows with their curves: the numbers of circular_json and, for each run,
-/// angle_deg, measured_um, model_um and check of every sample, and its row where asked for.
+/// angle_deg, measured_um, model_um and check of every sample, and its row if requested.
 nlohmann::ordered_json circular_detail(const model::Machine& machine, const model::Measurement& measurement,
                                        const Eigen::VectorXd& residual, bool with_rows = false);
 

@@ -65,7 +65,7 @@ Json candidate_json(const diagnose::CandidateFinding& finding, const model::Mach
   return json;
 }
 
-/// The value of a quantity that is one and the same in all fit rows; nothing where it varies.
+/// The value of a quantity that is the same in all fit rows; `nullopt` if it varies.
 std::optional<double> constant_value(const model::Measurement& m, const model::Column& column) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::size_t row = 0; row < m.rows(); ++row) {
@@ -88,7 +88,7 @@ bool shows_a_reversal(const model::Measurement& m, std::size_t axis) {
   return forward && back;
 }
 
-/// What these rows cannot show, whatever the verdict.
+/// Effects that these rows cannot show, for every verdict.
 void add_not_covered(text::Assurance& assurance, const model::Machine& machine, const model::Measurement& m) {
   std::string one_way;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {

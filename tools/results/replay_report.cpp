@@ -63,9 +63,10 @@ ordered_json loop_section(const compile::LoadedImage& image, const std::vector<R
       {"prose",
        {"The firmware ran tick by tick along the measured motion, with the fixed-point equation, the limits "
         "of the "
-        "machine file and the converter named; every reading was moved by what the correction does to the "
+        "machine file and the converter named; every reading was shifted by the effect of the correction on "
+        "the "
         "nominal "
-        "machine at that moment. No reading was taken again: this is what the same errors would have left."}},
+        "machine at that moment. No reading was repeated: these are the residuals of the same errors."}},
       {"numbers", {number("cycle", image.view.header().tick_us, "µs")}},
       {"tables",
        {{{"caption", "Ticks"},
@@ -88,7 +89,7 @@ ordered_json replay_report(const std::optional<model::Machine>& before, const co
       {{"title", "The error, step by step"},
        {"prose",
         {"Rms of measured minus model on the rows that the fit saw and on the check rows that it did not. "
-         "A step that lowers the first and not the second explains nothing that holds beyond those rows."}},
+         "A step that lowers the first and not the second is not confirmed on the check rows."}},
        {"ladder", ladder}});
   if (before) sections.push_back(model_section("Against " + before->name, *before, m));
   ordered_json fitted = model_section("Against " + image.machine.name, image.machine, m);

@@ -9,14 +9,14 @@
 
 namespace vernier::results {
 
-/// One replay of the same measurement through the loop, with what stood between firmware and machine.
+/// One replay of the same measurement through the loop, with the simulated path between firmware and machine.
 struct ReplayStep {
   std::string label;  // "one image unit", "8 bit converter"
   simulate::ReplayResult result;
 };
 
-/// The page from a measurement to a running correction: what was measured, what a simpler model (`before`,
-/// may be absent) and the image's model leave, what the 1 kHz loop leaves, on fit and on check rows
+/// The page from a measurement to a running correction: the measured errors; the residuals of a simpler model
+/// (`before`, may be absent), of the image's model and of the 1 kHz loop, on fit and on check rows
 /// (improvement_report_html).
 nlohmann::ordered_json replay_report(const std::optional<model::Machine>& before,
                                      const compile::LoadedImage& image, const model::Measurement& measurement,

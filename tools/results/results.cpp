@@ -49,8 +49,8 @@ ordered_json shared(const model::Machine& machine, const model::Measurement& m,
           {"n_excluded", m.excluded}};
 }
 
-/// How well the model itself is known where it was compared: rms and largest over the rows, um. Null for a
-/// machine that was never fitted.
+/// Uncertainty of the model at the compared positions: rms and largest over the rows, um. Null for a machine
+/// that was never fitted.
 ordered_json prediction_std_json(const model::Machine& machine, const model::Measurement& m) {
   const fit::Reach reach(machine);
   if (!reach.known() || m.rows() == 0) return nullptr;
@@ -59,8 +59,8 @@ ordered_json prediction_std_json(const model::Machine& machine, const model::Mea
           {"max", std_um.maxCoeff()}};
 }
 
-/// How far the modelled errors tilt the tool over the rows, deg: the tool's own direction is what a machine
-/// with rotary axes can correct. Null for a machine of linear axes.
+/// Tilt of the tool by the modelled errors over the rows, deg: a machine with rotary axes can correct the
+/// direction of the tool. Null for a machine of linear axes.
 ordered_json tilt_json(const model::Machine& machine, const model::Measurement& m) {
   const bool turns = std::any_of(machine.axes.begin(), machine.axes.end(),
                                  [](const model::Axis& axis) { return axis.rotary; });

@@ -16,20 +16,21 @@ nlohmann::ordered_json compare_json(const model::Machine& machine, const model::
                                     const Eigen::VectorXd& residual);
 
 /// Stretches of rows of one role within each run, in the order of the file: {run, role, first_line,
-/// last_line, n_obs, rms_um}. Shows where in a run a model holds (an overshoot arc, a warm-up, a late row).
+/// last_line, n_obs, rms_um}. Shows in which part of a run a model is valid (an overshoot arc, a warm-up, a
+/// late row).
 nlohmann::ordered_json stretches_json(const model::Measurement& measurement, const Eigen::VectorXd& residual);
 
-/// Where rows stand to the domains of validity of learned terms: {domain, quantity, low, high (trained; null
-/// while open), least, most (of the rows), rows_outside, rows_without_effect}; and as lines for people, where
-/// rows are outside.
+/// Rows inside and outside the domains of validity of learned terms: {domain, quantity, low, high (trained;
+/// null while open), least, most (of the rows), rows_outside, rows_without_effect}; and as lines for people,
+/// if rows are outside.
 nlohmann::ordered_json domains_json(const model::Machine& machine, const model::Measurement& measurement);
 void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
 
 /// A noise model: {own_um, pose_um, run_um, drift_um, drift_time, drift_time_unit, support, sentence}.
-/// Parts in um, in arcsec where no length was read.
+/// Components in um, in arcsec if no length was read.
 nlohmann::ordered_json noise_json(const fit::NoiseModel& noise, const fit::NoiseUnit& unit);
 
-/// A number for people: four significant digits, "-" for none.
+/// A number for people: four significant digits, "-" without a value.
 std::string number_or_dash(const std::optional<double>& value, const char* unit);
 
 }  // namespace vernier::results

@@ -7,8 +7,8 @@
 namespace vernier::results {
 
 /// [{observation, column, second_column, shape, share_alone, share_after, p_value, rms_um, low_um, high_um,
-/// period, runs, runs_agreeing, in_all_runs, alike[], sentence}], strongest first; null where a field does
-/// not apply. tool.
+/// period, runs, runs_agreeing, in_all_runs, alike[], sentence}], strongest first; null if a field does not
+/// apply. tool.
 nlohmann::ordered_json findings_json(const residual::FailurePicture& picture);
 
 /// Adds to a result: `findings` as above; `structure` {omnibus_p, omnibus_by, chi_p, pure_error_um,

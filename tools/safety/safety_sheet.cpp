@@ -34,20 +34,20 @@ const RuleText& text_of(SafetyRule rule) {
        "a machine with errors above 1 % of its volume is not the machine of this file", 0.01},
       {"max-correction", "of maxcorrection", "beyond it the correction would be cut off", 1},
       {"cancellation", "times the correction",
-       "terms ten times larger than their sum hold only where they were measured together", 10},
+       "terms ten times larger than their sum are valid only where they were measured together", 10},
       {"uncertainty", "of the correction",
        "a correction known to no better than half of itself may do as much harm as good", 0.5},
       {"measured-range", "of the measured range",
        "outside the measured range the last value of a table is used and terms are extrapolated", 0.25},
-      {"input-range", "of the measured range", "a term in an input is a line through what was measured", 1},
+      {"input-range", "of the measured range", "a term in an input is valid only within its measured range",
+       1},
       {"set-up", "um", "a shift that is the same at every pose belongs to how the instrument stood", 2},
-      {"converged", "", "numbers on the way to an answer are none", 1},
+      {"converged", "", "the fit has not converged: its numbers are not a result", 1},
       {"residual", "of the measured box",
        "readings that the model misses by so much are not readings of this machine", 0.02},
-      {"outlier", "times the residual's spread",
-       "one reading that differs so much from all others has distorted the fit", 20},
+      {"outlier", "times the residual's spread", "one reading is an outlier that distorts the fit", 20},
       {"check-rows", "times the nominal machine's",
-       "held-out rows must show a gain against no correction at all (95 %)", 1},
+       "held-out rows must show a gain compared with no correction (95 %)", 1},
       {"disturbed", "of what the machine shows",
        "an effect that is not in the model, as large as the errors of the machine, has distorted the fit",
        0.75},
@@ -94,8 +94,7 @@ class Judge {
     return *sources_;
   }
 
-  /// What each axis would be moved by: the linear axes where there are any, else all (least squares, mm and
-  /// deg).
+  /// Effect on each axis: the linear axes if there are any, else all (least squares, mm and deg).
   std::vector<model::Column> offsets() const {
     if (!kinematics::linear_axes(machine_).empty())
       return kinematics::first_order_offset(machine_, poses_.states);
@@ -186,7 +185,7 @@ class Judge {
     sheet_.stale = reach.stale();
   }
 
-  /// What there is to correct with this tool, and what the noise of a good fit may leave of nothing.
+  /// Size of the correction with this tool, and the share that the noise of a good fit may leave.
   static double correction_rms_mm(const model::Machine& machine, const model::States& states) {
     const Eigen::Matrix3Xd d = model::deviation(machine, states);
     const Eigen::Matrix3Xd off = d.colwise() - d.rowwise().mean();

@@ -13,17 +13,17 @@ namespace vernier::safety {
 enum class SafetyRule : std::uint8_t {
   kCorrection = 0,     // how far an axis would be moved
   kMaxCorrection = 1,  // against the axis' own limit, which would cut it off
-  kCancellation = 2,   // terms that are much larger than what they add up to
+  kCancellation = 2,   // terms that are much larger than their sum
   kUncertainty = 3,    // how well the correction is known where the machine works, with its tools
-  kMeasuredRange = 4,  // how far it works outside what was measured
+  kMeasuredRange = 4,  // extrapolation beyond the measured range
   kInputRange = 5,     // the same for temperatures and other inputs
   kSetUp = 6,          // set-up of the measurement that would reach an axis
   kConverged = 7,      // the fit came to an end
-  kResidual = 8,       // what the fit left of the readings
+  kResidual = 8,       // residual of the fit
   kOutlier = 9,        // one reading against all the others
   kCheckRows = 10,     // rows that the fit has not seen, against the nominal machine
-  kDisturbed = 11,     // what the instrument did by itself, or is left far above its noise
-  kBound = 12,         // proved error of the image against what it corrects; judged by `compile` alone
+  kDisturbed = 11,     // disturbance of the instrument, or a residual far above its noise
+  kBound = 12,         // proved error of the image over its correction; tested by `compile` only
 };
 inline constexpr std::size_t kSafetyRuleCount = 13;  // rules of the sheet
 const char* rule_name(SafetyRule rule);
@@ -42,7 +42,7 @@ struct SafetyFinding {
 
 /// One sheet, for `compile`, `export`, `upload` and the workbench.
 struct SafetySheet {
-  std::vector<SafetyFinding> findings;  // one a rule, in the order of their numbers
+  std::vector<SafetyFinding> findings;  // one per rule, in the order of their numbers
   /// Parameters that were added or set by hand since the fit: uncertain by as much as they were moved.
   std::vector<std::string> stale;
   /// Adds a rule's finding. Throws std::logic_error for a value that is not finite.
@@ -50,7 +50,7 @@ struct SafetySheet {
              const std::vector<SafetyRule>& accepted);
   bool ok() const;
   std::uint32_t accepted_mask() const;  // bit n: rule n
-  /// One line: the rule that fails by most, its value, limit and culprit. Empty where all is well.
+  /// One line: the rule with the largest excess, its value, limit and culprit. Empty if all rules hold.
   std::string refusal() const;
 };
 

@@ -14,14 +14,14 @@ struct Source {
   std::string name;  // `alpha`, `table.X.rY`, `scalefactor.X`
   bool is_table = false;
   Eigen::Vector3d mean_mm =
-      Eigen::Vector3d::Zero();            // of what it alone does to the tool point, over the states
+      Eigen::Vector3d::Zero();            // of its separate effect on the tool point, over the states
   double rms_mm = 0, varying_rms_mm = 0;  // with and without the mean
 };
 
-/// What each source does alone, the others at nominal. Sources that do nothing are left out. tool.
+/// Effect of each source alone, the others at nominal. Sources without effect are not listed. tool.
 std::vector<Source> error_sources(const model::Machine& machine, const model::States& states);
 
-/// Does the symbol stand anywhere in the chain (tables of an axis count)?
+/// True if the symbol is used anywhere in the chain (tables of an axis count).
 bool acts(const model::Machine& machine, const model::Symbol& symbol);
 
 }  // namespace vernier::safety

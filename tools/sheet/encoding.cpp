@@ -34,7 +34,7 @@ void append(std::string& text, char32_t letter) {
   put(0x80 | (letter & 0x3F));
 }
 
-/// Length of the UTF-8 letter that begins at `at`; 0: none does.
+/// Length of the UTF-8 letter that begins at `at`; 0: no letter.
 std::size_t utf8_length(std::string_view bytes, std::size_t at) {
   const std::uint8_t first = byte(bytes, at);
   const std::size_t size = first < 0x80   ? 1

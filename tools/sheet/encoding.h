@@ -11,11 +11,11 @@ enum class Encoding { kUtf8, kUtf8Bom, kUtf16Le, kUtf16Be, kWindows1252 };
 /// "UTF-8", "UTF-16 (little endian)" and so on.
 const char* encoding_name(Encoding encoding);
 
-/// By byte order mark; without one UTF-16 by the zero bytes beside ASCII, UTF-8 where all of it is that, else
-/// the code page that Western spreadsheets write.
+/// Detects the encoding by the byte order mark. Without a mark: UTF-16 by the zero bytes beside ASCII, UTF-8
+/// if all bytes are valid UTF-8, else the code page of Western spreadsheets.
 Encoding encoding_of(std::string_view bytes);
 
-/// The text as UTF-8 without a mark. What is no letter becomes U+FFFD. tool.
+/// The text as UTF-8 without a mark. Invalid bytes become U+FFFD. tool.
 std::string utf8_of(std::string_view bytes, Encoding encoding);
 
 }  // namespace vernier::sheet

@@ -101,7 +101,7 @@ bool is_data(const Sheet& sheet, std::size_t row) {
   return numbers > 0 && 2 * numbers >= filled && (numbers > 1 || filled == 1 || sheet.rows[row].size() <= 2);
 }
 
-/// A row of nothing but units, at least two of them (or all of a narrow table).
+/// A row that contains only units, at least two of them (or all of a narrow table).
 bool is_units(const std::vector<std::string>& row) {
   std::size_t units = 0;
   for (const std::string& cell : row) {
@@ -165,7 +165,7 @@ std::optional<std::string> unit_meant(std::string_view word) {
   if (small.ends_with('.')) small.pop_back();
   for (const auto& [text, unit] : kUnitWords)
     if (small == text) return std::string(unit);
-  // Capital letters where none belong: MM, Sec. Not for a single one: A is no a, M no m.
+  // Capital letters that do not belong there: MM, Sec. Not for a single one: A is no a, M no m.
   if (bare.size() > 1)
     if (const auto unit = format::find_unit(small)) return std::string(unit->name);
   return std::nullopt;
@@ -201,7 +201,7 @@ Heading parse_heading(std::string_view cell) {
   }
   for (const std::string_view between : {" in ", " ", "/", ",", "_"}) {
     const auto at = text.rfind(between);
-    // Behind a blank or _ stands a name's own word more often than a unit: only what no name would end in.
+    // After a blank or _ a part of the name is more frequent than a unit: only units that do not end a name.
     const std::string rest = at == std::string::npos ? "" : text::trimmed(text.substr(at + between.size()));
     const bool weak = between == " " || between == "_";
     if (rest.empty() || at == 0 || (weak && (rest.size() < 2 || text::in_small_letters(rest) == "min")))

@@ -18,8 +18,8 @@ struct Line {
   std::size_t number = 0;
 };
 
-/// Does a line begin with what a spreadsheet writes where a formula failed, in English or German? It is a
-/// row.
+/// True if a line begins with the text that a spreadsheet writes for a failed formula, in English or German.
+/// It is a row.
 bool begins_with_error_value(const std::string& line) {
   for (const char* word : {"#REF!", "#N/A", "#DIV/0!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!", "#NV",
                            "#BEZUG!", "#WERT!", "#ZAHL!"})
@@ -45,7 +45,7 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
   return lines;
 }
 
-/// How many separators stand outside quotes.
+/// Number of separators outside quotes.
 std::size_t count_outside_quotes(const std::string& line, char separator) {
   std::size_t count = 0;
   bool quoted = false;
@@ -56,7 +56,7 @@ std::size_t count_outside_quotes(const std::string& line, char separator) {
   return count;
 }
 
-/// The first line of a file from a spreadsheet may say it: sep=;
+/// The first line of a file from a spreadsheet may give it: sep=;
 char said_separator(std::vector<Line>& lines) {
   if (lines.empty() || !text::trimmed(lines.front().text).starts_with("sep=") ||
       text::trimmed(lines.front().text).size() > 5)
@@ -66,7 +66,7 @@ char said_separator(std::vector<Line>& lines) {
   return line[line.find('=') + 1];
 }
 
-/// Part of the lines that have the commonest number of separators, where that is not none.
+/// Share of the lines that have the most frequent number of separators, if that is not 0.
 double agreement(const std::vector<Line>& lines, char separator) {
   std::map<std::size_t, std::size_t> counts;
   for (const Line& line : lines) ++counts[count_outside_quotes(line.text, separator)];
@@ -93,7 +93,7 @@ char separator_of_lines(const std::vector<Line>& lines) {
 
 /// As many cells in each row. One row far wider than the others would make a small file a large table.
 void make_even(Sheet& sheet) {
-  // Cells, and empty cells for each that is there: what a small file may grow to.
+  // Cells, and empty cells for each existing one: largest size to which a small file may grow.
   constexpr std::size_t kMostEmpty = 4u << 20, kMostEmptyForOne = 2;
   std::size_t cells = 0, widest = 0;
   for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
@@ -121,7 +121,7 @@ void split(Sheet& sheet, const std::vector<Line>& lines) {
   make_even(sheet);
 }
 
-/// Columns at the right that no row fills: what a spreadsheet's trailing separators leave.
+/// Columns at the right that no row fills, made by trailing separators of a spreadsheet.
 void drop_empty_columns(Sheet& sheet) {
   while (
       !sheet.rows.empty() && !sheet.rows.front().empty() &&
@@ -154,7 +154,7 @@ void guess_decimal(Sheet& sheet) {
             (comma < point ? "point" : "comma") + " in line " +
             std::to_string((comma < point ? at_point : at_comma).line) + " (" +
             (comma < point ? point_word : comma_word) +
-            "): say which one is meant (--decimal comma or point), the other cells are then refused");
+            "): give the decimal sign (--decimal comma or point), the other cells are then refused");
   // Where each sign could part thousands as well ("1,234") the one that is there is taken for the decimal
   // sign.
   sheet.decimal_comma = comma > 0 || (point == 0 && either_comma > either_point);

@@ -9,12 +9,12 @@
 
 namespace vernier::sheet {
 
-/// What is said of a table rather than guessed.
+/// Given properties of a table; the others are detected.
 struct SheetFormat {
   char separator = 0;                 // ',' ';' '\t'; ' ' any run of blanks; 0: guessed
   std::optional<bool> decimal_comma;  // guessed where absent
   std::size_t skip = 0;               // lines at the top that are no table
-  std::string comment = "#";          // lines that begin so are left out; empty: none
+  std::string comment = "#";          // lines that begin with it are skipped; empty: no such lines
   std::string sheet;                  // of a workbook, by name or number; empty: the first with rows
 };
 
@@ -31,7 +31,7 @@ struct Sheet {
   std::vector<std::size_t> line;               // 1-based, of each row
 };
 
-/// Is this a workbook (a zip with a sheet in it) by its first bytes?
+/// True for a workbook (a zip with a sheet in it), by its first bytes.
 bool is_workbook(std::string_view bytes);
 
 /// Reads text or workbook. Throws InputError with file, line and word: an open quote, no rows, no such sheet,

@@ -6,8 +6,8 @@
 
 namespace vernier::sheet {
 
-/// A cell as number text with a point and nothing else ("-1234.5"): thousands ("1.234,5", "1'234.5", "1
-/// 234,5") and the long minus sign are understood. Nothing where it is no number of this decimal sign. tool.
+/// A cell as number text with a decimal point only ("-1234.5"): thousands ("1.234,5", "1'234.5", "1 234,5")
+/// and the long minus sign are understood. `nullopt` if it is not a number with this decimal sign. tool.
 std::optional<std::string> plain_number(std::string_view cell, bool decimal_comma);
 
 /// How a cell's signs speak: for a comma or for a point as the decimal sign. "1,234" may be either.

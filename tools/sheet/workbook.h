@@ -6,7 +6,7 @@
 namespace vernier::sheet {
 
 /// A sheet of an Office Open XML workbook (ECMA-376 part 1, SpreadsheetML) as text: numbers with a decimal
-/// point as stored, formulas by their last value, what is shown as a date or a time as such (`date_text`).
+/// point as stored, formulas by their last value, dates and times in the form of `date_text`.
 struct WorkbookSheet {
   std::string name;
   std::vector<std::vector<std::string>> rows;  // of different lengths; empty cells are empty

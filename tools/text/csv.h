@@ -16,7 +16,7 @@ struct FieldRules {
 /// quote is one quote. Throws InputError. tool.
 std::vector<std::string> fields_of(const std::string& line, const FieldRules& rules, const Place& place);
 
-/// A field as it is written: in quotes where it holds what a reader might take for more than a letter. tool.
+/// A field as it is written: in quotes if it contains a character with a meaning in CSV. tool.
 std::string csv_cell(const std::string& text);
 
 }  // namespace vernier::text

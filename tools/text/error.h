@@ -6,7 +6,7 @@
 
 namespace vernier::text {
 
-/// Where in an input file something stands. `line` is 1-based; 0 means the file as a whole.
+/// Position in an input file. `line` is 1-based; 0 means the file as a whole.
 struct Place {
   std::string file;
   std::size_t line = 0;

@@ -8,16 +8,16 @@
 
 namespace vernier::text {
 
-/// A finite decimal number that fills the whole of `text` ("1", "-2.5e-3", "+4"); nothing for anything else
-/// (empty, blanks, hex, inf, nan) and for what is so large that its square is none (beyond 1e150).
-/// Independent of the locale.
+/// A finite decimal number that fills the whole of `text` ("1", "-2.5e-3", "+4"). `nullopt` for any other
+/// text (empty, blanks, hex, inf, nan) and for numbers whose square overflows (beyond 1e150). Independent of
+/// the locale.
 std::optional<double> parse_number(std::string_view text);
 
-/// A count ("0", "12") that fills the whole of `text`; nothing for anything else and for what is too large
-/// for one.
+/// A count ("0", "12") that fills the whole of `text`; `nullopt` for any other text and for counts that are
+/// too large.
 std::optional<std::size_t> parse_count(std::string_view text);
 
-/// Is this a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII)?
+/// True for a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII).
 bool is_name(std::string_view text);
 
 /// Sixteen hexadecimal digits, as fingerprints of images are shown.

@@ -11,7 +11,7 @@ namespace vernier::text {
 /// (Damerau and Levenshtein, each letter touched once); capitals count as their small letters. tool.
 std::size_t letters_apart(std::string_view a, std::string_view b);
 
-/// The word that was probably meant: the nearest of `known`, where it is near enough for its length. tool.
+/// The word that was probably meant: the nearest of `known`, if it is near enough for its length. tool.
 std::optional<std::string> word_meant(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace vernier::text

@@ -21,9 +21,9 @@ std::vector<std::string> parts_of(std::string_view text, char separator);
 /// "a,b": the words with a separator between them. tool.
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
 
-/// Do the brackets of a JSON text nest deeper than `most`? What is in strings does not count. For any text; a
-/// parser is asked only afterwards, so that nothing from outside makes it, or who walks its tree, run out of
-/// stack.
+/// True if the brackets of a JSON text nest deeper than `most`. Text in strings does not count. Call this
+/// before the parser for any text from outside: deep nesting would exhaust the stack of the parser, or of
+/// code that walks its tree.
 bool nests_deeper_than(std::string_view json, std::size_t most);
 constexpr std::size_t kMostJsonDepth = 64;
 

@@ -19,14 +19,13 @@ struct AttributeSpan {
 /// (a parser has accepted it). tool.
 std::vector<AttributeSpan> attribute_spans(std::string_view text, std::size_t offset);
 
-/// Offset just behind the last attribute (or the name) of that start tag: where another attribute can be
-/// written.
+/// Offset just after the last attribute (or the name) of that start tag: place for another attribute.
 std::size_t end_of_attributes(std::string_view text, std::size_t offset);
 
 /// 1-based line of an offset.
 std::size_t line_of(std::string_view text, std::size_t offset);
 
-/// Same letters, whatever their case (ASCII).
+/// True for the same letters, ignoring case (ASCII).
 bool equal_no_case(std::string_view a, std::string_view b);
 
 /// One replacement in a text: `size` characters at `at` become `text`.
@@ -37,7 +36,7 @@ struct TextEdit {
 /// Applies edits that do not overlap, given in any order (those at one place in the order given).
 std::string apply_edits(const std::string& text, std::vector<TextEdit> edits);
 
-/// A number or text as it may stand between double quotes in an attribute.
+/// A number or text, escaped for use between double quotes in an attribute.
 std::string escape_attribute(std::string_view value);
 
 }  // namespace vernier::text

@@ -94,7 +94,7 @@ class ConformityRunner {
     const MatrixXd columns =
         options_.frame == PartFrame::kMachine ? reach_.moved(part_.states, MatrixXd::Identity(n, n)) : raw_;
     columns_ = values_.map * columns;
-    rigid_ = values_.map * (raw_ - columns);  // what the machine's frame takes out of each
+    rigid_ = values_.map * (raw_ - columns);  // motion that the machine's frame removes from each
     const MatrixXd unmeasured = options_.frame == PartFrame::kMachine ? reach_.moved_unmeasured(part_.states)
                                                                       : reach_.unmeasured(part_.states);
     own_ = reach_.factor().cols();
@@ -102,7 +102,7 @@ class ConformityRunner {
     spread_ << columns_ * reach_.factor(), values_.map * unmeasured;
   }
 
-  /// Draws of what the model lacks, a class of wavelengths each.
+  /// Random samples of the discrepancy, one per class of wavelengths.
   void draw_lacks(Normals& normals) {
     lacks_.assign(classes_, MatrixXd::Zero(values_.map.rows(), kAtOnce));
     if (classes_ == 1) return;
@@ -187,7 +187,7 @@ class ConformityRunner {
     return {off_ + rows(part_.states) - base_ + more, rows(corrected_) + more};
   }
 
-  /// A few trials both ways: is the machine linear in what is not known of it?
+  /// A few trials both ways: tests whether the machine is linear in its uncertain parameters.
   void try_chain(Normals& normals) {
     const MatrixXd z = normals.draw(spread_.cols(), kTried);
     const MatrixXd many = spread_ * normals.draw(spread_.cols(), kAtOnce);
@@ -208,7 +208,7 @@ class ConformityRunner {
     }
   }
 
-  /// Who moves what: exact at the fitted machine, linear in what is not known of it.
+  /// Contribution of each source: exact at the fitted machine, linear in the uncertain parameters.
   void share_out(Normals& normals) {
     constexpr Index kDraws = 1000;  // give a share to 3 %
     const MatrixXd z = normals.draw(spread_.cols(), kDraws);
@@ -393,8 +393,8 @@ class ConformityRunner {
   MatrixXd raw_;                       // 3 N x p: of the points, by parameter
   MatrixXd columns_, rigid_, spread_;  // of the map's rows, by parameter; by column of the factor and more
   std::vector<bool> outside_;          // a feature
-  Index own_ = 0;                      // columns of the factor; the others are what no reading supports
-  std::size_t classes_ = 1;            // of wavelengths of what the model lacks
+  Index own_ = 0;                      // columns of the factor; the others have no readings
+  std::size_t classes_ = 1;            // of wavelengths of the discrepancy
   std::vector<MatrixXd> lacks_;        // a class: rows of the map, draws
   model::States corrected_;
   VectorXd off_, on_, base_;     // rows of the map at the fitted machine, without and with its correction

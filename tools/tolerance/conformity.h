@@ -22,8 +22,8 @@ struct ConformityOptions {
   /// Probability from which a tolerance counts as kept, or as not kept: the default conformance probability
   /// limit of ISO 14253-1:2017.
   double confidence = 0.95;
-  /// Standard deviation of each point's own error, mm: repeatability, tool, cutting. The machine file knows
-  /// nothing of it.
+  /// Standard deviation of the independent error of each point, mm: repeatability, tool, cutting. The machine
+  /// file does not contain it.
   double process_mm = 0;
   bool with_rotary = false;              // the correction moves all axes
   std::function<void(double)> progress;  // share done
@@ -32,28 +32,28 @@ struct ConformityOptions {
 enum class PartVerdict : std::uint8_t { kConforms, kDoesNotConform, kCannotBeSaid };
 const char* verdict_words(PartVerdict verdict);
 
-/// What is expected of one characteristic, mm.
+/// Expected result for one characteristic, mm.
 struct Expectation {
   double value = 0;          // of the machine as it was fitted
   double mean = 0, std = 0;  // over the trials
-  /// 95 % of the trials lie within, as many below as above; where the model lacks something, of the
-  /// wavelength of it that makes each end widest.
+  /// 95 % of the trials are within the interval, as many below as above. If the model has a discrepancy: each
+  /// end is that of the wavelength with the widest interval.
   double low = 0, high = 0;
   double u95 = 0;  // half of that interval
-  /// Of conformity; where the model lacks something, of the wavelength that is least favourable to the
+  /// Probability of conformity; with a discrepancy, that of the wavelength that is least favourable to the
   /// verdict.
   std::optional<double> probability;
   std::optional<PartVerdict> verdict;
 };
 
-/// What a source has to do with a characteristic.
+/// Contribution of a source to a characteristic.
 struct SourceShare {
   std::string name, effect;
   /// By how much the uncorrected value falls when the source is switched off, mm; and the probability that no
   /// other source's fall is larger.
   double fall_mm = 0, largest = 0;
-  /// PartDrawing of the variance: of the source's own contribution with the whole. Below 0 where it and
-  /// others lean on one another.
+  /// Part of the variance: covariance of the source's contribution with the whole. Below 0 if the source and
+  /// others are correlated.
   double variance = 0;
   double open = 0;  // part of the variance that is this source's and that no reading bears on
 };
@@ -69,8 +69,8 @@ struct CharacteristicResult {
   std::vector<std::string> dominant;
   double open = 0;         // part of the variance that no reading bears on
   double process = 0;      // part of the points' own errors
-  double discrepancy = 0;  // part of what the model lacks
-  bool outside = false;    // the feature reaches to where no axis was measured: no verdict
+  double discrepancy = 0;  // part of the model discrepancy
+  bool outside = false;    // the feature extends beyond the measured ranges: no verdict
 };
 
 struct PartConformity {
@@ -81,13 +81,13 @@ struct PartConformity {
   bool exact = false;      // every trial through the whole chain; else linear in the parameters
   double linear_mm = 0;    // by how much the linear trials were off in those that were tried with the chain
   bool open_known = true;  // the machine file states what its readings did not determine
-  std::array<double, 3> discrepancy_mm{};  // what the fit saw the model lack, in every interval; x, y, z
+  std::array<double, 3> discrepancy_mm{};  // discrepancy found by the fit, in every interval; x, y, z
   std::vector<std::string> stale;          // parameters that were changed since the fit
   std::vector<std::string> outside;        // "Z -350..-300": ranges of the part that were not measured
 };
 
-/// Monte Carlo over the covariance that the last fit left in the machine file (JCGM 101:2008): what every
-/// characteristic of the part will be, with and without the machine's correction. Throws InputError where the
+/// Monte Carlo over the covariance that the last fit left in the machine file (JCGM 101:2008): distribution
+/// of every characteristic of the part, with and without the machine's correction. Throws InputError if the
 /// machine was never fitted. tool.
 PartConformity part_conformity(const model::Machine& machine, const PlacedPart& part, const std::string& file,
                                const std::vector<effects::Effect>& catalogue,

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Below this share of its length a row is nothing that the frame left.
+/// Below this share of its length a row is absorbed by the frame.
 constexpr double kLeft = 1e-9;
 
 /// Rows that select the deviations along the directions of a feature's points (all three without directions).
@@ -36,7 +36,7 @@ MatrixXd along_directions(const PlacedFeature& feature, Index points) {
   return rows;
 }
 
-/// What a plane's or cylinder's own place, tilt and size do to the deviations along its normals.
+/// Effect of location, tilt and size of a plane or cylinder on the deviations along its normals.
 MatrixXd own_columns(const PlacedFeature& feature, const PlacedPart& part) {
   const auto count = static_cast<Index>(feature.count), first = static_cast<Index>(feature.first);
   const bool plane = feature.feature.kind == PartFeatureKind::kPlane;
@@ -84,7 +84,8 @@ class ValueMaker {
     return all;
   }
 
-  /// The motion that brings the datums back to where they belong; what they leave free is for all features.
+  /// The motion that brings the datums back to their nominal location; the directions that they leave free
+  /// apply to all features.
   void align() {
     Eigen::Matrix3Xd centred = part_.point;
     centred.colwise() -= part_.point.rowwise().mean().eval();

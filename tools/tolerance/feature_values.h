@@ -9,7 +9,7 @@
 
 namespace vernier::tolerance {
 
-/// What the deviations of a part's points are taken from.
+/// Reference of the deviations of a part's points.
 enum class PartFrame : std::uint8_t {
   kPart,     // the features themselves: all of them, or those marked as datums, by least squares
   kMachine,  // the machine's own coordinates
@@ -33,7 +33,7 @@ struct PartValues {
   Eigen::MatrixXd map;  // rows x 3 N: of deviations of the tool point, workpiece coordinates, mm
 };
 
-/// Throws InputError where the frame takes up all that a position could be judged by. tool.
+/// Throws InputError if the frame absorbs all directions that a position tolerance needs. tool.
 PartValues part_values(const PlacedPart& part, PartFrame frame, const std::string& file);
 
 }  // namespace vernier::tolerance

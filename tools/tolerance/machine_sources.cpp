@@ -40,7 +40,7 @@ const char* token_of(model::Op op) {
   }
 }
 
-/// The driven quantity of a name: what stands before the first brace, and the placeholder's class.
+/// The driven quantity of a name: the text before the first brace, and the placeholder's class.
 std::optional<std::string> token_of_placeholder(const std::string& name) {
   const std::vector<std::string> marks = effects::marks_in(name);
   if (marks.empty()) return model::is_reserved_word(name) ? std::optional(name) : std::nullopt;
@@ -61,7 +61,7 @@ Tokens tokens_of_form(const effects::EffectForm& form) {
   return tokens;
 }
 
-/// A term of the chain in which something stands whose name is looked for.
+/// A term of the chain that contains the static whose name is searched.
 struct PlacedTerm {
   effects::DofPlace place;
   Tokens tokens;
@@ -81,7 +81,7 @@ class Namer {
   std::pair<std::string, std::string> name(const std::function<bool(const model::Expr&)>& is, bool hats,
                                            std::optional<std::size_t> axis) const {
     const std::optional<PlacedTerm> term = find_term(is, hats, axis);
-    if (!term) return {effects::custom_effect().id, "what no term uses"};
+    if (!term) return {effects::custom_effect().id, "used by no term"};
     const effects::Effect* effect = effect_of(*term);
     const std::string id = effect != nullptr ? effect->id : effects::custom_effect().id;
     return {id, label(id, *term)};
@@ -123,7 +123,7 @@ class Namer {
     return std::nullopt;
   }
 
-  /// The quantities of the summands in which it stands.
+  /// The quantities of the summands that contain it.
   void collect(const model::Expr& expr, const std::function<bool(const model::Expr&)>& is,
                PlacedTerm& term) const {
     if (expr.op == model::Op::kAdd || expr.op == model::Op::kSubtract || expr.op == model::Op::kNegate) {
@@ -230,7 +230,8 @@ class Namer {
     return false;
   }
 
-  /// Where no form acts at such a place: one that does the same somewhere else, of the same kind of freedom.
+  /// If no form acts at such a location: a form with the same action at another location, of the same kind of
+  /// freedom.
   bool is_like(effects::PlaceRule rule, const PlacedTerm& term) const {
     return effects::is_angle(machine_, term.place) ==
                (rule == effects::PlaceRule::kTurn || rule == effects::PlaceRule::kAngle) &&

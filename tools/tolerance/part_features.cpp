@@ -129,7 +129,7 @@ PartFeature read_feature(const PartSheet& sheet, std::size_t row) {
     throw text::InputError(sheet.place(row), kind, "a feature is a point, a plane or a cylinder");
   feature.kind = static_cast<PartFeatureKind>(found - kKindNames.begin());
   const auto at = sheet.vector(row, format::columns::kPoint);
-  if (!at) throw text::InputError(sheet.place(row), "x", "where the feature stands is missing");
+  if (!at) throw text::InputError(sheet.place(row), "x", "the position of the feature is missing");
   feature.at = *at;
   const bool point = feature.kind == PartFeatureKind::kPoint;
   feature.direction =

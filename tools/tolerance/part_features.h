@@ -13,7 +13,7 @@ enum class PartFeatureKind : std::uint8_t {
   kPoint,
   kPlane,
   kCylinder,  // hole or boss; without length a circle
-  kPath,      // what a program cuts between two rapid moves
+  kPath,      // cut of a program between two rapid moves
 };
 const char* kind_name(PartFeatureKind kind);
 
@@ -32,11 +32,11 @@ struct PartFeature {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();  // the point; the middle of the others
   /// Unit normal of a point or plane, axis of a cylinder; 0: a point that is judged in every direction.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  std::optional<Eigen::Vector3d> tool;  // direction of the tool there; none: the rotary axes stay
+  std::optional<Eigen::Vector3d> tool;  // direction of the tool there; nullopt: the rotary axes do not move
   double diameter_mm = 0, length_mm = 0, width_mm = 0;
   std::optional<double> position_mm, form_mm;    // zones
   std::optional<std::array<double, 2>> size_mm;  // limits of actual - nominal diameter
-  bool datum = false;                            // it is what the others are measured from
+  bool datum = false;                            // reference of the other features
   std::size_t line = 0;
 };
 

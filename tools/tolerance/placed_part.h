@@ -13,8 +13,8 @@ namespace vernier::tolerance {
 struct PlacedFeature {
   PartFeature feature;
   std::size_t first = 0, count = 0;  // its states
-  /// The direction that counts at each: surface normals; of a path its tangent, along which nothing does; 0:
-  /// every direction.
+  /// The evaluated direction at each point: surface normals; for a path its tangent, along which it is not
+  /// evaluated; 0: every direction.
   Eigen::Matrix3Xd direction;
 };
 

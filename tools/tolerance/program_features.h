@@ -16,9 +16,9 @@ struct ProgramOptions {
   std::optional<std::array<double, 2>> size_mm;
 };
 
-/// What a part program cuts (RS-274, as tools/offline reads it): whole circles as circles, everything else
-/// between two rapid moves as a path, of which nothing counts along itself. `at`, `known`: where the axes
-/// stand before the first block. Throws InputError with file, line and word. tool.
+/// Features that a part program cuts (RS-274, as tools/offline reads it): whole circles as circles, other
+/// moves between two rapid moves as a path, which is not evaluated along its direction. `at`, `known`:
+/// positions of the axes before the first block. Throws InputError with file, line and word. tool.
 PlacedPart program_part(const model::Machine& machine, const std::string& text, const std::string& file,
                         const model::States& at, const std::vector<char>& known,
                         const ProgramOptions& options);

@@ -22,10 +22,10 @@ class Normals {
   std::mt19937_64 engine_;
 };
 
-/// Draws of what a model lacks at points (3 x N, mm): smooth random fields along each direction, standard
-/// deviation std_mm (x, y, z), made of waves whose lengths are even in logarithm between two bounds (mm),
-/// half of them along an axis. The same field at a point for all points of a draw. 3 N x draws, mm. Random
-/// Fourier features, Rahimi and Recht 2007.
+/// Random samples of the discrepancy of a model at points (3 x N, mm): smooth random fields along each
+/// direction, standard deviation std_mm (x, y, z). A field is a sum of cosines whose wavelengths are even in
+/// logarithm between two bounds (mm), half of them along an axis. All points of a sample have the same field.
+/// 3 N x samples, mm. Random Fourier features, Rahimi and Recht 2007.
 Eigen::MatrixXd draw_discrepancy(Normals& normals, const Eigen::Matrix3Xd& points,
                                  const Eigen::Vector3d& std_mm, double shortest_mm, double longest_mm,
                                  Eigen::Index draws);

@@ -136,7 +136,7 @@ std::optional<IdentifyReply> Client::proof_of(const std::string& name) {
   PublicKey key{};
   std::memcpy(key.data(), proof.key, key.size());
   if (!signature_fits(bytes_of_head(head), {}, proof.signature, key))
-    throw text::LimitNotMet("the board's proof of who it is does not fit: its signature is wrong");
+    throw text::LimitNotMet("the board's proof of its identity is not valid: its signature is wrong");
   return proof;
 }
 
@@ -171,7 +171,7 @@ void Client::require_same_start(const ChallengeReply& challenge) {
   if (!claim_.key || std::memcmp(challenge.nonce, proved_start_.data(), proved_start_.size()) == 0) return;
   require_board(BoardClaim(claim_));
   if (std::memcmp(challenge.nonce, proved_start_.data(), proved_start_.size()) != 0)
-    throw text::LimitNotMet("the board that gave the challenge is not the one that proved who it is");
+    throw text::LimitNotMet("the board that gave the challenge is not the one that proved its identity");
 }
 
 Client::Client(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {
@@ -352,7 +352,7 @@ std::vector<BoardShare> Client::shares() {
       const double counts = info_.axes[share.axis].rotary ? kCountsPerDeg : kNmPerMm;
       shares.push_back({share.axis, share_names_[shares.size()], share.correction / counts});
     }
-    if (shares.size() == before) break;  // nothing more came, or the program changed meanwhile
+    if (shares.size() == before) break;  // no further share came, or the program changed meanwhile
   } while (shares.size() < count);
   return shares;
 }
@@ -442,7 +442,8 @@ void Client::workpiece(const std::array<double, 3>& origin_mm, double angle_deg)
   constexpr double kMostMm = 1e8;  // of a register: 100 km
   WorkpieceFrame frame;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!(std::abs(origin_mm[i]) < kMostMm)) throw text::InputError("the workpiece lies beyond 100 km");
+    if (!(std::abs(origin_mm[i]) < kMostMm))
+      throw text::InputError("the position of the workpiece is beyond 100 km");
     frame.origin[i] = PositionNm(std::llround(origin_mm[i] * kNmPerMm));
   }
   if (!std::isfinite(angle_deg)) throw text::InputError("the angle of the workpiece is no number");

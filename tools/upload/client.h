@@ -24,15 +24,16 @@ struct BoardSignal {
   bool rotary = false, rollover = false;
 };
 
-/// What a board is.
+/// Properties of a board.
 struct BoardInfo {
   HelloReply hello;
-  std::string board;  // its name; empty: it has none
+  std::string board;  // its name; empty: no name
   std::vector<BoardSignal> axes;
   std::vector<std::string> inputs;
 };
 
-/// One tick as the board told it, in the units of the machine file: mm or deg, mm or deg, the input's unit.
+/// One tick as the board reported it, in the units of the machine file: mm or deg, mm or deg, the input's
+/// unit.
 struct BoardTick {
   std::uint64_t number = 0;
   double time_s = 0, feed_mm_per_min = 0;
@@ -51,9 +52,9 @@ struct BoardHistory {
   std::uint32_t lost = 0;
 };
 
-/// What the board runs, and what of it arrives; mm or deg.
+/// The correction that the board computes, and the part of it that is applied; mm or deg.
 struct BoardState {
-  std::uint64_t fingerprint = 0;  // of the image that runs; 0: none
+  std::uint64_t fingerprint = 0;  // of the running image; 0: no image
   ImageState image = ImageState::kNone;
   double since_s = 0;  // the board's t when it was taken over
   double weight = 0;   // share of every correction that is in
@@ -63,7 +64,7 @@ struct BoardState {
   };
   std::vector<Axis> axes;
 };
-/// "confirmed", "on trial", "lost" or "none"; "at the image's limit, on its way" or nothing.
+/// "confirmed", "on trial", "lost" or "none"; "at the image's limit, on its way" or empty.
 const char* name_of(ImageState image);
 std::string limits_text(std::uint8_t limits);
 
@@ -74,7 +75,7 @@ struct BoardShare {
   double correction = 0;
 };
 
-/// What a board has counted on its probe's line until a touch.
+/// Counters of a board for its probe's line until a touch.
 struct TouchTotals {
   std::uint32_t lost_edges = 0, lost_touches = 0, spikes = 0, missing = 0;
 };
@@ -84,7 +85,7 @@ struct BoardTouch {
   std::uint64_t number = 0;
   double time_s = 0;
   bool has_position =
-      false;  // false: an edge was lost, or the samples around it; nothing below `totals` is there
+      false;  // false: an edge was lost, or the samples around it; the fields below `totals` are not valid
   TouchTotals totals;
   int bounces = 0;
   std::vector<double> position, compensated, uncertainty;  // by axis
@@ -98,27 +99,27 @@ struct BoardTouches {
   std::uint32_t lost = 0;
 };
 
-/// Who a board must be; an empty name and no key ask for nothing.
+/// Required identity of a board; an empty name and no key require nothing.
 struct BoardClaim {
   std::string name;                   // in its board file
   std::optional<BoardPublicKey> key;  // of the board's own key pair
   bool empty() const { return name.empty() && !key; }
 };
 
-/// Talks to a board. Every call throws InputError where no or a senseless reply comes, and LimitNotMet with
-/// the board's reason where the board refuses. tool.
+/// Communicates with a board. Every call throws InputError without a valid reply, and LimitNotMet with the
+/// board's reason if the board refuses. tool.
 class Client {
  public:
   explicit Client(std::unique_ptr<Transport> transport);
   /// Requests that must be signed are signed with this key from now on; without a key no request is signed.
   void sign_with(const std::optional<SigningKey>& key) { key_ = key; }
 
-  /// Asks the board who it is, now. With a key in the claim the board must sign a fresh nonce and its name
-  /// with that key; from then on every signed request is for the start of the board that proved it, and a
-  /// board that was started again meanwhile must prove it again first. Without a key only the name is
-  /// compared. Throws LimitNotMet where the board is another one or cannot prove it.
+  /// Requests the identity of the board. With a key in the claim the board must sign a fresh nonce and its
+  /// name with that key. From then on every signed request is for the start of the board that proved it; a
+  /// board that was restarted meanwhile must prove it again first. Without a key only the name is compared.
+  /// Throws LimitNotMet if the board is another one or cannot prove its identity.
   void require_board(const BoardClaim& claim);
-  /// The board's own key, after it signed a fresh nonce with it; nothing where the board has none.
+  /// The board's key, after it signed a fresh nonce with it; `nullopt` if the board has no key.
   std::optional<BoardPublicKey> proved_key();
 
   const BoardInfo& info() const { return info_; }
@@ -127,7 +128,7 @@ class Client {
   /// Ticks from number `first`, each `every`th.
   BoardHistory history(std::uint64_t first, std::uint16_t every);
   HealthRecord health();
-  /// Of the program that runs; empty where none does, or it has just been exchanged.
+  /// Of the running program; empty without a program, or if it has just been exchanged.
   std::vector<BoardShare> shares();
   SlotsReply slots();
   /// Sends an upload (tables/upload_format.h) and has it checked; it is on trial when this returns. progress:
@@ -135,15 +136,15 @@ class Client {
   void upload(const std::vector<std::uint8_t>& bytes, const std::function<void(double)>& progress);
   void confirm();
   void revert();
-  /// The confirmed upload, header and image; nothing where none is.
+  /// The confirmed upload, header and image; empty without a confirmed image.
   std::optional<std::vector<std::uint8_t>> confirmed(const std::function<void(double)>& progress);
   /// The next tick takes it; whether it fitted shows in the mode and in `refused_commands`.
   void command(Command command);
   void weight(std::uint8_t axis, double share);
   /// Touches from number `first`, as many as one reply holds; empty if no touch occurred since.
   BoardTouches touches(std::uint64_t first);
-  /// Where the workpiece lies: origin in machine coordinates, mm; angle about Z, deg. Counts for later
-  /// touches.
+  /// Sets the location of the workpiece: origin in machine coordinates, mm; angle about Z, deg. Applies to
+  /// later touches.
   void workpiece(const std::array<double, 3>& origin_mm, double angle_deg);
 
  private:

@@ -55,7 +55,7 @@ std::string times_text(const char* name, const std::int64_t (&ns)[4]) {
                      us(2), us(3));
 }
 
-// The largest first: what a person looks for.
+// The largest first.
 std::string shares_text(const BoardInfo& info, std::vector<BoardShare> shares) {
   constexpr std::size_t kMostLines = 12;  // of a screen
   std::erase_if(shares, [](const BoardShare& share) { return share.correction == 0; });
@@ -69,7 +69,7 @@ std::string shares_text(const BoardInfo& info, std::vector<BoardShare> shares) {
                         axis.rotary ? "mdeg" : "um", shares[i].name);
   }
   if (shares.size() > kMostLines) text += fmt::format("  and {} smaller ones\n", shares.size() - kMostLines);
-  return text.empty() ? text : "what the effects add\n" + text;
+  return text.empty() ? text : "contributions of the effects\n" + text;
 }
 
 // What runs, since when, and how much of it is in: no correction must not look like one.

@@ -7,11 +7,12 @@
 
 namespace vernier::upload {
 
-/// What a board does just now, for programs: mode, fault, axes, inputs, counters, latency, slots. tool.
+/// Present state of a board, for programs: mode, fault, axes, inputs, counters, latency, slots. tool.
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
                                  const SlotsReply& slots, const std::vector<BoardShare>& shares,
                                  const BoardState& state);
-/// Has a board an image to go back to: of its store, or given to it at its start (vernier-hal --image)? tool.
+/// True if a board has a confirmed image: of its store, or given to it at its start (vernier-hal --image).
+/// tool.
 bool has_confirmed(const SlotsReply& slots);
 /// "0123456789abcdef is confirmed", with its state in the store; or that no image is confirmed. tool.
 std::string confirmed_text(const SlotsReply& slots);

@@ -22,7 +22,7 @@ using BoardPublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
 /// 64 hexadecimal digits, as `vernierd` and `vernier board identify` print them. tool.
 std::string board_key_text(const BoardPublicKey& key);
 /// The key in a text: 64 hexadecimal digits, or the name of a file `identity.pub` of a board's store. Throws
-/// InputError where the text is neither. tool.
+/// InputError if the text is neither. tool.
 BoardPublicKey parse_board_key(const std::string& text);
 /// 32 bytes from the system's random numbers. tool.
 std::array<std::uint8_t, 32> fresh_nonce();
@@ -32,10 +32,10 @@ SigningKey new_key();
 /// The texts of the key files. tool.
 std::string secret_key_text(const SigningKey& key);
 std::string public_key_text(const SigningKey& key);
-/// Reads a secret key file; throws InputError where it is none, or others than its owner may read it. tool.
+/// Reads a secret key file; throws InputError if it is not a key, or if other users may read it. tool.
 SigningKey read_secret_key(const std::string& path);
 
-/// The key of a file, else that of VERNIER_KEY, else none. tool.
+/// The key of a file, else that of VERNIER_KEY, else no key. tool.
 std::optional<SigningKey> given_key(const std::string& path);
 
 /// The upload of an image: header and image, signed. issued: microseconds since 1970; security, board: see

@@ -11,8 +11,7 @@ namespace vernier::upload {
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// request: at most kMaxRequestBytes. Throws InputError where no reply comes; the transport can be used
-  /// again.
+  /// request: at most kMaxRequestBytes. Throws InputError without a reply; the transport can be used again.
   virtual std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) = 0;
   /// Waits before a board that was busy is asked again.
   virtual void pause(std::chrono::milliseconds time) { std::this_thread::sleep_for(time); }

@@ -45,7 +45,7 @@ BoardUrl parse_url(const std::string& text) {
   std::string rest = colon == std::string::npos ? text : text.substr(colon + 3);
   if (url.scheme == "modbus" || url.scheme == "modbus-tcp") url.scheme = "tcp";
   if (url.scheme != "tcp" && url.scheme != "rtu" && url.scheme != "can" && url.scheme != "serial")
-    throw text::InputError("board address: '" + url.scheme + "' is none of tcp, rtu, serial and can");
+    throw text::InputError("board address: '" + url.scheme + "' is not one of tcp, rtu, serial and can");
   if (const std::size_t question = rest.find('?'); question != std::string::npos) {
     parse_options(rest.substr(question + 1), url);
     rest.resize(question);

@@ -6,7 +6,7 @@
 
 namespace vernier::upload {
 
-/// Where a board is: `tcp://HOST[:PORT]`, `rtu://DEVICE[?baud=..&parity=..&unit=..]`,
+/// Address of a board: `tcp://HOST[:PORT]`, `rtu://DEVICE[?baud=..&parity=..&unit=..]`,
 /// `can://INTERFACE?send=ID&receive=ID`, `serial://DEVICE[?baud=..]`.
 struct BoardUrl {
   std::string scheme;  // "tcp", "rtu", "can", "serial"
@@ -14,7 +14,7 @@ struct BoardUrl {
   int port = 1502;
   std::map<std::string, std::string> options;
 
-  /// An option as a number (0x for hexadecimal); `otherwise` where it is absent. Throws InputError.
+  /// An option as a number (0x for hexadecimal); `otherwise` if it is absent. Throws InputError.
   std::uint32_t number(const std::string& name, std::uint32_t otherwise) const;
 };
 

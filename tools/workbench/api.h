@@ -16,8 +16,8 @@ namespace vernier::workbench {
 /// from several threads. tool.
 class Api {
  public:
-  /// directory: of the project. program: the `vernier` that runs commands. version: shown on the page.
-  /// Throws InputError where there is no such folder.
+  /// directory: of the project. program: the `vernier` that runs commands. version: shown on the page. Throws
+  /// InputError if the folder does not exist. tool.
   Api(const std::string& directory, const std::string& program, std::string version);
 
   /// Never throws: bad input is 422 with {"message"}, an unknown path 404, our own fault 500.

@@ -8,9 +8,9 @@
 
 namespace vernier::workbench {
 
-/// JSON with long rows of numbers beside it, for the page: a 4-byte length, the JSON padded with blanks to a
-/// multiple of 4, then the arrays, little-endian, each on a multiple of 4. In the JSON an array is
-/// {"f32": [offset, count]}, {"u32": ...} or {"u8": ...}, the offset from the first byte after the JSON.
+/// JSON followed by long rows of numbers, for the page: a 4-byte length, the JSON padded with blanks to a
+/// multiple of 4, then the arrays, little-endian, each on a multiple of 4. In the JSON an array is {"f32":
+/// [offset, count]}, {"u32": ...} or {"u8": ...}, the offset from the first byte after the JSON.
 class Blob {
  public:
   /// The JSON placeholder for these numbers; values that are not finite are kept.

@@ -34,7 +34,7 @@ const std::vector<Allowed>& allowed() {
   const Field machine{"machine", K::kIn, "", true}, rows{"measurements", K::kInList, "", true},
       output{"output", K::kOut, "-o", true}, report{"output", K::kOut, "-o"},
       url{"to", K::kText, "--to", true},
-      // What a board added to rows that name its image: the project's compiled images.
+      // Corrections of a board in rows that name its image: from the project's compiled images.
       images{"images", K::kFlag, "--images=."}, header{"header", K::kTextList, "--header"};
   static const std::vector<Allowed> kAll = {
       {"new",
@@ -191,7 +191,7 @@ std::string word_of(const Field& field, const nlohmann::json& value, const Proje
       std::string text = text_of(field, value);
       const std::vector<std::string> words = text::words_in(field.words, " ");
       if (!words.empty() && std::find(words.begin(), words.end(), text) == words.end())
-        refuse(field, "is none of " + std::string(field.words));
+        refuse(field, "is not one of " + std::string(field.words));
       return text;
     }
   }

@@ -118,7 +118,7 @@ bool Conversation::ask(const Message& question, double patience_s, Message& answ
 std::string Conversation::end() {
   if (child_ < 0) return "no answer";
   ::close(stream_);
-  // One that has broken off is given the time to say how; one that hangs is not.
+  // A process that has broken off gets time to report its end; a process that hangs does not.
   int status = 0;
   pid_t ended = 0;
   for (int i = 0; i < 50 && ended == 0; ++i) {

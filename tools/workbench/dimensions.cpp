@@ -56,7 +56,7 @@ std::optional<UnitPowers> powers_of(format::Dimension dimension) {
 
 using Unit = std::optional<UnitPowers>;
 
-/// Walks an expression from its leaves; nothing goes on as nothing.
+/// Evaluates an expression from its leaves; an unknown unit remains unknown.
 class UnitWalk {
  public:
   UnitWalk(const model::Machine& machine, const std::string& unknown, std::vector<std::string>& warnings)

@@ -12,7 +12,7 @@ namespace vernier::workbench {
 /// Powers of mm, deg, degC, s, V, N, kg.
 using UnitPowers = std::array<int, 8>;
 
-/// Powers of a unit of FORMATS section 2 ("mm/s", "1/mm"); nothing for a unit that is none of them.
+/// Powers of a unit of FORMATS section 2 ("mm/s", "1/mm"); `nullopt` for any other unit.
 std::optional<UnitPowers> unit_powers(const std::string& unit);
 /// "mm/degC", "mm", "1" for no unit.
 std::string unit_text(const UnitPowers& powers);

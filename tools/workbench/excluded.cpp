@@ -80,8 +80,7 @@ std::string exclude_rows(const std::string& text, const std::string& file,
   const format::CsvFile csv = format::parse_csv(text, file);
   for (const std::size_t line : lines)
     if (!std::binary_search(csv.line.begin(), csv.line.end(), line))
-      throw text::InputError({file, line}, std::to_string(line),
-                             "no row of the measurement stands on this line");
+      throw text::InputError({file, line}, std::to_string(line), "no row of the measurement is on this line");
   return changed(text, lines, [&](std::string_view row, std::size_t) {
     return std::string(kMark) + reason + std::string(kEndOfReason) + std::string(row);
   });
@@ -93,13 +92,13 @@ std::string restore_rows(const std::string& text, const std::string& file,
   std::string result = changed(text, lines, [&](std::string_view row, std::size_t number) {
     auto excluded = read_excluded(row, number);
     if (!excluded)
-      throw text::InputError({file, number}, std::to_string(number), "no excluded row stands on this line");
+      throw text::InputError({file, number}, std::to_string(number), "no excluded row is on this line");
     ++restored;
     return excluded->row;
   });
   if (restored != lines.size())
     throw text::InputError({file, lines.back()}, std::to_string(lines.back()), "beyond the end of the file");
-  format::parse_csv(result, file);  // what is written can be read
+  format::parse_csv(result, file);  // tests that the output can be read
   return result;
 }
 

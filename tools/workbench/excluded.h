@@ -6,8 +6,8 @@
 
 namespace vernier::workbench {
 
-/// A row of a measurement file that was taken out by hand: a comment `# excluded "reason": row` in its place,
-/// so that every command passes over it, every other row keeps its line, and nothing is lost.
+/// A row of a measurement file that was excluded by hand: a comment `# excluded "reason": row` in its place.
+/// Every command ignores it, every other row keeps its line, and no data are lost. tool.
 struct ExcludedRow {
   std::size_t line = 0;  // 1-based
   std::string reason, row;
@@ -16,12 +16,13 @@ struct ExcludedRow {
 /// The rows taken out of a measurement file's text, by line. tool.
 std::vector<ExcludedRow> excluded_rows(const std::string& text);
 
-/// The text with the rows on these lines taken out. reason: without quotes and line ends. Throws InputError
-/// with the line where it holds no row. `file` is for messages. tool.
+/// The text with the rows on these lines excluded. reason: without quotes and line ends. Throws InputError
+/// with the line if it contains no row. `file` is for messages. tool.
 std::string exclude_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines, const std::string& reason);
 
-/// The text with the excluded rows on these lines back in. Throws InputError with the line where none is.
+/// The text with the excluded rows on these lines restored. Throws InputError with the line if it has no
+/// excluded row.
 std::string restore_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines);
 

@@ -51,7 +51,7 @@ ApiReply FileDesk::answer(const ApiRequest& request) {
   return (this->*route->answer)(request);
 }
 
-/// Machines and measurements are read before they are kept, so that an error shows where it was dropped.
+/// Machines and measurements are read before they are stored: an error is shown where the file was dropped.
 ApiReply FileDesk::check(const ApiRequest& request) {
   const std::string name = request.word("name");
   if (name.ends_with(".xml")) model::parse_machine(request.body, name);
@@ -150,7 +150,7 @@ ApiReply FileDesk::term(const ApiRequest& request) {
   const auto json = body_json(request);
   const std::string name = text_at(json, "machine");
   model::Machine machine = model::parse_machine(text::read_file(project_.existing(name).string()), name);
-  // Columns of the measurement that the machine does not know: `add` declares what a term uses of them.
+  // Columns of the measurement that the machine does not know: `add` declares those that a term uses.
   if (json.contains("columns") && json["columns"].is_array()) {
     for (const auto& column : json["columns"]) {
       model::Input input;

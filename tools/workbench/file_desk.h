@@ -14,7 +14,7 @@ class FileDesk {
  public:
   explicit FileDesk(const Project& project) : project_(project), cache_(project) {}
 
-  /// Is it for this desk? What is to be kept (PUT) is only looked at here.
+  /// True if the request is for this desk. Data to be stored (PUT) are only checked here.
   static bool answers(const ApiRequest& request);
   /// Never throws; as Api::reply.
   ApiReply reply(const ApiRequest& request);

@@ -19,7 +19,7 @@ class FileReader {
   FileReader(std::string program, const Project& project, double patience_s = 300)
       : program_(std::move(program)), project_(project), patience_s_(patience_s) {}
 
-  /// As FileDesk::reply; 422 where the process that reads ended over it.
+  /// As FileDesk::reply; 422 if the reading process ended because of it.
   ApiReply reply(const ApiRequest& request);
 
  private:

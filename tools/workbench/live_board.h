@@ -20,9 +20,9 @@ class LiveBoard {
   LiveBoard(const LiveBoard&) = delete;
   LiveBoard& operator=(const LiveBoard&) = delete;
 
-  /// Pictures (live_json) with a number above `after`, each with `seq` and `at_s`, as soon as there is one,
-  /// at most after half a second: {"pictures": [...], "error": text or null}. A new url lets go of the board
-  /// before. Throws InputError for what is no board's address.
+  /// Pictures (live_json) with a number above `after`, each with `seq` and `at_s`, as soon as one is
+  /// available, at most after half a second: {"pictures": [...], "error": text or null}. A new url
+  /// disconnects the previous board. Throws InputError if the url is not an address of a board.
   nlohmann::ordered_json pictures(const std::string& url, std::uint64_t after);
 
  private:

@@ -119,7 +119,7 @@ pid_t start_process(const std::string& program, const std::vector<std::string>& 
   const std::vector<char*> argv = pointers(words), envp = pointers(environment);
   const pid_t child = ::fork();
   if (child == 0) become(program.c_str(), argv.data(), envp.data(), directory.c_str(), streams);
-  if (child > 0) ::setpgid(child, child);  // whoever of the two comes first
+  if (child > 0) ::setpgid(child, child);  // in both processes, because either may be first
   return child;
 }
 

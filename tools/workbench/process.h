@@ -10,9 +10,9 @@
 
 namespace vernier::workbench {
 
-/// How a program ended, and what it wrote.
+/// End of a program, and its output.
 struct ProcessResult {
-  int exit = -1;  // its exit status; 128 + signal where one ended it
+  int exit = -1;  // its exit status; 128 + signal if a signal ended it
   std::string out, err;
 };
 
@@ -40,7 +40,7 @@ struct StandardStreams {
 pid_t start_process(const std::string& program, const std::vector<std::string>& arguments,
                     const std::string& directory, const StandardStreams& streams);
 
-/// A command as a shell takes it: words quoted where they must be.
+/// A command for a shell: words are quoted if necessary.
 std::string shell_text(const std::string& program, const std::vector<std::string>& arguments);
 
 }  // namespace vernier::workbench

@@ -73,7 +73,7 @@ Eigen::Matrix3Xd directions(const model::Measurement& m, const Eigen::Matrix3Xd&
   return list;
 }
 
-/// Standard uncertainty of each observation, mm or deg; 0 where the file gives none.
+/// Standard uncertainty of each observation, mm or deg; 0 if the file gives none.
 Eigen::VectorXd standard_uncertainties(const model::Measurement& m) {
   Eigen::VectorXd u = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m.observations.size()));
   for (std::size_t i = 0; i < m.observations.size(); ++i)
@@ -81,12 +81,12 @@ Eigen::VectorXd standard_uncertainties(const model::Measurement& m) {
   return u;
 }
 
-/// What the fit that wrote the file knew of a parameter, where its value is still that fit's.
+/// Result of the fit that wrote the file for a parameter, if its value is still that of the fit.
 void add_knowledge(Json& json, const model::FitRecord& record, const std::string& name, double value) {
   const auto found = std::find(record.parameters.begin(), record.parameters.end(), name);
   if (found == record.parameters.end()) return;
   const auto row = static_cast<Eigen::Index>(found - record.parameters.begin());
-  constexpr double kSame = 1e-9;  // of the value: what the file's digits may change
+  constexpr double kSame = 1e-9;  // share of the value: rounding by the file's digits
   if (std::abs(record.values[row] - value) > kSame * std::max(1e-9, std::abs(value))) return;
   json["std"] = record.factor.row(row).norm();
   if (static_cast<std::size_t>(row) < record.origins.size())
@@ -208,7 +208,7 @@ std::string explanation_blob(const LoadedRows& rows, const std::string& add) {
   effect.choice = effects::parse_add_string(add, fitted.machine, effects::built_in_effects());
   const effects::FittedEffects with = effects::fit_with_effects(fitted, m, {effect});
   if (with.rows.observations.size() != m.observations.size())
-    throw text::InputError("this effect excludes rows whose input is empty: nothing to lay over all rows");
+    throw text::InputError("this effect excludes rows whose input is empty: it cannot be shown for all rows");
   Blob blob;
   Json json = {{"label", with.effects[0].spoken}};
   add_figures(json, with.rows, with.fit.residual);

@@ -16,13 +16,13 @@ namespace vernier::workbench {
 /// A machine and rows of a project, as read.
 struct LoadedRows {
   std::string text;        // of the machine file
-  model::Machine machine;  // with its set-up fitted to the rows, where that was asked for
+  model::Machine machine;  // with its set-up fitted to the rows, if requested
   bool datum = false;
   model::Measurement measurement;
 };
 
-/// Reads machines with their measurements and keeps the last few, as long as their files stay as they are.
-/// May be called from several threads. tool.
+/// Reads machines with their measurements and keeps the last few, as long as their files do not change. May
+/// be called from several threads. tool.
 class RowCache {
  public:
   explicit RowCache(const Project& project) : project_(project) {}
@@ -48,15 +48,15 @@ class RowCache {
 /// directions of lengths, observations with residuals in um or urad, circles, figures. tool.
 std::string rows_blob(const LoadedRows& rows);
 
-/// Residuals and figures with some parameters set otherwise; nothing is written. tool.
+/// Residuals and figures with some parameters changed; no file is written. tool.
 std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, double>& values);
 
 /// What an effect would explain: the change that adding and fitting it makes to the residual of the fitted
 /// model, per observation, um or urad. add: a candidate's `add` string. tool.
 std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 
-/// Free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention, prior) as the
-/// fit that wrote the file left them; null where there was none, or where the value was changed since.
+/// Free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention, prior) are those
+/// of the fit that wrote the file; null without a fit, or if the value was changed since.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
 }  // namespace vernier::workbench

@@ -29,7 +29,7 @@ bool same_secret(const std::string& a, const std::string& b) {
   return difference == 0;
 }
 
-/// The value of a cookie; empty where it is absent.
+/// The value of a cookie; empty if it is absent.
 std::string cookie(const std::string& header, const std::string& name) {
   std::size_t at = 0;
   while (at < header.size()) {
@@ -47,8 +47,8 @@ void refuse(httplib::Response& response, int status, const char* why) {
   response.set_content(std::string("vernier workbench: ") + why + "\n", "text/plain");
 }
 
-/// Sets a body that goes out as it is: the library would compress texts, which on one computer only costs
-/// time.
+/// Sets a body that is sent unchanged: the library would compress texts, which only takes time on one
+/// computer.
 void set_plain(httplib::Response& response, std::string_view bytes, const std::string& type,
                std::shared_ptr<const std::string> owner = nullptr) {
   if (bytes.empty()) return response.set_content("", type);
@@ -141,7 +141,7 @@ WorkbenchServer::Inside::Handled WorkbenchServer::Inside::guard(const httplib::R
     refuse(response, 403, "not from this page");
     return Handled::Handled;
   }
-  // Bodies come with their length and as they are: nothing unpacks, nothing grows without end.
+  // Bodies have a known length and are not compressed: their size is limited.
   if (request.has_header("Transfer-Encoding") || request.has_header("Content-Encoding") ||
       (request.method != "DELETE" && !request.has_header("Content-Length"))) {
     refuse(response, 411, "a body needs its length");

@@ -20,7 +20,7 @@ std::string new_token();
 /// carry the header X-Vernier. tool.
 class WorkbenchServer {
  public:
-  /// port 0: any free one. Throws InputError where it is taken.
+  /// port 0: any free port. Throws InputError if the port is in use.
   WorkbenchServer(Api& api, std::uint16_t port);
   ~WorkbenchServer();
   WorkbenchServer(const WorkbenchServer&) = delete;

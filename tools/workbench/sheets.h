@@ -11,9 +11,9 @@ namespace vernier::workbench {
 /// Other text may be a spreadsheet. tool.
 bool begins_as_measurement(const std::string& text);
 
-/// How a spreadsheet is understood and what would come of it: {how, separator, decimal, heading_line, columns
+/// Interpretation of a spreadsheet and its result: {how, separator, decimal, heading_line, columns
 /// (columns_json), rows: the first as cells, csv: the first lines of the measurement file, n_rows, message:
-/// why it is none yet}. Throws InputError where it is no table at all. tool.
+/// reason why it is not a measurement yet}. Throws InputError if it is not a table. tool.
 nlohmann::ordered_json sheet_preview(const std::string& bytes, const std::string& file,
                                      const importer::SheetWords& words);
 

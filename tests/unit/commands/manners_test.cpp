@@ -116,7 +116,7 @@ TEST_F(Manners, SpreadsheetIsRefusedWithTheCommandThatReadsIt) {
   for (const char* command :
        {"fit m.xml sheet.csv -o f.xml", "compare m.xml sheet.csv", "diagnose m.xml sheet.csv"}) {
     EXPECT_EQ(run(std::string("vernier ") + command), 1);
-    EXPECT_TRUE(said("this reads it: vernier import table sheet.csv -o sheet_read.csv")) << said_;
+    EXPECT_TRUE(said("this command reads it: vernier import table sheet.csv -o sheet_read.csv")) << said_;
   }
   EXPECT_EQ(run("vernier import table sheet.csv -o sheet_read.csv && vernier compare m.xml sheet_read.csv"),
             0)
@@ -129,7 +129,7 @@ TEST_F(Manners, ImportThatFailsSaysWhatItUnderstood) {
   EXPECT_TRUE(said("columns separated by semicolon, decimal comma") &&
               said("nothing measured among the columns"))
       << said_;
-  EXPECT_FALSE(said("this reads it")) << said_;
+  EXPECT_FALSE(said("this command reads it")) << said_;
   EXPECT_EQ(run("vernier import table odd.csv -o odd_read.csv --column 'X[mm]=Soll' --column 'x[mm]=Ist'"), 0)
       << said_;
   EXPECT_EQ(read_file(folder_ + "/odd_read.csv"), "X[mm],x[mm]\n0,0.1\n5,5.1\n");

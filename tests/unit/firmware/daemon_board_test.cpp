@@ -220,10 +220,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadBoard{"NoName", "name = \"test\"\n", "",
                  "board.toml:1: board: name is missing: images are signed for a board"},
         BadBoard{"Role", "[[link]]", "[[key]]\nname = \"a\"\nfile = \"key.pub\"\nrole = \"boss\"\n[[link]]",
-                 "role: 'boss' is none of"},
+                 "role: 'boss' is not one of"},
         BadBoard{"KeyTwice", "[[link]]", "[[key]]\nname = \"a\"\nfile = \"key.pub\"\n[[link]]",
                  "this key is there twice"},
-        BadBoard{"Access", "port = 0", "access = \"all\"", "access: 'all' is none of"},
+        BadBoard{"Access", "port = 0", "access = \"all\"", "access: 'all' is not one of"},
         BadBoard{"Link", "kind = \"modbus-tcp\"", "kind = \"telnet\"", "no link of kind telnet"}),
     [](const auto& parameter) { return parameter.param.name; });
 

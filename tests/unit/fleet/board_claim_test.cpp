@@ -113,7 +113,7 @@ TEST_F(BoardClaimTest, KeyThatOthersMayReadProvesNothing) {
   ASSERT_EQ(::chmod((directory_ + "/store/identity.key").c_str(), 0644), 0);
   daemon_ = std::make_unique<Daemon>(directory_);
   Client client = daemon_->client(key_);
-  EXPECT_NE(daemon_->log().find("cannot prove who it is"), std::string::npos) << daemon_->log();
+  EXPECT_NE(daemon_->log().find("cannot prove its identity"), std::string::npos) << daemon_->log();
   EXPECT_FALSE(client.proved_key().has_value());
   EXPECT_THROW(client.require_board({"test", BoardPublicKey{}}), LimitNotMet);
 }

@@ -126,7 +126,7 @@ TEST_F(FleetCommand, StatusSaysHowOldAStateIsAndWhoseClockIsOff) {
   hear(2, 6000);
   EXPECT_TRUE(json("vernier fleet status")["machines"][0]["gateway_clock_off"]);
   ASSERT_EQ(run("vernier fleet status"), 0);
-  EXPECT_NE(said().find("the clock of gateway g is off by +"), std::string::npos) << said();
+  EXPECT_NE(said().find("the clock of gateway g has an error of +"), std::string::npos) << said();
   ASSERT_EQ(run("sleep 1; vernier fleet status --stale 0.5"), 0);
   EXPECT_NE(said().find("STALE    last heard: active"), std::string::npos) << said();
   EXPECT_EQ(said().find("online"), std::string::npos) << said();

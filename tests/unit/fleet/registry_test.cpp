@@ -96,7 +96,7 @@ TEST_P(RegistryTest, SaysWhichMachinesAreDueAndWhy) {
   EXPECT_EQ(why["fresh"], "");
   EXPECT_EQ(why["late"], "its time has come");
   EXPECT_EQ(why["never"], "never checked");
-  EXPECT_EQ(why["changed"], "the last check says changed");
+  EXPECT_EQ(why["changed"], "the verdict of the last check: changed");
   EXPECT_EQ(why["recalibrated"], "not checked since its calibration");
   EXPECT_EQ(why["unasked"], "");
   EXPECT_EQ(due_machines(registry, now).front().machine, "never") << "the longest overdue comes first";

@@ -131,7 +131,7 @@ TEST_F(RolloutTest, TrialOfSomebodyElseIsNeverGivenUpSilentlyAndAnAbsentBoardWai
   EXPECT_EQ(roll(""), 2) << said();
   // THEN the trial runs on, and who called is told
   EXPECT_EQ(states(), "refused waiting waiting") << said();
-  EXPECT_NE(said().find("begun by somebody else"), std::string::npos) << said();
+  EXPECT_NE(said().find("begun by another caller"), std::string::npos) << said();
   EXPECT_EQ(slots(1).newest_issued, 5u);
   EXPECT_NE(slots(1).trial, kNoSlot);
   // AND with the word for that the board's own image is on it, and the rest waits for the absent one

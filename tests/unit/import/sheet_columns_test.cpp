@@ -76,7 +76,8 @@ const Case kCases[] = {
     {"SensesCountedOneAndTwo", "X[mm];x[mm];Richtg.\n1;2;1\n1;2;2\n", "X[mm],x[mm],dirX\n1,2,1\n1,2,-1\n"},
     {"SensesOfTheFormatStay", "X[mm];x[mm];dirX\n1;2;1\n1;2;0\n", "X[mm],x[mm],dirX\n1,2,1\n1,2,0\n"},
     {"SignsUnderAShortHeading", "X[mm];x[mm];Dir\n1;2;+\n1;2;-\n", "X[mm],x[mm],dirX\n1,2,1\n1,2,-1\n"},
-    {"NoSense", "X[mm];x[mm];Dir\n1;2;1\n1;2;7\n", "refused: s.csv:3: \"7\": a sense is 1 or -1"},
+    {"NoSense", "X[mm];x[mm];Dir\n1;2;1\n1;2;7\n",
+     "refused: s.csv:3: \"7\": an approach direction is 1 or -1"},
     {"RotaryDeviation", "C soll [°];Abweichung C [arcsec]\n90;3,6\n", "C[deg],rz[deg]\n90,90.001\n"},
     {"SecondsOfArcAsAnInchMark", "C [°];Abweichung C [\"]\n90;3,6\n", "C[deg],rz[deg]\n90,90.001\n"},
     {"LengthOfAnAngle", "C [°];Abweichung C [um]\n90;3,6\n", "a length, where C is an angle"},
@@ -94,7 +95,7 @@ const Case kCases[] = {
     {"MinutesOfArc", "C [°];Abweichung C [arcmin]\n90;3\n", "C[deg],rz[deg]\n90,90.05\n"},
     {"Milliradians", "X[mm];rx [mrad]\n1;2,5\n2;3,5\n", "X[mm],rx[mrad]\n1,2.5\n2,3.5\n"},
     {"ColumnARunAndSense", "X [mm];1+;1-;2+;2-\n0;1;2;3;4\n100;5;6;7;\n",
-     "refused: s.csv:1: no unit: say it for all (--unit mm) or for each, such as --deviation "
+     "refused: s.csv:1: no unit: give it for all (--unit mm) or for each, such as --deviation "
      "\"X[um]=Deviation\""},
     {"ColumnARunAndSenseWithUnits", "X [mm];1+ [µm];1- [µm];2+ [µm];2- [µm]\n0;1;2;3;4\n100;5;6;7;\n",
      "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n100,1,1,100.005\n0,-1,1,0.002\n100,-1,1,100.006\n0,1,2,0.003\n"
@@ -113,7 +114,7 @@ const Case kCases[] = {
      "Z[mm],dirZ,run,z[mm]\n0,1,1,0.001\n9,1,1,9.001\n0,-1,1,0.002\n9,-1,1,9.002\n0,1,2,0.003\n"
      "9,1,2,9.003\n0,-1,2,0.004\n9,-1,2,9.004\n"},
     {"TheSameRunTwice", "Z [mm];1+ [um];1+ [um]\n0;1;2\n9;1;2\n",
-     "refused: s.csv:1: \"1+ [um]\": this run stands twice in this sense"},
+     "refused: s.csv:1: \"1+ [um]\": this run occurs twice in this direction"},
     {"ThermometersAreNoRuns", "X[mm];x[mm];T1 [°C];T2 [°C]\n1;2;20;21\n2;3;20;21\n",
      "X[mm],x[mm],T1[degC],T2[degC]\n1,2,20,21\n2,3,20,21\n"},
     {"WordInARun", "X [mm];1+ [µm];1- [µm]\n0;1;2\n100;5;bad\n",
@@ -140,7 +141,7 @@ const Case kCases[] = {
      "X[mm],x[mm]\n100,100.0015\n"},
     {"RunsOfNominalLessActual", "X [mm];1+ (Soll-Ist) [µm];1- (Soll-Ist) [µm]\n0;1;2\n9;1;2\n",
      "X[mm],dirX,run,x[mm]\n0,1,1,-0.001\n9,1,1,8.999\n0,-1,1,-0.002\n9,-1,1,8.998\n"},
-    {"NoUnits", "X;x\n1;2\n", "refused: s.csv:1: no unit: say it for all (--unit mm)"},
+    {"NoUnits", "X;x\n1;2\n", "refused: s.csv:1: no unit: give it for all (--unit mm)"},
     {"TwoSigns", "X[mm];x[mm]\n1,5;2\n3.5;2\n", "--decimal comma or point"},
     {"CommaInCommas", "X[mm],x[mm]\n0,5,1,5\n",
      "decimal commas in a table that commas part? Save it with semicolons"},

@@ -45,7 +45,7 @@ void trust_board(registry::FleetMachine& machine) {
   upload::Client board(upload::open_transport(upload::parse_url(machine.url)));
   if (board.info().board.empty())
     throw text::LimitNotMet(machine.url +
-                            ": this board has no name (name in its board file): nothing was entered");
+                            ": this board has no name (set name in its board file): no entry was made");
   machine.board = board.info().board;
   const auto key = board.proved_key();
   machine.board_key = key ? upload::board_key_text(*key) : "";
@@ -73,7 +73,7 @@ void enter_board(const AddArguments& arguments, registry::FleetMachine& machine)
 void refuse_known_key(const registry::FleetMachine& machine, const std::vector<registry::FleetMachine>& all) {
   for (const registry::FleetMachine& other : all)
     if (!machine.board_key.empty() && other.name != machine.name && other.board_key == machine.board_key)
-      throw text::LimitNotMet("this is the board of " + other.name + ", by its key: nothing was entered");
+      throw text::LimitNotMet("this is the board of " + other.name + ", by its key: no entry was made");
 }
 
 void run_add(const AddArguments& arguments) {
@@ -83,7 +83,7 @@ void run_add(const AddArguments& arguments) {
   if (arguments.url && !arguments.url->empty()) upload::parse_url(*arguments.url);
   registry::Registry registry = make_registry(arguments.registry);
   registry::FleetMachine machine{arguments.name, {}, {}, 0, text::now_us()};
-  // What is entered of it and not said anew stays.
+  // Entries that are not given again are kept.
   for (const registry::FleetMachine& known : registry.machines())
     if (known.name == arguments.name) machine = known;
   if (arguments.url) machine.url = *arguments.url;
@@ -178,7 +178,7 @@ std::string live_line(const registry::LiveState& one, const registry::LiveAge& a
   if (one.received_us != 0) line += fmt::format(", the last {:.0f} s ago", age.age_s);
   if (one.historical) line += ", which had waited in the gateway's store since " + text::utc_text(one.at_us);
   if (age.clock_off)
-    line += fmt::format("; the clock of gateway {} is off by {:+.0f} s", one.gateway, age.clock_s);
+    line += fmt::format("; the clock of gateway {} has an error of {:+.0f} s", one.gateway, age.clock_s);
   return line;
 }
 
@@ -196,7 +196,7 @@ void run_status(const ListArguments& arguments) {
     for (const auto& [name, value] : one.values) fmt::print(out, "  {:<40} {}\n", name, value);
   }
   if (!arguments.machine.empty() && all.empty())
-    throw text::InputError({}, arguments.machine, "nothing was heard of this machine yet");
+    throw text::InputError({}, arguments.machine, "no data of this machine received yet");
   write_json(arguments.json, {{"machines", all}});
 }
 
@@ -215,7 +215,7 @@ void run_record(const RecordArguments& arguments) {
   registry::RecordedCalibration one;
   one.machine = arguments.machine;
   one.model = arguments.model;
-  model::read_machine(one.model);  // what is no machine file is refused here
+  model::read_machine(one.model);  // refuses a file that is not a machine file
   one.model_hash = hash_of_files({arguments.model});
   if (!arguments.image.empty()) {
     const auto image = compile::load_image_dir(arguments.image);
@@ -256,7 +256,7 @@ void run_check(const CheckArguments& arguments) {
 
 void add_machine_kinds(CLI::App& fleet) {
   const auto add = std::make_shared<AddArguments>();
-  CLI::App* command = fleet.add_subcommand("add", "enter a machine, or change what is entered of it");
+  CLI::App* command = fleet.add_subcommand("add", "enter a machine, or change its entry");
   command->add_option("MACHINE", add->name, "its name; also the device of its topics")->required();
   add_registry(*command, add->registry);
   command->add_option("--url", add->url, "its board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE");
@@ -318,14 +318,13 @@ void add_forget(CLI::App& fleet) {
 void add_record_kinds(CLI::App& fleet) {
   const auto record = std::make_shared<RecordArguments>();
   CLI::App* command = fleet.add_subcommand(
-      "record",
-      "write down what runs on a machine: model, image, data, who signed, what it was checked against");
+      "record", "record what runs on a machine: model, image, data, signer, data of its check");
   command->add_option("MACHINE", record->machine, "its name in the registry")->required();
   add_registry(*command, record->registry);
   command->add_option("--model", record->model, "machine file (XML)")->required();
   command->add_option("--image", record->image, "directory that `vernier compile` wrote");
   command->add_option("--data", record->data, "measurement files that the model was fitted to");
-  command->add_option("--signed-by", record->signed_by, "who answers for it")->required();
+  command->add_option("--signed-by", record->signed_by, "person responsible for it")->required();
   command->add_option("--against", record->against, "measurement files that it was checked against");
   command->footer("Files are written down by name and BLAKE2b-256. Exit status 0 done, 1 bad input.");
   command->callback([record] { run_record(*record); });

@@ -161,7 +161,8 @@ void add_jobs(CLI::App& fleet) {
       ->capture_default_str();
   command->add_option("--json", work->json, "result for programs; - for standard output");
   command->footer(
-      "Ends when no job of the batch is open; may be killed and begun again anywhere. What a job answered "
+      "Ends when no job of the batch is open; may be killed and started again on any computer. The answer of "
+      "a job "
       "is\n"
       "written once. Exit status 0 all done, 1 bad input, 2 some jobs failed.");
   command->callback([work] { run_work(*work); });

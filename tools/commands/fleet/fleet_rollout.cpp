@@ -33,7 +33,7 @@ std::string folder_for(std::string pattern, const std::string& machine) {
   return pattern;
 }
 
-/// Who the board of a machine must be. Without a name in the registry nothing can be proved of it.
+/// Required identity of the board of a machine. Without a name in the registry no identity can be proved.
 upload::BoardClaim claim_of(const registry::FleetMachine& one) {
   if (one.board.empty())
     throw text::InputError({}, one.name,
@@ -115,8 +115,9 @@ text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet
       fmt::format("{} of {} boards answered at the end of the call as the board of their machine, "
                   "with the image in effect",
                   end->in_effect.size(), states.size()));
-  assurance.require("not-stopped", end->stood.empty(),
-                    end->stood.empty() ? "the rollout reached its end" : "the rollout stands: " + end->stood);
+  assurance.require(
+      "not-stopped", end->stood.empty(),
+      end->stood.empty() ? "the rollout reached its end" : "the rollout has stopped: " + end->stood);
   for (const std::string& note : end->notes) assurance.not_covered(note);
   if (arguments.options.judge.empty())
     assurance.not_covered("whether the machines are more accurate: no --judge was given");
@@ -124,7 +125,7 @@ text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet
   return assurance;
 }
 
-/// Exit status 0 only where this is true, or no board was asked.
+/// Exit status 0 only if this is true, or if no board was asked.
 bool tell(const RolloutArguments& arguments, registry::Registry& registry, const fleet::RolloutEnd* end) {
   Json all = Json::array();
   const std::vector<fleet::RolloutState> states = fleet::rollout_states(registry, arguments.options.name);
@@ -157,7 +158,7 @@ void run_rollout(const RolloutArguments& arguments) {
   const auto key = upload::given_key(arguments.key);
   if (!key) throw text::InputError("--key is missing: the secret key that signs the images");
   if (arguments.signed_by.empty())
-    throw text::InputError("--signed-by is missing: who answers for the images");
+    throw text::InputError("--signed-by is missing: name the person responsible for the images");
   RolloutArguments mine = arguments;
   mine.options.key = *key;
   const std::vector<fleet::RolloutMachine> machines = machines_of(mine, registry);
@@ -172,14 +173,14 @@ void run_rollout(const RolloutArguments& arguments) {
     throw text::LimitNotMet("not every machine of this rollout keeps its image and has it in effect");
 }
 
-/// Without its registry a rollout stops: nothing that it did could be written down.
+/// Without its registry a rollout stops, because its steps could not be recorded.
 void run_or_stand(const RolloutArguments& arguments) {
   try {
     run_rollout(arguments);
   } catch (const registry::DatabaseError& error) {
-    throw text::LimitNotMet(
-        std::string("the registry failed: ") + error.what() +
-        ": the rollout stands; an image on trial goes back by itself; call again when the registry is back");
+    throw text::LimitNotMet(std::string("the registry failed: ") + error.what() +
+                            ": the rollout has stopped; a board reverts an image on trial by itself; call "
+                            "again when the registry is available");
   }
 }
 
@@ -191,8 +192,7 @@ void add_rollout(CLI::App& fleet) {
       fleet.add_subcommand("rollout",
                            "images to boards by stages: tried, watched to be in effect, "
                            "judged, kept; stops at the first worse machine and takes it back");
-  command
-      ->add_option("NAME", arguments->options.name, "of this rollout; called again it goes on where it was")
+  command->add_option("NAME", arguments->options.name, "name of this rollout; a second call continues it")
       ->required();
   add_registry(*command, arguments->registry);
   command->add_option(
@@ -224,19 +224,21 @@ void add_rollout(CLI::App& fleet) {
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
   command->add_flag("--go-on", arguments->options.go_on,
-                    "a rollout that stands goes on, with the machine where it stopped");
+                    "continue a stopped rollout, with the machine at which it stopped");
   command->add_flag(
       "--take-over-trial", arguments->options.take_over_trial,
       "revert a trial that another caller began on a board; without this option the board is refused");
   command->add_option("--json", arguments->json,
-                      "where each machine stands, for programs; - for standard output");
+                      "state of each machine, for programs; - for standard output");
   command->footer(
       "The judge command must answer within the trial time of the board, e.g. measure and `vernier compare "
       "--limit`.\n"
       "Before anything is signed or sent, each board must give its name and prove its key (vernier fleet add "
       "--board, --board-key, --trust).\n"
-      "Exit status 0 all kept and in effect (without --images: told), 1 bad input (no board was asked), 2 it "
-      "stands: a machine was worse, away,\nanother board or not in effect, or another caller has one of the "
+      "Exit status 0 all kept and in effect (without --images: reported), 1 bad input (no board was asked), "
+      "2 it "
+      "has stopped: a machine was worse, not available,\nanother board or not in effect, or another caller "
+      "has one of the "
       "machines.");
   command->callback([arguments] { run_or_stand(*arguments); });
 }

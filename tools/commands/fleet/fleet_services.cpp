@@ -88,7 +88,7 @@ void add_services(CLI::App& fleet) {
   gateway->add_option("FILE", *file, "gateway file (TOML): name, broker, store, boards")->required();
   gateway->footer(
       "Runs until interrupted. The broker's password is taken from VERNIER_MQTT_PASSWORD.\n"
-      "Exit status 0 told to stop, 1 bad input, 70 the store fails (full or broken medium).");
+      "Exit status 0 stopped on request, 1 bad input, 70 the store fails (full or broken medium).");
   gateway->callback([file] { run_gateway_command(*file); });
 
   const auto options = std::make_shared<fleet::IngestOptions>();
@@ -106,7 +106,7 @@ void add_services(CLI::App& fleet) {
   ingest->footer(
       "Runs until interrupted; broker and database may go and come back. The broker's password is taken "
       "from\n"
-      "VERNIER_MQTT_PASSWORD. Exit status 0 told to stop, 1 bad input.");
+      "VERNIER_MQTT_PASSWORD. Exit status 0 stopped on request, 1 bad input.");
   ingest->callback([options] {
     fleet::require_broker_address(options->broker.address);
     if (options->registry.empty()) make_registry(options->registry);

@@ -72,19 +72,20 @@ void run_alike(const TrendArguments& arguments) {
       continue;
     }
     if (drift.common)
-      fmt::print(out, "{}: {} machines move alike, by {:.3g} {} (p {:.1e}): look for what they share\n",
+      fmt::print(out, "{}: {} machines change alike, by {:.3g} {} (p {:.1e}): look for a common cause\n",
                  drift.quantity, drift.machines - drift.own.size(), drift.common_swing, drift.unit,
                  drift.common_p);
     for (const registry::OwnDrift& one : drift.own)
       fmt::print(out, "{}: {} drifts by itself, {:.3g} \u00b1 {:.2g} {} a day\n", drift.quantity, one.machine,
                  one.per_day, one.std, drift.unit);
     if (!drift.common && drift.own.empty())
-      fmt::print(out, "{}: nothing drifts ({} machines, {} times, scatter {:.2g} of what is stated)\n",
+      fmt::print(out, "{}: no drift ({} machines, {} times, scatter {:.2g} of the stated uncertainty)\n",
                  drift.quantity, drift.machines, drift.times, drift.scatter);
     if (drift.wander > 0)
-      fmt::print(out,
-                 "{}: machines wander, each by itself, by {:.2g} of what is stated, over {:.3g} days or so\n",
-                 drift.quantity, drift.wander, drift.wander_days);
+      fmt::print(
+          out,
+          "{}: individual wander of the machines: {:.2g} of the stated uncertainty, over about {:.3g} days\n",
+          drift.quantity, drift.wander, drift.wander_days);
   }
   if (all.empty()) fmt::print(out, "no readings: `vernier fleet check --history` writes them down\n");
   write_json(arguments.json, {{"quantities", all}, {"false_alarms", arguments.alike.false_alarms}});
@@ -102,7 +103,7 @@ void add_trends(CLI::App& fleet) {
 
   const auto alike = std::make_shared<TrendArguments>();
   command = fleet.add_subcommand(
-      "alike", "what the machines' parameters do alike (a common cause), and who drifts alone");
+      "alike", "common changes of the machines' parameters (a common cause), and machines that drift alone");
   add_registry(*command, alike->registry);
   command->add_option("--since", alike->since, "readings from this time on (UTC); default: all");
   command->add_option("--every", alike->alike.every_days, "days that count as one time")
@@ -117,7 +118,7 @@ void add_trends(CLI::App& fleet) {
   command->footer(
       "reading = level of the machine + common curve of time + own rate x time, weighted by the stated\n"
       "uncertainties; individual rates are added one by one if an F test is significant. Readings count as\n"
-      "independent and normal. Exit status 0 done, whatever the finding; 1 bad input.");
+      "independent and normal. Exit status 0 done, for every finding; 1 bad input.");
   command->callback([alike] { run_alike(*alike); });
 }
 

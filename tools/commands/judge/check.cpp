@@ -88,7 +88,7 @@ void run_check(const CheckArguments& arguments) {
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   if (anew)
-    fmt::print(out, "note: {} holds checks of another fit, or of an older version; the history begins anew\n",
+    fmt::print(out, "note: {} holds checks of another fit, or of an older version; a new history begins\n",
                arguments.history);
   fmt::print(out, "verdict: {}. {}\n", check::verdict_name(answer.verdict), answer.explanation);
   fmt::print(out, "evidence for a change: {:.3g} over {} check{}, alarm threshold {:g}\n", answer.evidence,
@@ -118,9 +118,9 @@ void register_check(CLI::App& vernier) {
   command->add_option("--images", arguments->images, "folder of images, for rows measured with one running");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "Each check fits the set-up of the instrument anew. Readings count as independent, normal, and as\n"
-      "uncertain as their u says (without u: as the fit's own residual). Exit status 0 done, whatever the\n"
-      "finding; 1 bad input (nothing written); 2 -o was asked, and what has changed is no parameter (the\n"
+      "Each check fits the set-up of the instrument again. Readings count as independent, normal, and as\n"
+      "uncertain by their u (without u: as the fit's own residual). Exit status 0 done, for every\n"
+      "finding; 1 bad input (nothing written); 2 -o was given, and the change is not a parameter (the\n"
       "verdict and the history are written, the machine file is not).");
   command->callback([arguments] { run_check(*arguments); });
 }

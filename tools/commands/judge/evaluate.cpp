@@ -55,7 +55,7 @@ double length_of(const evaluate::PositioningFile& file) {
   return file.readings.back().target - file.readings.front().target;
 }
 
-/// The budget's uncertainties, where none is stated otherwise.
+/// The uncertainties of the budget, if no others are stated.
 evaluate::PositioningBudget budget_of(const PositioningArguments& arguments,
                                       const evaluate::PositioningFile& file,
                                       evaluate::PositioningWords& words) {

@@ -102,7 +102,7 @@ void print(std::FILE* out, const Json& json) {
   }
 }
 
-/// What the machine's values are judged by.
+/// Acceptance rule of the machine's values.
 text::Assurance assurance_of(const Json& machine) {
   std::vector<evaluate::JudgedValue> all;
   for (const Json& one : machine)
@@ -170,7 +170,8 @@ void add_diagonals_kind(CLI::App& evaluate) {
   kind->add_option("-o,--output", arguments->output, "report (HTML)");
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
-      "Each diagonal is evaluated as an axis by ISO 230-2, by the way along it from row to row; what the "
+      "Each diagonal is evaluated as an axis by ISO 230-2, by the distance along it from row to row; what "
+      "the "
       "volumetric accuracy of the machine is the largest of its body diagonals (E_d, B_d …). Exit status 0 "
       "done, 1 bad input, "
       "2 a "

@@ -76,7 +76,7 @@ std::vector<evaluate::PoseReading> readings_of(const RobotArguments& arguments) 
   return readings;
 }
 
-/// What the standard asks for and this test has not.
+/// Requirements of the standard that this test does not meet.
 Json shortcomings(const std::vector<evaluate::PoseReading>& readings, const RobotPage& page) {
   Json notes = Json::array();
   double u = 0;

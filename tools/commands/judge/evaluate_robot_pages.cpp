@@ -43,7 +43,7 @@ std::string pose_line(const evaluate::PoseResult& pose, const std::string& ap, c
                      pose.high_mm * kUm);
 }
 
-/// Keeps what is the largest.
+/// Keeps the largest value.
 void take(Judged& judged, double value_mm, double expanded_mm) {
   if (value_mm >= judged.value_mm) judged.value_mm = value_mm, judged.expanded_mm = expanded_mm;
 }

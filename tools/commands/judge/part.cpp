@@ -182,11 +182,11 @@ void run_s_shape(const Arguments& arguments) {
   if (arguments.tolerance_mm > 0) result["tolerance"] = judged(arguments, job, result["defect"]);
   const part::PathOptions path{job.options.cutter, arguments.step_mm, arguments.feed_mm_min,
                                arguments.solution};
-  // What is not free in this run is free in the file all the same.
+  // Parameters that are fixed in this run remain free in the file.
   model::Machine written = model::parse_machine(machine_text, arguments.machine);
   for (std::size_t i = 0; i < written.statics.size(); ++i)
     written.statics[i].value = job.machine.machine.statics[i].value;
-  // All texts first: a failure leaves nothing behind.
+  // Makes all texts first: after a failure no file is written.
   std::vector<std::pair<std::string, std::string>> files = {
       {"defect.csv", part::defect_csv(job.points, job.defect)},
       {"machine.xml", model::update_machine_text(machine_text, written, true)},
@@ -234,7 +234,7 @@ std::array<double, 4> read_gauge_block(const std::string& file) {
     if (!(quarter >= 0 && quarter <= 3) || quarter != std::floor(quarter))
       throw text::InputError(place, csv.rows[row][c], "C must be 0, 90, 180 or 270");
     auto& slot = found[static_cast<std::size_t>(quarter)];
-    if (slot) throw text::InputError(place, csv.rows[row][c], "this position stands twice");
+    if (slot) throw text::InputError(place, csv.rows[row][c], "this position occurs twice");
     slot = *reading;
   }
   std::array<double, 4> y_mm{};
@@ -298,10 +298,10 @@ void add_s_shape(CLI::App& part) {
                                                 {"TP6C2", part::ToolPath::kTp6c2}}));
   CLI::Option* recorded_option = command->add_option(
       "--recorded", a->recorded,
-      "positions that the controller recorded (CSV: X Y Z B C): what they leave at the points");
+      "positions that the controller recorded (CSV: X Y Z B C): their deviations at the points");
   command
       ->add_option("--recorded-zero", a->recorded_zero,
-                   "what the record shows where the paths' axes are at 0: \"X=120,Z=-40\"")
+                   "recorded values at which the axes of the paths are at 0: \"X=120,Z=-40\"")
       ->needs(recorded_option);
   CLI::Option* identify_option = command->add_option(
       "--identify", a->identify, "measured part (CSV: sx sy sz defect, u): fit the errors to it");

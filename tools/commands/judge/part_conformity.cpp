@@ -74,7 +74,7 @@ Json characteristic_json(const tolerance::CharacteristicResult& one, const toler
   return json;
 }
 
-/// Does the part conform, of what was asked? Every characteristic with a tolerance, and the fit's findings.
+/// Tests whether the part conforms: every characteristic with a tolerance, and the findings of the fit.
 text::Assurance assurance_of(const model::Machine& machine, const tolerance::PartConformity& result,
                              const ConformityArguments& arguments) {
   text::Assurance word(text::AssuranceKind::kConformity);
@@ -95,7 +95,8 @@ text::Assurance assurance_of(const model::Machine& machine, const tolerance::Par
     word.not_covered("The part is outside the measured range: " + range + ".");
   for (const std::string& name : result.stale) word.not_covered(name + " was set by hand since the fit.");
   if (arguments.process_um <= 0) word.not_covered("Repeatability, tool and cutting: no --process was given.");
-  if (!result.open_known) word.not_covered("What the readings left open: the machine file does not say.");
+  if (!result.open_known)
+    word.not_covered("Errors that the readings did not determine: the machine file does not list them.");
   return word;
 }
 
@@ -149,7 +150,7 @@ std::string least_known(const tolerance::CharacteristicResult& one) {
   const auto most = std::max_element(one.sources.begin(), one.sources.end(),
                                      [](const auto& a, const auto& b) { return a.variance < b.variance; });
   if (one.discrepancy > one.process && (most == one.sources.end() || one.discrepancy > most->variance))
-    return fmt::format("what the model lacks ({:.0f} %)", 100 * one.discrepancy);
+    return fmt::format("model discrepancy ({:.0f} %)", 100 * one.discrepancy);
   if (most == one.sources.end() || most->variance <= 0) return one.process > 0 ? "process" : "";
   if (one.process > most->variance) return fmt::format("process ({:.0f} %)", 100 * one.process);
   return fmt::format("{} ({:.0f} %)", most->name, 100 * most->variance);
@@ -157,8 +158,9 @@ std::string least_known(const tolerance::CharacteristicResult& one) {
 
 void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
                       const tolerance::PartConformity& result) {
-  fmt::print(out, "{} trials, seed {}, {}\n", result.trials, result.seed,
-             result.exact ? "each through the whole chain" : "linear in what is not known of the machine");
+  fmt::print(
+      out, "{} trials, seed {}, {}\n", result.trials, result.seed,
+      result.exact ? "each through the whole chain" : "linear in the uncertain parameters of the machine");
   if (!result.settled) fmt::print(out, "stopped before the ends of the intervals had settled\n");
   for (const std::string& name : result.stale) fmt::print(out, "set by hand since the fit: {}\n", name);
   for (const std::string& range : result.outside)
@@ -166,7 +168,7 @@ void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
   if (const double most = *std::max_element(result.discrepancy_mm.begin(), result.discrepancy_mm.end());
       most > 0)
     fmt::print(out,
-               "what the model lacks is in every interval: {:.2g}, {:.2g}, {:.2g} um (standard deviation in "
+               "the model discrepancy is in every interval: {:.2g}, {:.2g}, {:.2g} um (standard deviation in "
                "x, y, z)\n",
                kUm * result.discrepancy_mm[0], kUm * result.discrepancy_mm[1],
                kUm * result.discrepancy_mm[2]);
@@ -190,7 +192,7 @@ void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
 
 std::string conformity_page(const model::Machine& machine, const ConformityArguments& arguments,
                             const tolerance::PlacedPart& part, const tolerance::PartConformity& result) {
-  Json table = {{"caption", "95 % intervals over what the fit does not know; um"},
+  Json table = {{"caption", "95 % intervals over the uncertainty of the fit; um"},
                 {"columns",
                  {"feature", "characteristic", "allowed", "without correction", "with correction", "dominant",
                   "least known", "never measured"}},
@@ -284,13 +286,13 @@ void add_conformity(CLI::App& part) {
   command->add_option("PART", a->part.path, "features with tolerances (CSV), or a part program (RS-274)")
       ->required();
   command->add_option("MEAS", a->measurements,
-                      "measurement files (CSV) to fit the machine to first; none: as its file has it");
+                      "measurement files (CSV) to fit the machine to first; none: the state of its file");
   command->add_option("--place", a->part.place,
                       "zero of the list in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\" (mm, deg)");
   command->add_option("--zero", a->part.zero,
                       "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
   command->add_option("--at", a->part.at,
-                      "inputs, and where axes stand that the part does not ask for: \"T=25\"");
+                      "inputs, and positions of axes that the part does not need: \"T=25\"");
   command->add_option("--tool", a->tool,
                       "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command
@@ -312,7 +314,7 @@ void add_conformity(CLI::App& part) {
   command->add_option("--seed", a->seed, "of the trials")->capture_default_str();
   command->add_option("--effects", a->effects,
                       "files with effects of your own, for the names; may be repeated");
-  command->add_flag("--rotary", a->with_rotary, "correct with all axes; default: as the machine file says");
+  command->add_flag("--rotary", a->with_rotary, "correct with all axes; default: as in the machine file");
   command->add_flag("--uncorrected", a->uncorrected,
                     "the machine runs without its correction: that decides the exit status");
   command->add_option("--images", a->images, simulate::kImagesHelp);
@@ -321,9 +323,10 @@ void add_conformity(CLI::App& part) {
   command->add_option("--json", a->json, "result for programs; - for standard output");
   command->footer(
       "Monte Carlo over the covariance of the last fit (JCGM 101). A tolerance is kept, or not, from a\n"
-      "probability of 95 % on (ISO 14253-1:2017), else it cannot be said. Columns of a list: feature, kind\n"
+      "probability of 95 % on (ISO 14253-1:2017), else the verdict is: cannot be said. Columns of a list: "
+      "feature, kind\n"
       "(point plane cylinder), x y z, nx ny nz, i j k, diameter, length, width, position, size or size_low\n"
-      "and size_high, form, datum (yes). Exit status 0 done (also where it cannot be said), 1 bad input\n"
+      "and size_high, form, datum (yes). Exit status 0 done (also if it cannot be said), 1 bad input\n"
       "(nothing written), 2 something does not conform (all is written), or is out of reach (nothing is). "
       "See tools/docs/conformity.md.");
   command->callback([a] { run_conformity(*a); });

@@ -14,8 +14,8 @@ struct PartSource {
   double position_mm = 0, size_mm = 0, form_mm = 0;  // for all that a program cuts
 };
 
-/// The part where the machine cuts it, from a list of features or a part program. Throws InputError, and
-/// LimitNotMet where a point is out of reach. tool.
+/// The part at its place in the machine, from a list of features or a part program. Throws InputError, and
+/// LimitNotMet if a point is out of reach. tool.
 tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine& machine);
 
 /// Adds `vernier part conformity`. tool.

@@ -75,7 +75,7 @@ vibration::DisplacementChoice displacement_choice_of(const FeaturesArguments& ar
   return choice;
 }
 
-/// Displacements that were measured in the rows; an empty cell is none.
+/// Displacements measured in the rows; an empty cell is no displacement.
 std::vector<vibration::KnownDisplacement> known_displacements(const FeaturesArguments& arguments,
                                                               const format::CsvFile& rows) {
   std::vector<vibration::KnownDisplacement> known;

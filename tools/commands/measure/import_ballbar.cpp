@@ -256,9 +256,10 @@ void add_ballbar_trace_kind(CLI::App& import) {
                    "XY,YZ,ZX. The runs of all files go to them in that order, as many to each")
       ->delimiter(',')
       ->check(CLI::IsMember({"XY", "YZ", "ZX", "YX", "ZY", "XZ"}));
-  kind->add_option("--start-angle", arguments->starts_deg,
-                   "Angle of the first reading, from the first axis to the second (deg, 180): one, or one a "
-                   "plane")
+  kind->add_option(
+          "--start-angle", arguments->starts_deg,
+          "Angle of the first reading, from the first axis to the second (deg, 180): one, or one per "
+          "plane")
       ->delimiter(',');
   kind->add_option("--rate", setup.sample_rate_hz, "Readings per second")
       ->capture_default_str()

@@ -36,7 +36,7 @@ void run_laser(const LaserArguments& arguments) {
   fmt::print(out, "axis {}, {} targets, {} runs; targets taken as mm, deviations as µm\n", read.axis,
              read.targets, read.runs);
   if (read.left_out > 0)
-    fmt::print(out, "{} runs of nothing but zeros fill a test of one sense: left out\n", read.left_out);
+    fmt::print(out, "{} runs that contain only zeros fill a unidirectional test: omitted\n", read.left_out);
   fmt::print(out, "{}: {} rows\n", arguments.output.csv_path, read.table.line.size());
 }
 
@@ -51,7 +51,7 @@ void add_laser_kind(CLI::App& import) {
                    "listed: by the order of the lines; alternate: odd runs forward, even back; forward")
       ->check(CLI::IsMember({"listed", "alternate", "forward"}));
   add_import_output(*kind, arguments->output);
-  kind->footer("What it writes is read by vernier evaluate iso230-2.");
+  kind->footer("vernier evaluate iso230-2 reads the output.");
   kind->callback([arguments] { run_laser(*arguments); });
 }
 

@@ -122,7 +122,7 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
   std::optional<importer::LoggedTable> logged;
   if (!arguments.log.empty()) {
     if (arguments.machine.empty())
-      throw text::InputError({}, "--log", "needs --machine: which columns are axes, and where it stood");
+      throw text::InputError({}, "--log", "needs --machine: it defines the axis columns and the positions");
     logged = importer::with_log(table, text::read_file(arguments.log), arguments.log,
                                 model::read_machine(arguments.machine), arguments.log_options);
     table = logged->table;
@@ -135,7 +135,7 @@ CLI::App* add_survey_kind(CLI::App& import, const std::string& name, const std::
                           const std::shared_ptr<SurveyArguments>& arguments) {
   CLI::App* kind = import.add_subcommand(name, what);
   kind->add_option("file", arguments->file, "table of the instrument (text)")->required()->type_name("FILE");
-  kind->add_option("--map", arguments->map, "column map: what the columns are")->type_name("FILE");
+  kind->add_option("--map", arguments->map, "column map: the meanings of the columns")->type_name("FILE");
   kind->add_option("--column", arguments->columns,
                    "one column: \"3=x[mm]\" or \"Name=x[mm]\"; again for each")
       ->allow_extra_args(false);
@@ -146,7 +146,7 @@ CLI::App* add_survey_kind(CLI::App& import, const std::string& name, const std::
   kind->add_option("--decimal", arguments->decimal, "decimal sign")->check(CLI::IsMember({"point", "comma"}));
   kind->add_option("--skip", arguments->skip, "lines at the top to leave out");
   kind->add_option("--comment", arguments->comment,
-                   "lines that begin so are left out; none for none; default: #");
+                   "lines that begin with it are skipped; none: no such lines; default: #");
   kind->add_flag("--header", arguments->header, "the first line names columns (implied by a column by name)");
   kind->add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
       ->check(CLI::Range(2, 1000000));
@@ -172,7 +172,7 @@ void add_tracker_kind(CLI::App& import) {
   kind->add_option("--dwell", log.dwell_s, "--log: least standstill, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  kind->add_option("--still", log.still, "--log: an axis stands that stays within, mm or deg")
+  kind->add_option("--still", log.still, "--log: an axis is at rest if it stays within this range, mm or deg")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   kind->add_option("--tolerance", log.tolerance_mm,
@@ -195,7 +195,7 @@ void add_probe_kind(CLI::App& import) {
   kind->footer(
       "Each touch: the normal nx ny nz, the nominal point px py pz, and the deviation d or the recorded "
       "point\n"
-      "mx my mz (then d = n*(m - p)), workpiece coordinates; and the axes where it touched.");
+      "mx my mz (then d = n*(m - p)), workpiece coordinates; and the axis positions at the touch.");
 }
 
 }  // namespace vernier::commands::import_cli

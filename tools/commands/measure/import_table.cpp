@@ -33,13 +33,13 @@ void print_columns(std::FILE* out, const importer::SheetReading& reading) {
                sheet.line[table.heading_row],
                table.units_row > 0 ? fmt::format(", units in line {}", sheet.line[table.units_row]) : "",
                sheet.line[table.first_data]);
-  if (runs > 0) fmt::print(out, "{} columns, one a run and sense, are read as one\n", runs);
+  if (runs > 0) fmt::print(out, "{} columns, one per run and direction, are read as one\n", runs);
   for (std::size_t k = 0; k < columns.size(); ++k)
     fmt::print(out, "  {:>2}  {:<24} {:<26} {}\n", k + 1, table.headings[k].text,
                importer::becomes(columns[k]), columns[k].why);
   for (const importer::SheetColumn& column : columns)
     if (column.turned)
-      fmt::print(out, "deviation of {}: said to be nominal - actual, its sign is turned\n", column.name);
+      fmt::print(out, "deviation of {}: labelled nominal - actual, its sign is reversed\n", column.name);
 }
 
 void print_rows(std::FILE* out, const std::string& csv) {
@@ -91,7 +91,7 @@ void run_table(const TableArguments& arguments) {
   if (arguments.preview) {
     print_rows(out, csv);
     write_json(arguments.json, result);
-    fmt::print(out, "preview of {} rows: nothing is written\n", read.line.size());
+    fmt::print(out, "preview of {} rows: no file is written\n", read.line.size());
     return;
   }
   if (arguments.output.empty()) throw text::InputError("where to? -o MEAS.csv (or --preview)");
@@ -111,9 +111,9 @@ void add_table_kind(CLI::App& import) {
   CLI::App* kind = import.add_subcommand("table", "A spreadsheet: CSV of any kind, or .xlsx");
   kind->add_option("file", arguments->file, "the table")->required()->type_name("FILE");
   kind->add_option("-o,--output", arguments->output, "Measurement file to write (CSV)")->type_name("FILE");
-  kind->add_flag("--preview", arguments->preview, "say how the table was understood, write nothing");
+  kind->add_flag("--preview", arguments->preview, "show how the table was understood, write nothing");
   kind->add_option("--column", arguments->words.columns,
-                   "what a column is: \"x[mm]=X ist\" (heading or number); again for each")
+                   "meaning of a column: \"x[mm]=X ist\" (heading or number); again for each")
       ->allow_extra_args(false);
   kind->add_option("--deviation", arguments->words.deviations,
                    "\"X[um]=Abweichung\": position of X plus this was measured; again for each")
@@ -124,14 +124,14 @@ void add_table_kind(CLI::App& import) {
       ->allow_extra_args(false);
   kind->add_option("--unit", arguments->words.unit, "unit of lengths and angles whose heading has none");
   kind->add_option("--separator", arguments->words.separator,
-                   "comma, semicolon, tab, space; default: guessed and said");
-  kind->add_option("--decimal", arguments->words.decimal, "decimal sign; default: guessed and said")
+                   "comma, semicolon, tab, space; default: detected and printed");
+  kind->add_option("--decimal", arguments->words.decimal, "decimal sign; default: detected and printed")
       ->check(CLI::IsMember({"point", "comma"}));
   kind->add_option("--sheet", arguments->words.sheet,
                    "sheet of a workbook, name or number; default: the first with cells");
   kind->add_option("--skip", arguments->words.skip, "lines at the top to leave out");
   kind->add_option("--comment", arguments->words.comment,
-                   "lines that begin so are left out; none for none; default: #");
+                   "lines that begin with it are skipped; none: no such lines; default: #");
   kind->add_option("--profile", arguments->profile, "read the file with the assignments of this profile")
       ->type_name("FILE");
   kind->add_option("--save-profile", arguments->save_profile, "write how it was read, for the next one")
@@ -147,7 +147,7 @@ void add_table_kind(CLI::App& import) {
       "Headings are read in their usual forms: X [mm], X(mm), X soll, X ist in \u00b5m,\n"
       "Abweichung X; in two lines or with a row of units too. A column a run and sense (1+ 1- 2+ 2-,\n"
       "Run 1 fwd, hin 1, Messung 1 \u2191) becomes a row a reading. \"(Soll-Ist)\", \"(nominal-actual)\"\n"
-      "behind a deviation turns its sign, and that is said. What was guessed is printed; --preview\n"
+      "behind a deviation reverses its sign, and this is printed. Detected settings are printed; --preview\n"
       "prints it and writes nothing.");
   kind->callback([arguments] { run_table(*arguments); });
 }

@@ -62,7 +62,7 @@ void register_lint(CLI::App& vernier) {
   command->footer(
       "error: the file cannot be used; warning: it can be used, but its meaning may differ from what was\n"
       "meant; remark: good to know. With a machine file among them the measurements are looked\n"
-      "at with its eyes. Exit status 0 where no file has an error, 1 else.");
+      "at with its eyes. Exit status 0 if no file has an error, else 1.");
   command->callback([arguments] { run_lint(*arguments); });
 }
 

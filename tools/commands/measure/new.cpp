@@ -82,7 +82,8 @@ create::MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App&
     plan = create::plan_machine(arguments.type, std::move(axes), order("--tool-side", arguments.tool_side),
                                 order("--work-side", arguments.work_side));
   }
-  // A tool of some length in the usual direction: without one, angles of the last axis would do nothing.
+  // A tool of some length in the usual direction: without a length, angles of the last axis would have no
+  // effect.
   plan.tool = {0, 0, plan.arm.empty() ? -100.0 : 100.0};
   if (!arguments.tool.empty()) plan.tool = point_of(arguments.tool, ',', "--tool");
   for (const std::string& words : arguments.centres) {
@@ -172,13 +173,15 @@ void register_new(CLI::App& vernier) {
                       "also a measurement file to be filled in: CSV, or a workbook (.xlsx)");
   command
       ->add_option("--errors", arguments->errors,
-                   "what a fit may find: all; positioning (along each axis, what an interferometer or a dial "
+                   "parameters that a fit may find: all; positioning (along each axis, what an "
+                   "interferometer or a dial "
                    "gauge sees)")
       ->check(CLI::IsMember({"all", "positioning"}))
       ->capture_default_str();
   command
-      ->add_option("--reading", arguments->reading,
-                   "what the survey reads: " + format::survey_words("or") + " (" + reading_help() + ")")
+      ->add_option(
+          "--reading", arguments->reading,
+          "quantities that the survey reads: " + format::survey_words("or") + " (" + reading_help() + ")")
       ->capture_default_str();
   command->add_option("--tool", arguments->tool,
                       "tool point in the frame of the last axis that carries it, mm: 0,0,-120");
@@ -193,7 +196,7 @@ void register_new(CLI::App& vernier) {
                       "robot: its rows as CSV, theta[deg],d[mm],a[mm],alpha[deg] (type R or P)");
   command
       ->add_option("--joint", arguments->joints,
-                   "robot: a row, theta,d,a,alpha (P, before it where it slides); again for each")
+                   "robot: a row, theta,d,a,alpha (P, before it for a prismatic joint); repeat for each")
       ->allow_extra_args(false);
   command->add_option("--urdf", arguments->urdf,
                       "robot: its description (URDF); rows, names and limits of the joints come from it");
@@ -202,7 +205,7 @@ void register_new(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "The type of the machine sets the side of each axis, printed as a line; --tool-side and\n"
-      "--work-side say otherwise. A robot without rows is six joints with the lengths of a\n"
+      "--work-side change it. A robot without rows is six joints with the lengths of a\n"
       "UR10e. A delta or hexapod cannot be written: its chain closes loops.");
   command->callback([arguments, command] { run_new(*arguments, *command); });
 }

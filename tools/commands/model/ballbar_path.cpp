@@ -62,7 +62,7 @@ void register_ballbar_path(CLI::App& vernier) {
   command->footer(
       "Both directions, each with its approach and its exit; it stops at the start point for the bar to be "
       "mounted.\n"
-      "Look at the ways before you run it: nothing is known of what stands there.");
+      "Check the path before you run it: obstacles are not known.");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -255,10 +255,9 @@ void register_compare(CLI::App& vernier) {
       "--limit", arguments->limit,
       "accept or requalify: check rows (else fit rows) must stay within 2u, 25um, 0.025deg; rms=1.5u "
       "tests the rms; exit status 2 if not met");
-  command->add_flag(
-      "--datum", arguments->datum,
-      "fit how the instrument stood (free BaseShifts) first, nothing else: offsets and turns of "
-      "the set-up are then no failure of the model");
+  command->add_flag("--datum", arguments->datum,
+                    "fit only the set-up of the instrument (free BaseShifts) first: offsets and turns of "
+                    "the set-up are then no failure of the model");
   command->add_option("--images", arguments->images, simulate::kImagesHelp);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
   add_report_header(*command, arguments->header);

@@ -68,7 +68,7 @@ void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
   }
 }
 
-/// What the machine of the last step leaves of the readings.
+/// Residuals of the machine of the last step.
 void write_residuals(const DiagnoseArguments& arguments, const diagnose::Diagnosis& diagnosis) {
   const model::Machine machine = model::parse_machine(diagnosis.machine_text, arguments.survey.machine);
   const model::Measurement m = model::read_measurement(
@@ -125,7 +125,7 @@ void register_diagnose(CLI::App& vernier) {
       "absorb. Verdict: missing-effect, ambiguous, unexplained, instrument or consistent. Check rows test "
       "the model, "
       "they\n"
-      "enter nothing. Exit status 0 whatever the finding, 1 bad input.");
+      "enter nothing. Exit status 0 for every finding, 1 bad input.");
   command->callback([arguments] { run_diagnose(*arguments); });
 }
 

@@ -77,7 +77,7 @@ void register_exclude(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "An excluded row stays in its place as a comment with its reason, so every other row keeps its line\n"
-      "and all commands take the file as it is. Exit status 0 done, 1 bad input (nothing written).");
+      "and all commands accept the file. Exit status 0 done, 1 bad input (nothing written).");
   command->callback([arguments] { run_exclude(*arguments); });
 }
 

@@ -34,7 +34,7 @@ struct FitArguments {
   double loss_scale = 3;
 };
 
-/// What the readings left open, largest reach first.
+/// Combinations that the readings do not determine, largest reach first.
 void print_decisions(std::FILE* out, const fit::FitResult& result) {
   const std::vector<fit::Decision> decisions = fit::decisions_of(result);
   if (decisions.empty()) return;
@@ -52,7 +52,7 @@ void print_stages(std::FILE* out, const fit::FitResult& result) {
   }
 }
 
-/// The combination that the data see least, where it is weak enough to matter.
+/// The combination with the least information in the data, if it is weak enough to matter.
 void print_weakest(std::FILE* out, const fit::FitResult& result) {
   constexpr double kWeak = 1e-2;
   for (const fit::Observability::Weak& weak : result.observability.weakest) {
@@ -74,7 +74,7 @@ void print_findings(std::FILE* out, const fit::FitResult& result) {
     fmt::print(out, "found: {} ({})\n", one.text, one.code);
 }
 
-/// Thermometers whose readings are none of a workshop.
+/// Thermometers whose readings are not plausible in a workshop.
 void print_odd_inputs(std::FILE* out, const model::Machine& machine) {
   for (const model::FitRecord::Range& range : machine.fitted->measured) {
     const auto input = machine.find_input(range.name);
@@ -199,15 +199,17 @@ void register_fit(CLI::App& vernier) {
       "--free", arguments->free,
       "patterns of free parameters in addition to those of the file: statics, table.X.rY, BaseShift, "
       "scalefactor.X; may be repeated");
-  command->add_option("--hold", arguments->hold, "patterns of what is held, after --free; may be repeated");
+  command->add_option("--hold", arguments->hold,
+                      "patterns of fixed parameters, after --free; may be repeated");
   command->add_option("--prior", arguments->priors,
                       "NAME=STD: hold parameters near nominal as if measured there; may be repeated");
   command->add_option("--solver", arguments->solver, "normal-equations, or ceres as a cross-check")
       ->check(CLI::IsMember({"normal-equations", "ceres"}))
       ->capture_default_str();
   command->footer(
-      "Weighted least squares (1/u^2) on rows with role fit. What the readings leave open is as near\n"
-      "to nominal as it can be, in units of each parameter's scale, and said (tools/docs/fit.md). Exit "
+      "Weighted least squares (1/u^2) on rows with role fit. Parameters that the readings do not determine "
+      "are as near\n"
+      "to nominal as possible, in units of each parameter's scale, and are listed (tools/docs/fit.md). Exit "
       "status 0 done,\n"
       "1 bad input, 2 the fit did not converge or the readings are not of this machine: nothing written.");
   command->callback([arguments] { run_fit(*arguments); });

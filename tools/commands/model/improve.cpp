@@ -53,7 +53,7 @@ bool agreed(const ImproveArguments& arguments, const diagnose::LadderStep& step,
   return !answer.empty() && (answer[0] == 'y' || answer[0] == 'Y');
 }
 
-/// What the measurement would have read with the correction of a machine running, or why that is unknown.
+/// Readings of the measurement with the running correction of a machine, or the reason why they are unknown.
 Json replayed(const Rung& rung, const model::Measurement& rows, const model::Machine& from) {
   // Four days of a machine and a minute or two of ours.
   constexpr double kMostTicks = 4e8;
@@ -105,7 +105,7 @@ class Improver {
   }
 
  private:
-  /// Diagnoses the machine as it stands and adds what is found. False where nothing more is to be added.
+  /// Diagnoses the present machine and adds the effects found. False if no effect is added.
   bool climb(int round) {
     diagnose::DiagnoseOptions options;
     options.effects = effects_;
@@ -196,7 +196,7 @@ class Improver {
     }
   }
 
-  /// May the last machine run? Said, not decided: nothing runs yet.
+  /// Reports whether the last machine may run. No correction runs yet.
   void judge(Json& json) {
     json["safe_to_run"] = nullptr;
     try {
@@ -238,9 +238,9 @@ void register_improve(CLI::App& vernier) {
   command->footer(
       "Only effects of a verdict missing-effect are added. Each step writes its fitted machine file; the "
       "last line\n"
-      "of figures is what the measurement would have read with the 1 kHz correction running. Exit status 0 "
+      "of figures contains the readings of the measurement with the 1 kHz correction running. Exit status 0 "
       "done\n"
-      "(whatever was found), 1 bad input, 2 the readings are not those of this machine or the fit did not\n"
+      "(for every finding), 1 bad input, 2 the readings are not those of this machine or the fit did not\n"
       "converge: nothing written.");
   command->callback([arguments] { Improver(*arguments).run(); });
 }

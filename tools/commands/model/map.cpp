@@ -140,7 +140,7 @@ Json page_of(const Json& json) {
        {"notes", json["notes"]}});
   if (measured) {
     sections.push_back(line_section("Diagonals",
-                                    "What a laser along the diagonals would read (ISO 230-6), one run "
+                                    "Readings of a laser along the diagonals (ISO 230-6), one run "
                                     "in each approach direction.",
                                     "Body and face diagonals", json["diagonals"]));
     sections.push_back(line_section("Axes", "The same along each axis through the middle of the volume.",
@@ -164,7 +164,7 @@ void run_map(const MapArguments& arguments) {
     axes.push_back(*axis);
   }
   if (axes.empty())
-    throw text::InputError({machine.file, 0}, "", "no linear axis: say over which axes, --over J1,J2,J3");
+    throw text::InputError({machine.file, 0}, "", "no linear axis: give the axes, --over J1,J2,J3");
   Json json = {{"machine", machine.name}, {"files", {arguments.machine}}, {"notes", Json::array()}};
   json["field"] = results::field_json(machine, map::error_field(machine, at, axes, arguments.grid));
   const bool measured = can_be_measured(machine);

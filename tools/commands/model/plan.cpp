@@ -160,7 +160,7 @@ void run_plan(const PlanArguments& arguments) {
   if (aimed && !arguments.separate.empty())
     throw text::InputError(
         {}, "--separate",
-        "distinguishes two effects; --part, --region and --tool say where accuracy matters");
+        "distinguishes two effects; --part, --region and --tool define where accuracy matters");
   if (arguments.measurements.empty() && !aimed) return run_first_plan(arguments);
   if (arguments.separate.empty()) return run_accuracy_plan(arguments);
   const std::string text = text::read_file(arguments.machine);
@@ -225,7 +225,7 @@ void register_plan(CLI::App& vernier) {
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
   command
       ->add_option("--accuracy", arguments->accuracy_um,
-                   "U95 to reach, um: of the tool point over the volume, or where --part and --region say; "
+                   "U95 to reach, um: of the tool point over the volume, or over --part and --region; "
                    "--check: largest change of the tool that may go unseen")
       ->check(CLI::PositiveNumber);
   command
@@ -246,7 +246,7 @@ void register_plan(CLI::App& vernier) {
                       "zero of the part in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\"");
   command->add_option("--zero", arguments->part.zero, "machine position of a part program's zero");
   command->add_option("--at", arguments->part.at,
-                      "inputs, and where axes stand that the part does not ask for");
+                      "inputs, and positions of axes that the part does not need");
   command->add_option("--region", arguments->region,
                       "accuracy for this part of the volume: \"X=100:200,Y=0:50\"");
   command->add_option(
@@ -263,7 +263,7 @@ void register_plan(CLI::App& vernier) {
   command->footer(
       "With MEAS and --accuracy: fits, then chooses the next poses one by one that lower U95 (k = 2) over "
       "the\n"
-      "volume, a region or a part's features most, until it is reached; exit status 2 where it cannot be.\n"
+      "volume, a region or a part's features most, until it is reached; exit status 2 if it cannot be.\n"
       "--separate: fits the model with either effect, then chooses the rows whose readings differ most after "
       "the wrong\n"
       "one and all free parameters were fitted again (T-optimal, the worse of both directions). Points: as\n"

@@ -96,7 +96,7 @@ std::string why_not(const plan::AccuracyPlan& plan, double asked_um) {
   if (plan.floor_um > asked_um)
     return fmt::format(
         "U95 of {:g} um cannot be reached: no number of such readings goes below {:.3g} um; they do "
-        "not distinguish {}",
+        "not determine {}",
         asked_um, plan.floor_um, named(plan.unseen));
   return fmt::format(
       "U95 of {:g} um is not reached: {} poses lead to {:.3g} um, limited by {}; more --points, or "
@@ -107,7 +107,7 @@ std::string why_not(const plan::AccuracyPlan& plan, double asked_um) {
 void print_accuracy(std::FILE* out, const plan::AccuracyAim& aim, const plan::AccuracyPlan& plan,
                     double asked_um) {
   if (plan.states.count == 0) {
-    fmt::print(out, "U95 over {} is {:.3g} um already{}: nothing to measure\n", aim.words, plan.now_um,
+    fmt::print(out, "U95 over {} is {:.3g} um already{}: no measurement is needed\n", aim.words, plan.now_um,
                asked_um > 0 ? fmt::format(", {:g} asked", asked_um) : "");
     return;
   }

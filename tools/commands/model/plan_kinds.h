@@ -23,10 +23,10 @@ struct PlanArguments {
   bool check = false;
 };
 
-/// One pose of a plan: axes and senses.
+/// One pose of a plan: axes and approach directions.
 nlohmann::ordered_json pose_json(const model::Machine& machine, const model::States& states, std::size_t row);
 
-/// The next poses for accuracy where it matters. Throws LimitNotMet where it cannot be reached.
+/// The next poses for accuracy at the required locations. Throws LimitNotMet if it cannot be reached.
 void run_accuracy_plan(const PlanArguments& arguments);
 
 }  // namespace vernier::commands::plan_cli

@@ -47,7 +47,7 @@ void run_pose(const PoseArguments& arguments) {
              1000 * deviation.z());
   if (reach.known())
     fmt::print(
-        out, "known to   {:10.4f} {:10.4f} {:10.4f} um (standard uncertainty, with what the model lacks)\n",
+        out, "known to   {:10.4f} {:10.4f} {:10.4f} um (standard uncertainty, with the model discrepancy)\n",
         json["std_um"][0].get<double>(), json["std_um"][1].get<double>(), json["std_um"][2].get<double>());
   fmt::print(out, "tilt       {:10.6f} deg\n", tilt_deg);
   const bool with_rotary = arguments.with_rotary || machine.correct_orientation;

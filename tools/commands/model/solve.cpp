@@ -146,7 +146,7 @@ void register_solve(CLI::App& vernier) {
       ->check(CLI::IsMember({"auto", "position", "direction", "pose"}))
       ->capture_default_str();
   command->add_flag("--nominal", arguments->nominal,
-                    "of the nominal chain; default: of the machine as it is");
+                    "of the nominal chain; default: of the machine with its errors");
   command->add_option("--restarts", arguments->restarts, "further starts, spread over the axis ranges")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();

@@ -134,7 +134,7 @@ void register_correct(CLI::App& vernier) {
       ->required();
   command->add_option("-o,--output", arguments->output, "the same, corrected")->required();
   command->add_option("--at", arguments->at,
-                      "inputs, and where the axes stand before a program begins: \"T=25,X=0,Z=100\"");
+                      "inputs, and positions of the axes before a program begins: \"T=25,X=0,Z=100\"");
   command->add_option("--zero", arguments->zero,
                       "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
   command->add_option("--tool", arguments->tool,
@@ -149,9 +149,8 @@ void register_correct(CLI::App& vernier) {
       "the other way: positions as commanded, to those of an ideal machine that would be there");
   command->add_flag("--chords", arguments->chords,
                     "write arcs as straight blocks, for a control that reads no G2 and G3");
-  command->add_flag(
-      "--rotary", arguments->with_rotary,
-      "correct with all axes, tool point and tool direction; default: as the machine file says");
+  command->add_flag("--rotary", arguments->with_rotary,
+                    "correct with all axes, tool point and tool direction; default: as in the machine file");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "What was corrected is marked, and refused a second time. Exit status 0 done, 1 bad input (nothing\n"

@@ -38,7 +38,7 @@ std::size_t axis_named(const model::Machine& machine, const std::string& name) {
   return *axis;
 }
 
-/// What is written runs on a machine as an image does.
+/// The written files run on a machine as an image does.
 void require_safe(const model::Machine& machine, const ExchangeArguments& arguments) {
   const safety::SafetySheet sheet = safety::safety_sheet(machine, safety::rules_named(arguments.accept));
   if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
@@ -237,7 +237,8 @@ void import_tables(const ExchangeArguments& arguments, const std::string& kind) 
 void add_type(CLI::App* command, ExchangeArguments& arguments) {
   command
       ->add_option("--type", arguments.type,
-                   "COMP_FILE_TYPE: 0 holds where the axis really is, 1 what is added to the command (trim)")
+                   "COMP_FILE_TYPE: 0 contains the actual position of the axis, 1 the value added to the "
+                   "command (trim)")
       ->check(CLI::IsMember({0, 1}))
       ->capture_default_str();
 }
@@ -250,7 +251,7 @@ CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const
   command->add_flag("--leave-out", arguments->leave_out,
                     "write what the format can represent, and list what it cannot");
   command->add_option("--at", arguments->at,
-                      "what the other axes and inputs stand at: \"Y=0,T=25\"; default: middle of the ranges");
+                      "values of the other axes and inputs: \"Y=0,T=25\"; default: middle of the ranges");
   command->add_option(
       "--accept", arguments->accept,
       "a rule of the sheet \"safe to run?\" to override (tools/docs/safety.md); may be repeated");

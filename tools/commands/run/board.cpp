@@ -41,7 +41,7 @@ void set_weight(const Arguments& arguments, upload::Client& client) {
   client.weight(static_cast<std::uint8_t>(found - axes.begin()), arguments.weight);
 }
 
-/// Who the board is, for `vernier fleet add --board NAME --board-key KEY`.
+/// Identity of the board, for `vernier fleet add --board NAME --board-key KEY`.
 void identify(const Arguments& arguments, upload::Client& client) {
   const auto key = client.proved_key();
   const std::string& name = client.info().board;

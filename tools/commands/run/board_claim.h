@@ -15,12 +15,12 @@ struct ClaimWords {
 
 /// Adds `--board` and `--board-key` to a command that changes a board. tool.
 void add_board_claim(CLI::App& command, ClaimWords& words);
-/// What the words ask of the board. Throws InputError where the key is none. tool.
+/// Converts the options to a claim on the board. Throws InputError if the key is not valid. tool.
 upload::BoardClaim claim_of(const ClaimWords& words);
-/// Compares the board with the words before anything is signed or sent. Throws LimitNotMet with the words
-/// "nothing was sent" where it is another board. tool.
+/// Compares the board with the claim before data are signed or sent. Throws LimitNotMet with the words
+/// "nothing was sent" if it is another board. tool.
 void require_claim(upload::Client& client, const ClaimWords& words);
-/// Writes down what was compared, and what was not. tool.
+/// Records the items that were compared, and those that were not. tool.
 void vouch_for_board(text::Assurance& assurance, const ClaimWords& words, const std::string& board);
 
 }  // namespace vernier::commands

@@ -25,12 +25,13 @@ struct TableArguments {
 void add_table(CLI::App& command, TableArguments& arguments) {
   command.add_option("file", arguments.file, "CSV of touches")->required()->type_name("FILE");
   command
-      .add_option("--column", arguments.columns, "what a column is: \"mean_up_um=upper[um]\"; again for each")
+      .add_option("--column", arguments.columns,
+                  "meaning of a column: \"mean_up_um=upper[um]\"; again for each")
       ->allow_extra_args(false);
   command.add_option("--where", arguments.where, "only rows with this: \"group=A\"")->allow_extra_args(false);
   command
       .add_option("--outliers", arguments.outlier_level,
-                  "chance at which a good set loses a touch; 0: none is left out")
+                  "probability that a good set loses a touch; 0: no touch is excluded")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
   command.add_option("--json", arguments.json, "result for programs; - is standard output");
@@ -305,8 +306,7 @@ void register_feature(CLI::App& vernier) {
   command->add_option("--size", arguments->size, "block: X,Y in mm")->delimiter(',')->expected(2);
   command->add_option("--expansion", arguments->expansion,
                       "of the workpiece, um/(m K): sizes are those at 20 degC");
-  command->add_option("--temperature", arguments->temperature,
-                      "of all rows, degC, where there is no column T");
+  command->add_option("--temperature", arguments->temperature, "of all rows, degC, without a column T");
   command->add_option("--expansion-std", arguments->expansion_std, "its standard uncertainty, um/(m K)")
       ->capture_default_str();
   command->add_option("--temperature-std", arguments->temperature_std, "K")->capture_default_str();

@@ -30,7 +30,7 @@ std::string unit_of(const std::string& input, const std::optional<model::Machine
   return "[" + machine->inputs[*found].unit + "]";
 }
 
-// Columns of FORMATS section 2; a measured tool point is added by whoever measures.
+// Columns of FORMATS section 2; the measured tool point is added later by the user.
 std::string header(const upload::BoardInfo& info, const std::optional<model::Machine>& machine) {
   using format::AxisQuantity;
   std::string text = format::heading(format::columns::kTime);
@@ -106,8 +106,9 @@ void register_record(CLI::App& vernier) {
   command->add_option("--every", arguments->every, "every so many ticks a row")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  command->add_option("--machine", arguments->machine,
-                      "machine file (XML) whose units the inputs have; without it those columns have none");
+  command->add_option(
+      "--machine", arguments->machine,
+      "machine file (XML) with the units of the inputs; without it these columns have no units");
   command->add_option("--run", arguments->run, "label of the run column")->default_val("record");
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->callback([arguments] { run(*arguments); });

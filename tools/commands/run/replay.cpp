@@ -86,7 +86,7 @@ void run_replay(const Arguments& arguments) {
 void register_replay(CLI::App& vernier) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
-      vernier.add_subcommand("replay", "Compute what a measurement would have read with the correction");
+      vernier.add_subcommand("replay", "Compute the readings of a measurement with the correction");
   command->add_option("MEAS", arguments->measurements, "measurement files (CSV) with t")->required();
   command->add_option("--image", arguments->image, "directory that compile wrote")->required();
   command
@@ -94,7 +94,7 @@ void register_replay(CLI::App& vernier) {
                    "analogue chain of 8 or 16 bit in between, beside one image unit; may be repeated")
       ->check(CLI::IsMember({8u, 16u}));
   command->add_option("--before", arguments->before,
-                      "a simpler machine file, to stand beside the image's in the report");
+                      "a simpler machine file, for comparison with the image's in the report");
   command->add_option("--images", arguments->images, simulate::kImagesHelp);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
   add_report_header(*command, arguments->header);

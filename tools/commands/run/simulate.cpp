@@ -70,7 +70,7 @@ void register_simulate(CLI::App& vernier) {
       "Error of a tick: p_truth(q + correction) - p_nominal(q) after the best rigid alignment of the whole\n"
       "path; before: correction 0. Tilt: the angle between the two tool directions, not aligned. Ticks are "
       "counted from the first one in Active: until then the machine\n"
-      "stands at the path's first point, in the motion state of the first tick. The analogue chain: 0-10 V,\n"
+      "is at the path's first point, in the motion state of the first tick. The analogue chain: 0-10 V,\n"
       "25 um/V, 5 V = zero; 8 bit: step 0.98 um, +-124.5 um.\n"
       "Exit status 0 done, 1 bad input, 2 the firmware never became active.");
   command->callback([arguments] { run_simulate(*arguments); });

@@ -67,8 +67,8 @@ void require_safe(const std::string& directory) {
   if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
 }
 
-/// An image must be newer than all that the board has ever tried. Where this computer's clock is behind them,
-/// it is signed right after the newest one, when that is wanted: the board's floor itself is never lowered.
+/// An image must be newer than all images that the board has ever tried. If the clock of this computer is
+/// behind them, it is signed right after the newest one on request. The limit of the board is never lowered.
 std::uint64_t time_of_signing(const Arguments& arguments, const SlotsReply& slots) {
   const auto now = static_cast<std::uint64_t>(text::now_us());
   if (now > slots.newest_issued) return now;
@@ -150,7 +150,7 @@ void tell(const Arguments& arguments, upload::Client& client, const Done& done) 
   const std::string on = board.empty() ? "a board without a name" : "board " + board;
   if (slots.trial != kNoSlot)
     fmt::print(people,
-               "{}: {:016x} runs on trial for {:.0f} s more, then the board goes back to what it ran before\n"
+               "{}: {:016x} runs on trial for {:.0f} s more, then the board returns to its previous image\n"
                "keep it: vernier upload --confirm --to {}{}\n",
                on, slots.trial_fingerprint, slots.trial_left_ms * 1e-3, arguments.url,
                board.empty() ? "" : " --board " + board);
@@ -208,9 +208,9 @@ void register_upload(CLI::App& vernier) {
   command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)");
   command->add_flag("--confirm", arguments->confirm, "confirm the image on trial; with DIR: immediately");
   command->add_flag("--revert", arguments->revert, "give the image on trial up");
-  command->add_flag(
-      "--force", arguments->force,
-      "where this computer's clock is behind the newest image of the board: sign right after that");
+  command->add_flag("--force", arguments->force,
+                    "if the clock of this computer is behind the newest image of the board: sign with a time "
+                    "right after that image");
   add_board_claim(*command, arguments->claim);
   command
       ->add_option("--security", arguments->security,

@@ -6,8 +6,8 @@
 
 namespace vernier::commands::upload_cli {
 
-/// The image of a directory that `vernier compile` wrote, after the sheet "safe to run?" once more. Throws
-/// InputError where it is none, LimitNotMet where it may not run. tool.
+/// The image of a directory that `vernier compile` wrote, after a further test of the sheet "safe to run?".
+/// Throws InputError if it is not an image, LimitNotMet if it may not run. tool.
 std::vector<std::uint8_t> safe_image(const std::string& directory);
 
 }  // namespace vernier::commands::upload_cli
