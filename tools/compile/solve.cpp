@@ -13,7 +13,7 @@
 namespace vernier::compile {
 namespace {
 
-/// A singular value this small against the largest is none.
+/// A singular value this small relative to the largest counts as zero.
 constexpr double kFlat = 1e-9;
 
 using Matrix = std::vector<std::vector<NodeId>>;  // rows
@@ -52,7 +52,7 @@ class Algebra {
     return simplified(g.sum(0, terms));
   }
   NodeId dot(const std::vector<NodeId>& a, const std::vector<NodeId>& b) { return product_sum(g, a, b); }
-  /// A number where the node is one: cos^2 + sin^2 and the like.
+  /// Returns a number if the node is constant: cos^2 + sin^2 and the like.
   NodeId simplified(NodeId node) {
     if (g.constant_value(node)) return node;
     const auto value = sampled_constant(samples_, node);
@@ -119,7 +119,7 @@ std::vector<NodeId> components(Graph& g, const Eigen::Matrix3Xd& basis, const No
   return along;
 }
 
-/// Columns and deviation in the directions that the axes span at all.
+/// Columns and deviation in the directions that the axes span.
 struct Reduced {
   Eigen::Matrix3Xd basis;
   Matrix rows;  // rank x axes, columns scaled to at most 1
@@ -151,7 +151,8 @@ Reduced reduce(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& c
   return r;
 }
 
-/// Square and regular over the whole ranges: x = J^-1 deviation. Nothing where that is not proved.
+/// Square and regular over the whole ranges: x = J^-1 deviation. Returns an empty function if that
+/// is not proved.
 Solver solve_square(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns,
                     const Reduced& r) {
   if (r.rows.size() != columns.size()) return {};
@@ -197,7 +198,7 @@ NodeId limited(Graph& g, NodeId node, double magnitude) {
   return g[node].range.high > magnitude ? g.choice(NodeKind::kMin, node, g.constant(magnitude)) : node;
 }
 
-/// det(J J') held at a floor, and the note on what that means.
+/// Returns det(J J') with a lower limit, and adds the note about its consequences.
 NodeId held_determinant(Derivation& d, Algebra& algebra, NodeId determinant, double& floor) {
   Graph& g = d.graph;
   const Eigen::ArrayXd seen = algebra.sampled(determinant);
@@ -217,8 +218,8 @@ NodeId held_determinant(Derivation& d, Algebra& algebra, NodeId determinant, dou
   return g.choice(NodeKind::kMax, determinant, g.constant(floor));
 }
 
-/// What (K K')^-1 is taken of: the components of a vector in the directions; where the nearest point is
-/// sought, K times them.
+/// Right side of (K K')^-1: the components of a vector in the directions. For the nearest point, K
+/// times them.
 std::vector<NodeId> right_side(Graph& g, const LeastSquares& least, const std::vector<NodeId>& components) {
   if (!least.nearest) return components;
   std::vector<NodeId> along;
