@@ -228,7 +228,7 @@ std::vector<NodeId> right_side(Graph& g, const LeastSquares& least, const std::v
   return along;
 }
 
-/// (K K')^-1 times a right side.
+/// Returns (K K')^-1 times a right side.
 std::vector<NodeId> weights_of(Graph& g, const LeastSquares& least, const std::vector<NodeId>& right) {
   const double size = least.largest * least.spread_mm * (least.nearest ? std::sqrt(least.trace) : 1);
   std::vector<NodeId> weights;
@@ -237,8 +237,8 @@ std::vector<NodeId> weights_of(Graph& g, const LeastSquares& least, const std::v
   return weights;
 }
 
-/// The motions of the axes: K' times the weights, or where the nearest point is sought the weights
-/// themselves.
+/// Returns the motions of the axes: K' times the weights, or the weights themselves for the
+/// nearest point.
 std::vector<NodeId> motions_of(Graph& g, const LeastSquares& least, const std::vector<NodeId>& weights) {
   std::vector<NodeId> motions;
   for (std::size_t k = 0; k < least.lever.size(); ++k) {
@@ -258,9 +258,9 @@ Matrix transposed(const Matrix& m) {
   return result;
 }
 
-// x = K' (K K')^-1 deviation, the columns scaled alike so that no axis is asked to move the tool point more
-// than another. Known lengths limit what intervals overrate: a turn keeps a length, but not a component's
-// interval.
+// x = K' (K K')^-1 deviation. The columns are scaled alike, so that no axis moves the tool point
+// more than another. Known lengths reduce the overestimate of intervals: a rotation keeps a
+// length, but not a component's interval.
 Solver solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns,
                    const Reduced& r) {
   Graph& g = d.graph;
@@ -282,14 +282,14 @@ Solver solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn
       square[i][k] = square[k][i] =
           limited(g, algebra.simplified(algebra.dot(least.jacobian[i], least.jacobian[k])),
                   i == k ? least.trace : least.trace / 2);
-  // Of adj(J J'): the product of its two largest singular values, of a sum trace at most.
+  // Of adj(J J'): the product of its two largest singular values, whose sum is at most the trace.
   least.largest = rank == 3 ? least.trace * least.trace / 4 : rank == 2 ? least.trace : 1;
   least.square = square;
   least.adjugate = algebra.adjugate(square);
   for (std::vector<NodeId>& row : least.adjugate)
     for (NodeId& entry : row) entry = limited(g, entry, least.largest);
   const NodeId determinant = algebra.determinant(square, least.adjugate);
-  // A determinant is at most that of the equal singular values of the same sum.
+  // A determinant is at most that of equal singular values with the same sum.
   const double most = std::pow(least.trace / static_cast<double>(rank), static_cast<double>(rank));
   least.determinant = limited(g, held_determinant(d, algebra, determinant, least.floor), most);
   least.reciprocal = g.function(Function::kReciprocal, least.determinant);
