@@ -28,9 +28,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// JCGM 101:2008, 7.2.2 and 7.9.2: trials of a block; drawn a thousand at a time.
+/// JCGM 101:2008, 7.2.2 and 7.9.2: trials per block; a thousand are sampled together.
 constexpr Index kBlock = 10000, kAtOnce = 1000;
-/// Trials through the whole chain that the linear ones are held against.
+/// Trials through the whole chain, with which the linear trials are compared.
 constexpr int kTried = 12;
 /// Assumed lengths of errors that a model may lack, mm: period of an encoder, pitch of a screw, distance
 /// between stations. Each class is treated alike and gives a separate interval.
@@ -102,7 +102,7 @@ class ConformityRunner {
     spread_ << columns_ * reach_.factor(), values_.map * unmeasured;
   }
 
-  /// Draws of what the model lacks, a class of wavelengths each.
+  /// Samples the discrepancy, one class of wavelengths each.
   void draw_lacks(Normals& normals) {
     lacks_.assign(classes_, MatrixXd::Zero(values_.map.rows(), kAtOnce));
     if (classes_ == 1) return;
@@ -112,7 +112,7 @@ class ConformityRunner {
                                          kWavelengths[c].shortest_mm, kWavelengths[c].longest_mm, kAtOnce);
   }
 
-  /// Deviations of the points as the fitted machine makes them.
+  /// Computes the deviations of the points by the fitted machine.
   void find_means(const model::Machine& machine) {
     Eigen::Matrix3Xd off = model::forward(reach_.machine(), part_.states).position - part_.point;
     if (options_.frame == PartFrame::kMachine) take_rigid_out(off);
@@ -133,7 +133,7 @@ class ConformityRunner {
     }
   }
 
-  /// The motion of the whole that fits the machine's deviations best over its work volume.
+  /// Removes the motion of the whole that fits the machine's deviations best over its work volume.
   void take_rigid_out(Eigen::Matrix3Xd& deviations, const MachineSource* without = nullptr) const {
     const model::WorkPoses poses = model::work_poses(reach_.machine());
     const model::Machine machine =
@@ -145,7 +145,7 @@ class ConformityRunner {
     deviations -= moved.reshaped(3, deviations.cols());
   }
 
-  /// Where the part is and no axis was measured; marks the features of it.
+  /// Returns the ranges of the part in which no axis was measured. Marks the features there.
   std::vector<std::string> outside(const model::Machine& machine) {
     std::vector<std::string> list;
     outside_.assign(part_.features.size(), false);
@@ -168,7 +168,8 @@ class ConformityRunner {
     return list;
   }
 
-  /// Rows of one draw of the parameters, through the whole chain, without and with the correction.
+  /// Returns rows of one sample of the parameters, through the whole chain, without and with the
+  /// correction.
   std::pair<VectorXd, VectorXd> through_chain(const VectorXd& z) {
     const VectorXd change = reach_.factor() * z.head(own_);
     const VectorXd more = spread_.rightCols(spread_.cols() - own_) * z.tail(spread_.cols() - own_);
@@ -179,7 +180,7 @@ class ConformityRunner {
       const Eigen::Matrix3Xd off = model::forward(drawn, states).position - part_.point;
       return VectorXd(values_.map * off.reshaped() - rigid);
     };
-    // The mean without its rigid part is what find_means() has: only changes are taken from the chain.
+    // find_means() gives the mean without its rigid part. Only changes come from the chain.
     if (base_.size() == 0) {
       const Eigen::Matrix3Xd off = model::forward(reach_.machine(), part_.states).position - part_.point;
       base_ = values_.map * off.reshaped();
@@ -187,7 +188,8 @@ class ConformityRunner {
     return {off_ + rows(part_.states) - base_ + more, rows(corrected_) + more};
   }
 
-  /// A few trials both ways: is the machine linear in what is not known of it?
+  /// Makes a few trials in both ways, to test whether the machine is linear in its uncertain
+  /// parameters.
   void try_chain(Normals& normals) {
     const MatrixXd z = normals.draw(spread_.cols(), kTried);
     const MatrixXd many = spread_ * normals.draw(spread_.cols(), kAtOnce);
@@ -208,7 +210,8 @@ class ConformityRunner {
     }
   }
 
-  /// Who moves what: exact at the fitted machine, linear in what is not known of it.
+  /// Computes the share of each source: exact at the fitted machine, linear in its uncertain
+  /// parameters.
   void share_out(Normals& normals) {
     constexpr Index kDraws = 1000;  // give a share to 3 %
     const MatrixXd z = normals.draw(spread_.cols(), kDraws);
@@ -315,7 +318,8 @@ class ConformityRunner {
           without = chain_off + own.col(k);
           with = chain_on + own.col(k);
         }
-        // Two draws turned into one: a thousand of them serve a block of ten thousand.
+        // Combines two samples by a rotation: a thousand of them are sufficient for a block of ten
+        // thousand.
         const double angle = 2 * std::numbers::pi * normals.uniform();
         const auto other = (k + 1 + static_cast<Index>(normals.uniform() * (kAtOnce - 1))) % kAtOnce;
         for (std::size_t c = 0; c < classes_; ++c) {
@@ -342,7 +346,8 @@ class ConformityRunner {
     return std::all_of(classes.begin(), classes.end(), [&](const Tallies& all) { return settled(all); });
   }
 
-  /// The discrepancy is known to about a tenth: its intervals are computed with half the resolution.
+  /// The uncertainty of the discrepancy is about a tenth, so its intervals are computed with half
+  /// the resolution.
   double tolerance() const { return classes_ > 1 ? 2 * options_.tolerance : options_.tolerance; }
 
   bool settled(const std::vector<TrialTally>& tallies) const {
@@ -351,7 +356,8 @@ class ConformityRunner {
     });
   }
 
-  /// Estimated number of trials, from those so far: the uncertainty falls with the root of their number.
+  /// Estimated number of trials, from those so far: the uncertainty decreases with the root of
+  /// their number.
   double needed(const std::vector<Tallies>& off, const std::vector<Tallies>& on) const {
     double worst = 1;
     for (const auto* classes : {&off, &on})
@@ -362,7 +368,8 @@ class ConformityRunner {
                     static_cast<double>(result_.trials) * worst * worst + static_cast<double>(kBlock));
   }
 
-  /// The widest of the classes' intervals, and the chance that is least favourable to a verdict.
+  /// Returns the widest of the classes' intervals, and the probability that is least favourable to
+  /// a verdict.
   Expectation expectation(const std::vector<Tallies>& classes, std::size_t v, const VectorXd& mean) const {
     const CharacteristicValue& value = values_.values[v];
     const TrialTally& first = classes.front()[v];
@@ -392,10 +399,10 @@ class ConformityRunner {
   std::vector<MachineSource> sources_;
   MatrixXd raw_;                       // 3 N x p: of the points, by parameter
   MatrixXd columns_, rigid_, spread_;  // of the map's rows, by parameter; by column of the factor and more
-  std::vector<bool> outside_;          // a feature
-  Index own_ = 0;                      // columns of the factor; the others are what no reading supports
-  std::size_t classes_ = 1;            // of wavelengths of what the model lacks
-  std::vector<MatrixXd> lacks_;        // a class: rows of the map, draws
+  std::vector<bool> outside_;          // per feature
+  Index own_ = 0;                // columns of the factor; the others are claims that no reading supports
+  std::size_t classes_ = 1;      // of wavelengths of the discrepancy
+  std::vector<MatrixXd> lacks_;  // per class: rows of the map, samples
   model::States corrected_;
   VectorXd off_, on_, base_;     // rows of the map at the fitted machine, without and with its correction
   std::vector<VectorXd> alone_;  // of each source

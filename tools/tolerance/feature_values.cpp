@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Below this share of its length a row is nothing that the frame left.
+/// Below this share of its length a row is rounding after the removal of the frame.
 constexpr double kLeft = 1e-9;
 
 /// Rows that select the deviations along the directions of a feature's points (all three without directions).
@@ -36,7 +36,8 @@ MatrixXd along_directions(const PlacedFeature& feature, Index points) {
   return rows;
 }
 
-/// What a plane's or cylinder's own place, tilt and size do to the deviations along its normals.
+/// Influence of a plane's or cylinder's own position, tilt and size on the deviations along its
+/// normals.
 MatrixXd own_columns(const PlacedFeature& feature, const PlacedPart& part) {
   const auto count = static_cast<Index>(feature.count), first = static_cast<Index>(feature.first);
   const bool plane = feature.feature.kind == PartFeatureKind::kPlane;
@@ -72,7 +73,7 @@ class ValueMaker {
   }
 
  private:
-  /// Rows of the features that are asked for, below one another.
+  /// Rows of the selected features, one below the other.
   MatrixXd rows_of(const std::function<bool(const PartFeature&)>& asked) const {
     MatrixXd all(0, 3 * points_);
     for (const PlacedFeature& one : part_.features) {
@@ -84,12 +85,13 @@ class ValueMaker {
     return all;
   }
 
-  /// The motion that brings the datums back to where they belong; what they leave free is for all features.
+  /// Computes the motion that brings the datums back to their nominal position. All features
+  /// determine the freedoms that datums leave open.
   void align() {
     Eigen::Matrix3Xd centred = part_.point;
     centred.colwise() -= part_.point.rowwise().mean().eval();
     motions_ = fit::rigid_motions(centred);
-    // A turn by 1 moves the outermost point by 1: all six of like size.
+    // A rotation by 1 moves the outermost point by 1, so all six have similar size.
     motions_.rightCols(3) /= std::max(1.0, centred.colwise().norm().maxCoeff());
     MatrixXd free = MatrixXd::Identity(6, 6);
     back_ = MatrixXd::Zero(6, 3 * points_);
@@ -97,7 +99,8 @@ class ValueMaker {
       const MatrixXd pick = rows_of([&](const PartFeature& one) { return !datums || one.datum; });
       if (pick.rows() == 0 || free.cols() == 0) continue;
       Eigen::JacobiSVD<MatrixXd> svd(pick * motions_ * free, Eigen::ComputeThinU | Eigen::ComputeFullV);
-      svd.setThreshold(1e-6);  // freedoms that a part fixes by a millionth of its size it does not fix
+      svd.setThreshold(
+          1e-6);  // a part does not determine freedoms that it determines only to a millionth of its size
       back_ += free * svd.solve(pick - pick * motions_ * back_);
       free = (free * svd.matrixV().rightCols(free.cols() - svd.rank())).eval();
     }
@@ -157,7 +160,7 @@ class ValueMaker {
   const PlacedPart& part_;
   const std::string& file_;
   Index points_;
-  MatrixXd motions_, back_;  // 3 N x 6; 6 x 3 N: the motion that deviations are taken for
+  MatrixXd motions_, back_;  // 3 N x 6; 6 x 3 N: the rigid motion for given deviations
   PartValues result_;
 };
 

@@ -9,13 +9,13 @@
 
 namespace vernier::tolerance {
 
-/// What the deviations of a part's points are taken from.
+/// Reference of the deviations of a part's points.
 enum class PartFrame : std::uint8_t {
   kPart,     // the features themselves: all of them, or those marked as datums, by least squares
   kMachine,  // the machine's own coordinates
 };
 
-/// How a characteristic follows from numbers that are linear in the deviations of the part's points.
+/// Computes a characteristic from numbers that are linear in the deviations of the part's points.
 struct CharacteristicValue {
   std::size_t feature = 0;
   PartCharacteristic what = PartCharacteristic::kPosition;
@@ -23,17 +23,18 @@ struct CharacteristicValue {
   Eigen::Index first = 0, count = 0;               // rows of the map
   Eigen::Index group = 1;                          // rows that are components of one vector
 
-  /// mm, from the rows of the map: position twice the longest vector, size the row itself, form the range.
+  /// mm, from the rows of the map. Position: twice the longest vector. Size: the row itself. Form:
+  /// the range.
   double of(const Eigen::Ref<const Eigen::VectorXd>& rows) const;
 };
 
-/// All characteristics of a part as numbers of its points' deviations.
+/// All characteristics of a part as functions of its points' deviations.
 struct PartValues {
   std::vector<CharacteristicValue> values;
   Eigen::MatrixXd map;  // rows x 3 N: of deviations of the tool point, workpiece coordinates, mm
 };
 
-/// Throws InputError where the frame takes up all that a position could be judged by. tool.
+/// Throws InputError if the frame absorbs all rows that could determine a position.
 PartValues part_values(const PlacedPart& part, PartFrame frame, const std::string& file);
 
 }  // namespace vernier::tolerance

@@ -40,7 +40,8 @@ const char* token_of(model::Op op) {
   }
 }
 
-/// The driven quantity of a name: what stands before the first brace, and the placeholder's class.
+/// Returns the driven quantity of a name: the text before the first brace, and the class of the
+/// placeholder.
 std::optional<std::string> token_of_placeholder(const std::string& name) {
   const std::vector<std::string> marks = effects::marks_in(name);
   if (marks.empty()) return model::is_reserved_word(name) ? std::optional(name) : std::nullopt;
@@ -61,11 +62,11 @@ Tokens tokens_of_form(const effects::EffectForm& form) {
   return tokens;
 }
 
-/// A term of the chain in which something stands whose name is looked for.
+/// A term of the chain with an element whose name is searched.
 struct PlacedTerm {
   effects::DofPlace place;
   Tokens tokens;
-  std::optional<std::size_t> axis;  // the first that drives it
+  std::optional<std::size_t> axis;  // the first axis that drives it
 };
 
 class Namer {
@@ -77,7 +78,7 @@ class Namer {
         forms_.push_back({&effect, &form, tokens_of_form(form)});
   }
 
-  /// Id and label of an effect with the action of `is`.
+  /// Returns id and label of an effect with the action of `is`.
   std::pair<std::string, std::string> name(const std::function<bool(const model::Expr&)>& is, bool hats,
                                            std::optional<std::size_t> axis) const {
     const std::optional<PlacedTerm> term = find_term(is, hats, axis);
@@ -123,7 +124,7 @@ class Namer {
     return std::nullopt;
   }
 
-  /// The quantities of the summands in which it stands.
+  /// Collects the quantities of the summands that contain it.
   void collect(const model::Expr& expr, const std::function<bool(const model::Expr&)>& is,
                PlacedTerm& term) const {
     if (expr.op == model::Op::kAdd || expr.op == model::Op::kSubtract || expr.op == model::Op::kNegate) {
@@ -230,7 +231,8 @@ class Namer {
     return false;
   }
 
-  /// Where no form acts at such a place: one that does the same somewhere else, of the same kind of freedom.
+  /// If no form acts at such a location: is this form the same at another location, with the same
+  /// kind of degree of freedom?
   bool is_like(effects::PlaceRule rule, const PlacedTerm& term) const {
     return effects::is_angle(machine_, term.place) ==
                (rule == effects::PlaceRule::kTurn || rule == effects::PlaceRule::kAngle) &&

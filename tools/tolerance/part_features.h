@@ -12,14 +12,14 @@ namespace vernier::tolerance {
 enum class PartFeatureKind : std::uint8_t {
   kPoint,
   kPlane,
-  kCylinder,  // hole or boss; without length a circle
-  kPath,      // what a program cuts between two rapid moves
+  kCylinder,  // hole or boss; without length it is a circle
+  kPath,      // path of a program between two rapid moves
 };
 const char* kind_name(PartFeatureKind kind);
 
-/// What of a feature may be out of tolerance.
+/// Characteristic of a feature that may be out of tolerance.
 enum class PartCharacteristic : std::uint8_t {
-  kPosition,  // width or diameter of the zone about its true place that it takes up, ISO 1101
+  kPosition,  // width or diameter of the zone about its true position that the feature needs, ISO 1101
   kSize,      // actual - nominal diameter
   kForm,      // width of the zone about its least-squares plane or cylinder
 };
@@ -29,18 +29,19 @@ const char* characteristic_name(PartCharacteristic characteristic);
 struct PartFeature {
   std::string name;
   PartFeatureKind kind = PartFeatureKind::kPoint;
-  Eigen::Vector3d at = Eigen::Vector3d::Zero();  // the point; the middle of the others
-  /// Unit normal of a point or plane, axis of a cylinder; 0: a point that is judged in every direction.
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  // the point; the centre of other features
+  /// Unit normal of a point or plane, axis of a cylinder; 0: a point that is evaluated in every
+  /// direction.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  std::optional<Eigen::Vector3d> tool;  // direction of the tool there; none: the rotary axes stay
+  std::optional<Eigen::Vector3d> tool;  // direction of the tool there; no value: the rotary axes do not move
   double diameter_mm = 0, length_mm = 0, width_mm = 0;
   std::optional<double> position_mm, form_mm;    // zones
   std::optional<std::array<double, 2>> size_mm;  // limits of actual - nominal diameter
-  bool datum = false;                            // it is what the others are measured from
+  bool datum = false;                            // it is a reference of the others
   std::size_t line = 0;
 };
 
-/// A part as its drawing has it.
+/// A part as on its drawing.
 struct PartDrawing {
   std::string file;
   std::vector<PartFeature> features;
@@ -52,7 +53,7 @@ struct PartDrawing {
 /// and word. tool.
 PartDrawing parse_part(const std::string& text, const std::string& file);
 
-/// The part moved: turned about the workpiece's z by `turn_deg`, then shifted, mm. tool.
+/// Returns the part after a rotation about the workpiece's z by `turn_deg` and a shift, mm. tool.
 PartDrawing placed_at(const PartDrawing& part, const Eigen::Vector3d& shift_mm, double turn_deg);
 
 }  // namespace vernier::tolerance

@@ -9,12 +9,12 @@
 
 namespace vernier::tolerance {
 
-/// A feature as the machine cuts or touches it.
+/// A feature as the machine cuts or probes it.
 struct PlacedFeature {
   PartFeature feature;
   std::size_t first = 0, count = 0;  // its states
-  /// The direction that counts at each: surface normals; of a path its tangent, along which nothing does; 0:
-  /// every direction.
+  /// The evaluated direction at each point: surface normals. For a path it is the tangent, along
+  /// which nothing is evaluated. 0: every direction.
   Eigen::Matrix3Xd direction;
 };
 
@@ -25,10 +25,11 @@ struct PlacedPart {
   Eigen::Matrix3Xd point;  // nominal, workpiece coordinates, mm
 };
 
-/// Points spread over every feature (a cylinder's 12 on each of three circles, a plane's 5 x 5) and the axis
-/// positions at which the nominal chain has its tool there. Directions of motion are as the points follow one
-/// another, a circle counter-clockwise about its axis. `at`: inputs, and the positions of axes that are not
-/// needed. Throws LimitNotMet if a point is out of reach, naming the line. tool.
+/// Returns points distributed over every feature (a cylinder has 12 on each of three circles, a
+/// plane 5 x 5) and the axis positions at which the nominal chain has its tool there. Directions
+/// of motion follow the order of the points. A circle is counter-clockwise about its axis. `at`:
+/// inputs, and the positions of axes that are not needed. Throws LimitNotMet if a point is out of
+/// reach, naming the line. tool.
 PlacedPart place_part(const model::Machine& machine, const PartDrawing& part, const model::States& at);
 
 }  // namespace vernier::tolerance

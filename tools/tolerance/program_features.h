@@ -11,14 +11,15 @@ namespace vernier::tolerance {
 
 struct ProgramOptions {
   std::vector<double> zero;  // machine position of the program's zero, by axis
-  /// For every feature that the program cuts.
+  /// For every feature of the program.
   std::optional<double> position_mm, form_mm;
   std::optional<std::array<double, 2>> size_mm;
 };
 
-/// What a part program cuts (RS-274, as tools/offline reads it): whole circles as circles, everything else
-/// between two rapid moves as a path, of which nothing counts along itself. `at`, `known`: where the axes
-/// stand before the first block. Throws InputError with file, line and word. tool.
+/// Returns the features of a part program (RS-274, as tools/offline reads it). Whole circles are
+/// circles. Everything else between two rapid moves is a path, along which nothing is evaluated.
+/// `at`, `known`: positions of the axes before the first block. Throws InputError with file, line
+/// and word. tool.
 PlacedPart program_part(const model::Machine& machine, const std::string& text, const std::string& file,
                         const model::States& at, const std::vector<char>& known,
                         const ProgramOptions& options);

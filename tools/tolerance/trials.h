@@ -9,8 +9,8 @@
 
 namespace vernier::tolerance {
 
-/// Normal numbers that are the same everywhere for a seed (the library's distributions are not). Box and
-/// Muller 1958.
+/// Normal random numbers that are the same everywhere for a seed (the library's distributions are
+/// not). Box and Muller 1958.
 class Normals {
  public:
   explicit Normals(std::uint64_t seed) : engine_(seed) {}
@@ -22,30 +22,32 @@ class Normals {
   std::mt19937_64 engine_;
 };
 
-/// Draws of what a model lacks at points (3 x N, mm): smooth random fields along each direction, standard
-/// deviation std_mm (x, y, z), made of waves whose lengths are even in logarithm between two bounds (mm),
-/// half of them along an axis. The same field at a point for all points of a draw. 3 N x draws, mm. Random
-/// Fourier features, Rahimi and Recht 2007.
+/// Random samples of the discrepancy of a model at points (3 x N, mm): smooth random fields along
+/// each direction, standard deviation std_mm (x, y, z). They are made of waves whose lengths are
+/// evenly distributed in logarithm between two bounds (mm), half of them along an axis. All points
+/// of a sample belong to the same field. 3 N x draws, mm. Random Fourier features, Rahimi and
+/// Recht 2007.
 Eigen::MatrixXd draw_discrepancy(Normals& normals, const Eigen::Matrix3Xd& points,
                                  const Eigen::Vector3d& std_mm, double shortest_mm, double longest_mm,
                                  Eigen::Index draws);
 
-/// Blocks of trials of one value, summed up.
+/// Sums over blocks of trials of one value.
 class TrialTally {
  public:
-  /// A block; it is sorted. limits: of what conforms.
+  /// Adds a block. It is sorted. limits: of conformity.
   void take(std::vector<double>& block, const std::optional<std::array<double, 2>>& limits);
 
   std::size_t trials() const { return trials_; }
   double mean() const;
   double std() const;
-  /// Ends of the interval that holds 95 % of a block, as many below as above: averages over the blocks.
+  /// Ends of the interval that contains 95 % of a block, with equal shares below and above:
+  /// averages over the blocks.
   double low() const { return average(low_); }
   double high() const { return average(high_); }
-  /// Of the trials, those within the limits.
+  /// Share of the trials within the limits.
   double conforming() const;
-  /// Twice the standard deviation of the averages of both ends, the larger one (JCGM 101:2008, 7.9.4).
-  /// Two blocks at least.
+  /// Twice the standard deviation of the averages of both ends, the larger one (JCGM 101:2008,
+  /// 7.9.4). At least two blocks are needed.
   double doubt() const;
 
  private:
