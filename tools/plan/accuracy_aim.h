@@ -8,10 +8,10 @@
 
 namespace vernier::plan {
 
-/// The aim as numbers that are linear in the parameters: U95 = 2 sqrt(trace(rows C rows^T)), mm.
+/// The aim as rows that are linear in the parameters: U95 = 2 sqrt(trace(rows C rows^T)), mm.
 struct AimRows {
   Eigen::MatrixXd rows;  // by the machine's own parameters, in the order of `own`
-  /// Of a part's characteristics: which rows, and what they were divided by.
+  /// Of a part's characteristics: their rows, and the divisor of the rows.
   struct Piece {
     std::string name;
     Eigen::Index first = 0, count = 0;
@@ -20,10 +20,10 @@ struct AimRows {
   std::vector<Piece> pieces;
 };
 
-/// own: indices of the parameters that are the machine's, no set-up's. tool.
+/// own: indices of the parameters of the machine, without set-ups. tool.
 AimRows aim_rows(const Knowledge& knowledge, const AccuracyAim& aim, const std::vector<Eigen::Index>& own);
 
-/// The machine with the aim's region as its `<volume>`.
+/// Returns the machine with the aim's region as its `<volume>`.
 model::Machine with_region(const model::Machine& machine, const std::vector<model::WorkRange>& region);
 
 }  // namespace vernier::plan

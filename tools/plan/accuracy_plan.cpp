@@ -25,14 +25,14 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Poses to choose from: over the volume, and where accuracy is wanted.
+/// Numbers of offered poses: over the volume, and in the region of the aim.
 constexpr std::size_t kOverVolume = 500, kAtAim = 300;
-/// Standard deviation of a set-up that nothing is known of, mm and rad: as far as it matters anything.
+/// Standard deviation of an unknown set-up, mm and rad: practically unlimited.
 constexpr double kAnywhere = 10;
 /// Readings with this much less noise show the part of the uncertainty that no number of readings reduces.
 constexpr double kFarBetter = 1e-3;
 
-/// Poses one after the other; both of the same machine.
+/// Joins poses of the same machine.
 model::States joined_states(const model::States& a, const model::States& b) {
   std::vector<std::size_t> rows(a.count + b.count, 0);
   for (std::size_t i = 0; i < a.count; ++i) rows[i] = i;
@@ -43,7 +43,7 @@ model::States joined_states(const model::States& a, const model::States& b) {
   return all;
 }
 
-/// The first `most` of poses, evenly picked.
+/// Returns at most `most` of the poses, evenly selected.
 model::States thinned(const model::States& states, std::size_t most) {
   if (states.count <= most) return states;
   std::vector<std::size_t> rows(most);
@@ -108,7 +108,7 @@ class AccuracyPlanner {
   double uncertainty_um(const model::States& poses) const { return expanded_um(after(rows_at(poses), 1)); }
 
  private:
-  /// Every pose is come to from either side, and no speed is left of a part's cut.
+  /// Every pose is approached from both directions. Speeds of a part's cut are removed.
   model::States with_senses(const model::States& states) const {
     model::States all = states;
     for (std::size_t a = 0; a < knowledge_.machine.axes.size(); ++a) {
@@ -161,10 +161,10 @@ class AccuracyPlanner {
     return 2 * maths::kUmPerMm * std::sqrt(std::max(0.0, square)) / piece.scale;
   }
 
-  /// C - C J^T (J C J^T + s^2)^-1 J C, block by block: of any number of rows.
+  /// C - C J^T (J C J^T + s^2)^-1 J C, block by block, for any number of rows.
   MatrixXd after(const MatrixXd& rows, double better) const {
     MatrixXd covariance = prior_;
-    constexpr Index kAtOnce = 60;  // poses of an offer whose gain is reckoned in one product
+    constexpr Index kAtOnce = 60;  // poses of an offer whose gain is computed in one product
     for (Index first = 0; first < rows.rows(); first += kAtOnce) {
       const auto block = rows.middleRows(first, std::min(kAtOnce, rows.rows() - first));
       const MatrixXd gain = covariance * block.transpose();
@@ -183,7 +183,7 @@ class AccuracyPlanner {
     covariance_ -= gain * inner.llt().solve(gain.transpose());
   }
 
-  /// The pose whose reading takes most off the mean square.
+  /// Returns the pose whose reading lowers the mean square most.
   std::size_t best(const std::vector<std::size_t>& taken) const {
     const MatrixXd known = jacobian_ * covariance_;
     const MatrixXd aimed = known * weight_;
@@ -219,10 +219,10 @@ class AccuracyPlanner {
     return seconds / 60;
   }
 
-  /// Lines of the table: the first few, then ever further apart, and the last.
+  /// Adds lines of the table: the first few, then at increasing distances, and the last.
   void note(AccuracyPlan& plan, const AccuracyOptions& options, const std::vector<std::size_t>& chosen,
             double now_um, bool last) const {
-    // Times the points, from one look at the promised uncertainty to the next.
+    // Factor of the number of points between evaluations of the expected uncertainty.
     constexpr double kFurther = 1.4;
     const auto before = static_cast<double>(plan.steps.back().points);
     const auto count = static_cast<double>(chosen.size());
@@ -231,7 +231,7 @@ class AccuracyPlanner {
   }
 
   double random_um(std::size_t count) const {
-    constexpr std::size_t kDraws = 5;  // of other poses: the same search from other beginnings
+    constexpr std::size_t kDraws = 5;  // of other poses: the same search from other starts
     double squares = 0;
     for (std::size_t draw = 0; draw < kDraws; ++draw) {
       std::vector<std::size_t> rows(count);
@@ -270,7 +270,7 @@ class AccuracyPlanner {
   std::vector<Index> own_;
   AimRows aim_;
   Index size_ = 0;           // parameters, six of a new set-up, three of the run
-  MatrixXd weight_, prior_;  // what a covariance does at the aim; before the first reading
+  MatrixXd weight_, prior_;  // weight of a covariance at the aim; before the first reading
   model::States offered_;
   MatrixXd jacobian_, covariance_;
 };

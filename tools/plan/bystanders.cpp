@@ -8,7 +8,8 @@
 namespace vernier::plan {
 namespace {
 
-/// A diagnosis keeps 6 of distance; what is worse by twice that will hardly come back with a few new rows.
+/// A diagnosis requires a distance of 6. An alternative that is worse by twice that value will
+/// hardly become likely with a few new rows.
 constexpr double kNear = 12;
 
 using Cause = std::tuple<std::string, std::optional<std::size_t>, std::vector<std::string>>;

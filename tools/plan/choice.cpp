@@ -6,9 +6,10 @@
 namespace vernier::plan {
 namespace {
 
-/// What the worst side reaches with each offer; the others' sum, as far as they need it, breaks ties.
+/// Returns the value of the worst side with each offer. If values are equal, the sum of the other
+/// sides decides, as far as they need it.
 std::size_t best_offer(const Sides& sides, double& value) {
-  constexpr double kTie = 1e-3;  // of a gain: nearer ones are the same, and the order decides
+  constexpr double kTie = 1e-3;  // of a gain: a smaller difference is a tie, and the order decides
   Eigen::ArrayXd worst, sum;
   for (std::size_t i = 0; i < sides.side.size(); ++i) {
     const Eigen::ArrayXd one =

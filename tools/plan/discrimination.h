@@ -18,10 +18,12 @@ class Discrimination {
                  std::size_t existing);
 
   std::size_t offers() const { return first_.size() - 1 - existing_; }
-  /// Takes these offers (with repeats) into account beside the existing rows; costs a factorisation.
+  /// Includes these offers (with repeats) in addition to the existing rows. Needs one
+  /// factorisation.
   void assume(const std::vector<std::size_t>& chosen);
   double non_centrality() const { return lambda_; }
-  /// What each offer would add: r' (I + J_row (J'J)^-1 J_row')^-1 r, r its difference after the refit.
+  /// Returns the gain of each offer: r' (I + J_row (J'J)^-1 J_row')^-1 r, r its difference after
+  /// the refit.
   Eigen::VectorXd gains() const;
 
  private:
@@ -31,14 +33,14 @@ class Discrimination {
   Eigen::VectorXd difference_;
   std::vector<Eigen::Index> first_;
   std::size_t existing_;
-  Eigen::MatrixXd information_, inverse_;  // of the existing rows; of all assumed
+  Eigen::MatrixXd information_, inverse_;  // of the existing rows; of all included rows
   Eigen::VectorXd moment_, solution_;
   double square_ = 0, lambda_ = 0;
 };
 
-/// Non-centrality at which a chi^2 difference falls on the right side with this confidence: the difference of
-/// the two fits is distributed as lambda + 2 sqrt(lambda) z, and it must exceed `lead`. Hence
-/// sqrt(lambda) = z + sqrt(z^2 + lead). confidence: 0.5 to 1, both exclusive. tool.
+/// Non-centrality at which a chi^2 difference has the right sign with this confidence. The
+/// difference of the two fits is distributed as lambda + 2 sqrt(lambda) z, and it must exceed
+/// `lead`. Hence sqrt(lambda) = z + sqrt(z^2 + lead). confidence: 0.5 to 1, both exclusive. tool.
 double needed_non_centrality(double confidence, double lead);
 
 /// Quantile of the standard normal distribution (bisection of erfc). p: 0 to 1, exclusive.

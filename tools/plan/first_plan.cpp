@@ -20,7 +20,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Poses that may be chosen, and poses that uncertainty is looked at.
+/// Number of offered poses, and of poses at which the uncertainty is evaluated.
 constexpr std::size_t kOffered = 800, kJudged = 150;
 class FirstPlanner {
  public:
@@ -35,11 +35,12 @@ class FirstPlanner {
       throw text::InputError({machine.file, 0}, machine.name,
                              "the machine file frees nothing that could be measured");
     const MatrixXd all(model::linearise(machine, rows, parameters).jacobian);
-    // In units of what each parameter may plausibly be: what moves the tool point by so much, rms.
+    // In units of the plausible size of each parameter: the value that moves the tool point by so
+    // much, rms.
     scale_ = Eigen::VectorXd::Ones(all.cols());
     for (Index j = 0; j < all.cols(); ++j) {
       const double size = all.col(j).norm() / std::sqrt(static_cast<double>(kOffered));
-      constexpr double kFree = 1e4;  // a set-up may be anything
+      constexpr double kFree = 1e4;  // a set-up is practically free
       const bool shift = std::find(shifts_.begin(), shifts_.end(), j) != shifts_.end();
       if (size > 0) scale_[j] = (shift ? kFree : 1) * 1e-3 * options.expected_um / size;
     }
@@ -47,7 +48,7 @@ class FirstPlanner {
     judge(parameters);
   }
 
-  /// Of any poses.
+  /// Uncertainty after readings at any poses.
   double uncertainty_um(const model::States& poses) const {
     const model::Measurement rows = fit::point_readings(poses);
     const model::ParameterSet parameters(machine_, {""});
@@ -73,7 +74,8 @@ class FirstPlanner {
   }
 
  private:
-  /// How the parameters move the tool point over the volume, every tool of the file, but for a rigid motion.
+  /// Computes the motion of the tool point by the parameters over the volume, with every tool of
+  /// the file, without a rigid motion.
   void judge(const model::ParameterSet& parameters) {
     std::vector<model::Machine> tooled = {machine_};
     for (const model::Tool& tool : machine_.tools) tooled.push_back(model::with_tool(machine_, tool.point));
@@ -148,13 +150,14 @@ class FirstPlanner {
     return chosen;
   }
 
-  /// A way through the poses, always to the nearest that is left; check poses and the first one in between.
+  /// Orders the poses as a path, always to the nearest remaining pose, with check poses and the
+  /// first pose in between.
   void order(const std::vector<std::size_t>& chosen, FirstPlan& plan) const {
     const std::vector<std::size_t> way = nearest_way(machine_, offered_, chosen);
     const auto checks =
         static_cast<std::size_t>(std::ceil(options_.check_share * static_cast<double>(way.size())));
     const model::States extra = offered_poses(machine_, std::max<std::size_t>(1, checks), 104729);
-    // Poses from one visit of the reference to the next: a drift is followed by them.
+    // Number of poses between visits of the reference, which show a drift.
     constexpr std::size_t kReferenceEvery = 25;
     std::vector<std::pair<const model::States*, std::size_t>> rows;
     const auto take = [&](const model::States& from, std::size_t at, bool check) {
@@ -187,9 +190,9 @@ class FirstPlanner {
   model::States offered_;
   std::vector<Index> shifts_, own_;
   Eigen::VectorXd scale_;
-  MatrixXd jacobian_;    // of the poses offered, three rows each, in units of the scales
-  MatrixXd weight_;      // what a covariance of the parameters makes of the tool point, mm^2
-  MatrixXd covariance_;  // of the parameters, after what was chosen
+  MatrixXd jacobian_;    // of the offered poses, three rows each, in units of the scales
+  MatrixXd weight_;      // effect of a covariance of the parameters on the tool point, mm^2
+  MatrixXd covariance_;  // of the parameters, after the chosen readings
 };
 
 }  // namespace

@@ -9,39 +9,40 @@
 namespace vernier::plan {
 
 struct FirstPlanOptions {
-  /// Expanded uncertainty (k = 2) of the tool point over the work volume at which the plan is long enough,
-  /// um; none: that of one reading.
+  /// Expanded uncertainty (k = 2) of the tool point over the work volume at which the plan ends,
+  /// um; no value: that of one reading.
   std::optional<double> accuracy_um;
-  double reading_um = 5;     // standard uncertainty of a coordinate that will be read
-  double expected_um = 100;  // by how much a parameter may plausibly move the tool point, rms over the volume
-  std::size_t most = 400;    // poses
+  double reading_um = 5;      // standard uncertainty of a coordinate of the planned readings
+  double expected_um = 100;   // plausible motion of the tool point by a parameter, rms over the volume
+  std::size_t most = 400;     // poses
   double check_share = 0.15;  // share of additional poses that only test the fit
 };
 
-/// Poses to measure a machine at for the first time.
+/// Poses for the first measurement of a machine.
 struct FirstPlan {
   model::States states;                // in the order in which they are measured
   std::vector<char> check;             // role of each
-  std::size_t references = 0;          // of them: the first pose again, that a drift shows
+  std::size_t references = 0;          // of them: repeats of the first pose, which show a drift
   double before_um = 0, after_um = 0;  // expanded uncertainty over the volume, without and with the fit poses
-  double random_um = 0;                // the same from as many poses at random
-  double least_um = 0;  // from all poses that could be chosen: what the readings cannot go below
-  bool reached = true;  // the accuracy that was asked for
+  double random_um = 0;                // the same from the same number of random poses
+  double least_um = 0;  // from all poses that could be chosen: the lower limit of such readings
+  bool reached = true;  // the requested accuracy
 };
 
-/// The poses, one by one, that lower the expected uncertainty of the tool point over the work volume and all
-/// its tools most (I-optimal, exchange of none: Fedorov 1972, 2.5), for the parameters that the machine file
-/// frees. What moves the whole is the set-up's and counts for nothing. Measured in the order of a way through
-/// the axes' travels, the first pose repeated, check poses in between. Throws InputError for an axis without
-/// a range, or nothing free. tool.
+/// Selects the poses one by one. Each lowers most the expected uncertainty of the tool point over
+/// the work volume and all its tools (I-optimal, without exchange: Fedorov 1972, 2.5), for the
+/// parameters that the machine file frees. A motion of the whole belongs to the set-up and is
+/// ignored. The poses are measured in the order of a path through the axes' travels, with repeats
+/// of the first pose and check poses in between. Throws InputError for an axis without a range, or
+/// without free parameters. tool.
 FirstPlan first_plan(const model::Machine& machine, const FirstPlanOptions& options = {});
 
-/// Expanded uncertainty (k = 2) of the tool point over the work volume, um, after readings at any poses, in
-/// the same terms as `after_um`. tool.
+/// Returns the expanded uncertainty (k = 2) of the tool point over the work volume, um, after
+/// readings at any poses, by the same definition as `after_um`. tool.
 double planned_uncertainty_um(const model::Machine& machine, const model::States& poses,
                               const FirstPlanOptions& options = {});
 
-/// A measurement file with these rows, readings to be filled in.
+/// Returns a measurement file with these rows. The readings must be filled in.
 std::string first_plan_csv(const model::Machine& machine, const FirstPlan& plan, double reading_um);
 
 }  // namespace vernier::plan

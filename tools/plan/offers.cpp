@@ -12,11 +12,11 @@
 namespace vernier::plan {
 namespace {
 
-constexpr double kTemperatureStep = 5;     // K, what a shop can do to a machine without harm
+constexpr double kTemperatureStep = 5;     // K, a change that a shop can apply to a machine without damage
 constexpr double kLoadFactor = 1.5;        // beyond the largest recorded load
 constexpr double kEdge = 0.02;             // of the range, kept free for the approach
-constexpr double kWorkingDayS = 8 * 3600;  // eight hours: later is another day
-/// How much later rows may be taken, as a share of the time measured so far.
+constexpr double kWorkingDayS = 8 * 3600;  // eight hours: a longer delay is another day
+/// Delay of later rows, as a share of the time measured so far.
 constexpr std::array<double, 3> kLater = {0.5, 1, 3};
 /// Multiples of the recorded speed, and the travel since the reversal as a share of the range.
 constexpr std::array<double, 3> kSpeeds = {0.5, 1, 2};

@@ -35,11 +35,11 @@ FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidenc
                       const model::Measurement& measurement, const std::string& name,
                       const std::vector<effects::Effect>& effects);
 
-/// Fall of chi^2 in units of the noise less the price of the unknowns (BIC).
+/// Returns the decrease of chi^2 in units of the noise minus the penalty of the unknowns (BIC).
 double value_of(const diagnose::Scored& scored, const diagnose::Evidence& evidence);
 
-/// The parts of `--separate`: cut at a comma only where what follows begins with the id of an effect.
-/// Throws InputError where they are not two. tool.
+/// Splits the argument of `--separate`. It is divided at a comma only if an id of an effect
+/// follows. Throws InputError if there are not two parts.
 std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
                                       const std::vector<effects::Effect>& effects);
 

@@ -15,7 +15,7 @@ std::string plan_csv(const Plan& plan);
 /// mm/min; axes have the names of the machine file. Approaches end within the declared ranges. tool.
 std::string plan_gcode(const Plan& plan);
 
-/// Poses to stand at one after the other, as G-code in the same way: `remark` is its first line. tool.
+/// Returns poses as G-code in the same way, with a stop at each. `remark` is the first line.
 std::string poses_gcode(const model::Machine& machine, const model::States& states,
                         const std::string& remark);
 

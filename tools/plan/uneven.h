@@ -10,9 +10,10 @@
 
 namespace vernier::plan {
 
-/// `count` more positions of an axis between `low` and `high`, in its unit and increasing, such that no two
-/// waves down to 1/1000 of the range look alike at them and at the positions `taken` together: of many draws
-/// the one whose window has the lowest highest peak. The same for the same input. tool.
+/// Returns `count` additional positions of an axis between `low` and `high`, in its unit and
+/// increasing. No two waves down to 1/1000 of the range are alike at these positions and the
+/// positions `taken` together. Of many random sets, it takes the one whose window has the lowest
+/// maximum. The result is the same for the same input. tool.
 std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
                                      std::size_t count);
 
