@@ -15,8 +15,9 @@ namespace {
 
 using Registers = std::set<std::uint32_t>;
 
-/// How strongly each register's error shows in the register `output`: reverse accumulation of the gains.
-/// Registers that are given have no error: what follows is meant for the value that they have.
+/// Returns the gain from each register's error to the register `output`: reverse accumulation of
+/// the gains. Registers that are given have no error, because later registers refer to their
+/// actual value.
 std::vector<double> gains_to(const LoweredProgram& p, std::uint32_t output) {
   std::vector<double> gain(p.registers.size(), 0);
   gain[output] = 1;
@@ -27,7 +28,7 @@ std::vector<double> gains_to(const LoweredProgram& p, std::uint32_t output) {
   return gain;
 }
 
-/// Outputs in front of those that correct the direction.
+/// Number of outputs before those that correct the direction.
 std::size_t linear_outputs(const Derivation& d) {
   return d.outputs.size() - (d.orientation ? d.orientation->axes.size() : 0);
 }
@@ -94,7 +95,8 @@ OutputBound bound_of_direction(const model::Machine& machine, const Derivation& 
   return bound;
 }
 
-/// Error of a register against the exact function of the registers `given`; their own errors do not count.
+/// Error of a register against the exact function of the registers `given`. Their own errors do
+/// not count.
 double error_from(const LoweredProgram& p, std::uint32_t target, const std::set<std::uint32_t>& given) {
   std::vector<double> gain(p.registers.size(), 0);
   gain[target] = 1;
@@ -108,16 +110,16 @@ double error_from(const LoweredProgram& p, std::uint32_t target, const std::set<
   return error;
 }
 
-/// The residual J x - deviation that the fixed-point solution of the least squares leaves, by matrix norms:
-/// rounding in J' w, w, adj(J J'), det, J J' and J itself, each seen through what follows it. Intervals would
-/// multiply the errors by the inverse's worst entries at once; the residual knows that the pieces belong
-/// together.
+/// Bound of the residual J x - deviation of the fixed-point least-squares solution, by matrix
+/// norms: rounding in J' w, w, adj(J J'), det, J J' and J itself, each multiplied by the gain of
+/// the later steps. Intervals would multiply the errors by the inverse's largest entries. The
+/// residual keeps the dependence between the parts.
 class LeastSquaresBound {
  public:
   LeastSquaresBound(const Derivation& d, const LoweredProgram& p)
       : g_(d.graph), least_(*d.least_squares), outputs_(d.outputs), p_(p) {}
 
-  /// size: |deviation| that is solved for, mm.
+  /// size: |deviation| on the right side, mm.
   std::vector<Contribution> terms(double size) const {
     const double most = least_.largest / least_.floor;
     const std::set<std::uint32_t> jacobian = registers(least_.jacobian), square = registers(least_.square);
@@ -136,7 +138,8 @@ class LeastSquaresBound {
     add("determinant", "rounding", error_of(least_.determinant, square) / least_.floor * size);
     add("adjugate", "rounding", least_.trace * error_of(least_.adjugate, square) / least_.floor * size);
     add("J J'", "rounding", error_of(least_.square, jacobian) * most * size);
-    // Of the nearest point the columns are met twice: what lies across them leaks in as they turn.
+    // For the nearest point the columns are used twice: their rotation couples the components
+    // across them.
     add("J", "function", (least_.nearest ? 2 : 1) * error_of(least_.jacobian, {}) * least_.gain * size);
     Registers last = jacobian;
     double weights = 0;
@@ -144,7 +147,7 @@ class LeastSquaresBound {
       weights += std::pow(error_of(id, pieces), 2);
       insert(last, id);
     }
-    // J J' w, or J w where the weights are the motions.
+    // J J' w, or J w if the weights are the motions.
     add("weights", "rounding",
         (least_.nearest ? std::sqrt(least_.trace) : least_.trace) * std::sqrt(weights));
     double solution = 0;
@@ -155,7 +158,7 @@ class LeastSquaresBound {
   }
 
  private:
-  // A product takes the coefficient out of a scaled node: the register is the inner one's.
+  // A product moves the coefficient out of a scaled node: the register is that of the inner node.
   std::pair<double, NodeId> bare(NodeId id) const {
     const Node& n = g_[id];
     if (!p_.register_of.contains(id) && n.kind == NodeKind::kSum && n.terms.size() == 1 && n.number == 0)
@@ -188,8 +191,9 @@ class LeastSquaresBound {
       for (const NodeId id : row) sum += std::pow(error_of(id, given), 2);
     return std::sqrt(sum);
   }
-  /// What the deviation's own registers are wrong by, a term per register: seen through the solution, which
-  /// turns a right side of the nearest point back into a length.
+  /// Adds the errors of the deviation's own registers, one term per register, multiplied by the
+  /// gain of the solution. The solution converts a right side of the nearest point back into a
+  /// length.
   void add_deviation(std::vector<Contribution>& terms) const {
     const double back = least_.nearest ? least_.gain : 1;
     std::vector<double> square(p_.registers.size(), 0);
@@ -255,8 +259,8 @@ std::optional<NodeId> position_of(const Graph& graph, std::size_t axis) {
   return channel;
 }
 
-/// How fast the components of a vector change with an axis, at most; corrections of direction stay as they
-/// are.
+/// Returns bounds of the change of a vector's components with an axis. Corrections of direction
+/// are constant.
 std::array<double, 3> slopes_of(const Derivation& d, const NodeVector& v, std::size_t axis) {
   const auto channel = position_of(d.graph, axis);
   if (!channel) return {0, 0, 0};
@@ -271,9 +275,9 @@ std::array<double, 3> slopes_of(const Derivation& d, const NodeVector& v, std::s
 
 double norm_of(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
 
-/// What a step of Newton's iteration leaves at the tool point, mm: moving by `step`, somewhere within `reach`
-/// of the command, changes deviation(q) and bends the nominal motion. A first step begins at the command
-/// (step = reach), which halves what a straight line misses.
+/// Returns the remaining error of a step of Newton's iteration at the tool point, mm. Moving by
+/// `step`, within `reach` of the command, changes deviation(q) and bends the nominal motion. A
+/// first step begins at the command (step = reach), which halves the error of a straight line.
 double left_by_step(const Derivation& d, const std::vector<double>& reach, const std::vector<double>& step,
                     bool first) {
   std::array<double, 3> slope{};
@@ -291,7 +295,7 @@ double left_by_step(const Derivation& d, const std::vector<double>& reach, const
       for (const AxisColumn& column : d.columns)
         if (column.axis == d.outputs[j].axis) {
           const double bend = norm_of(slopes_of(d, column.direction, axis));
-          // The frame's own turn is seen from one side only, so it counts for both.
+          // The frame's own rotation acts on one side only, so it counts for both.
           const double part = first ? 0.5 * bend + turning(axis) * column.norm * (j == k ? 0.5 : 1)
                                     : bend + 2 * turning(axis) * column.norm;
           bent += part * reach[k] * step[j];
@@ -300,8 +304,8 @@ double left_by_step(const Derivation& d, const std::vector<double>& reach, const
   return norm_of(slope) + turned + bent;
 }
 
-/// What an evaluation in front of the last is wrong by along output k, axis units: its program and what it
-/// neglects.
+/// Returns the error of an evaluation before the last along output k, axis units: its program and
+/// its neglected terms.
 double error_of_evaluation(const Derivation& d, const LoweredProgram& p, const Evaluation& e, std::size_t k) {
   double error = 0;
   for (const Neglected& n : e.neglected) error += error_along(d.outputs[k], n);
@@ -309,8 +313,8 @@ double error_of_evaluation(const Derivation& d, const LoweredProgram& p, const E
   return place == p.register_of.end() ? error : error + p.registers[place->second].error;
 }
 
-/// The tilt that a step leaves, rad: `reach` and `step` of all outputs, in the units of their axes. A unit
-/// vector's second derivative by two angles is at most 1.
+/// Returns the remaining tilt after a step, rad. `reach` and `step` are of all outputs, in the
+/// units of their axes. A unit vector's second derivative by two angles is at most 1.
 double tilt_left_by_step(const Derivation& d, const std::vector<double>& reach,
                          const std::vector<double>& step, bool first) {
   const Orientation& o = *d.orientation;
@@ -325,8 +329,8 @@ double tilt_left_by_step(const Derivation& d, const std::vector<double>& reach,
   return left + o.spread * turned + (first ? 0.5 : 1) * reached * turned;
 }
 
-/// What the program is wrong by in the direction's deviation and in the axes' motion that follows from it,
-/// rad.
+/// Returns the error of the program in the direction's deviation and in the motion of the axes for
+/// it, rad.
 double tilt_error(const Derivation& d, const LoweredProgram& p) {
   const Orientation& o = *d.orientation;
   double sum = 0, error = 0;
@@ -348,7 +352,7 @@ double tilt_error(const Derivation& d, const LoweredProgram& p) {
   return error;
 }
 
-/// Largest corrections of the outputs, those of the direction too.
+/// Largest corrections of the outputs, including those of the direction.
 std::vector<double> all_corrections(const Derivation& d) {
   std::vector<double> reach = largest_corrections(d);
   const Orientation& o = *d.orientation;
@@ -357,13 +361,13 @@ std::vector<double> all_corrections(const Derivation& d) {
   return reach;
 }
 
-/// What Newton's steps leave: mm at the tool point, rad of its direction.
+/// Remaining error of Newton's steps: mm at the tool point, rad of its direction.
 struct Remainder {
   double point_mm = 0, tilt = 0;
 };
 
-/// The same after each evaluation: every step's size follows from what the one before left. least_mm: what
-/// the fixed-point least squares leave.
+/// The same after each evaluation. Every step's size follows from the previous remainder.
+/// least_mm: remaining error of the fixed-point least squares.
 std::vector<Remainder> remainders_of(const Derivation& d, const LoweredProgram& p, double least_mm) {
   const std::size_t linear = linear_outputs(d);
   const std::vector<double> reach = d.orientation ? all_corrections(d) : largest_corrections(d);
@@ -431,7 +435,7 @@ std::vector<OutputBound> bounds_of(const model::Machine& machine, const Derivati
   const std::vector<Remainder> remainders = remainders_of(d, p, least_mm);
   std::vector<OutputBound> bounds;
   if (d.least_squares) {
-    // What lies across the axes is met again by every evaluation.
+    // The component across the axes is the same in every evaluation.
     const bool whole = d.before.empty() || d.least_squares->nearest;
     const double size = whole ? d.spread_mm : remainders[remainders.size() - 2].point_mm + least_mm;
     bounds = least_squares_bounds(machine, d, p, std::min(size, d.spread_mm));
@@ -444,7 +448,7 @@ std::vector<OutputBound> bounds_of(const model::Machine& machine, const Derivati
   for (std::size_t i = 0; i < linear_outputs(d); ++i) {
     const bool along = !machine.axes[d.outputs[i].axis].rotary && !d.least_squares;
     const double um = maths::kUmPerMm * left_mm * (along ? d.outputs[i].row_norm : 1);
-    // Of least squares near flat poses: more than the deviation itself says nothing.
+    // For least squares near singular poses, a bound above the deviation itself has no use.
     if (d.least_squares && um >= std::max(bounds[i].deviation_um, 1e-3)) continue;
     bounds[i].second_order_um = um;
     bounds[i].total_um += um;

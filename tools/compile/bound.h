@@ -7,13 +7,13 @@
 
 namespace vernier::compile {
 
-/// `rounding`, `table`, `function`, `input`, `lag`.
+/// Returns `rounding`, `table`, `function`, `input`, `lag`.
 const char* name_of(ErrorSource source);
 
-/// The bounds of all outputs. tool.
+/// Returns the bounds of all outputs. tool.
 std::vector<OutputBound> bounds_of(const model::Machine& machine, const Derivation& derivation,
                                    const LoweredProgram& program);
-/// The same of the tool's direction; nothing where it is not corrected. tool.
+/// Returns the same for the tool's direction; nullopt if it is not corrected. tool.
 std::optional<TiltBound> tilt_bound_of(const Derivation& derivation, const LoweredProgram& program);
 
 }  // namespace vernier::compile

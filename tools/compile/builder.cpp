@@ -13,7 +13,7 @@ namespace {
 
 // Numbers of registers: constants below, then channels, then results.
 constexpr std::uint32_t kFirstChannel = 512, kFirstResult = kFirstChannel + kMaxRegisters;
-// Of a fraction: a register of 32 bits shifted by more holds nothing of either.
+// Of a fraction: shifting a 32-bit register by more leaves no information.
 constexpr int kMostBits = 50, kFewestBits = -30;
 
 std::string identifier(const std::string& name) {
@@ -23,7 +23,7 @@ std::string identifier(const std::string& name) {
   return out;
 }
 
-/// Words that mean something else in the printed program.
+/// Words with another meaning in the printed program.
 std::set<std::string> taken_names() {
   return {
       "lower",       "higher",    "linear",  "multiply", "magnitude", "sign_of",    "wrapped",   "look_up",
@@ -94,9 +94,10 @@ Equation ProgramBuilder::view() const {
 
 namespace {
 
-// All digits of a constant, however small: a coefficient may meet a large register.
+// All digits of a constant, however small, because a coefficient may be multiplied by a large
+// register.
 int bits_of_constant(double value) {
-  constexpr int kMostDigits = 90;  // of a constant that meets the largest register
+  constexpr int kMostDigits = 90;  // of a constant that is multiplied by the largest register
   const int bits = fraction_bits_for(std::abs(value));
   if (value == 0 || bits < kMostBits) return bits;
   return std::min(kMostDigits, static_cast<int>(std::log2(2147483647.0 / std::abs(value))));
@@ -136,8 +137,8 @@ ProgramBuilder::Id ProgramBuilder::channel(Channel channel, double unit, double 
   double factor = unit * std::ldexp(1.0, r.fraction_bits + channel.pre_shift);
   while (factor > kMaxFactor) factor /= 2, --r.fraction_bits;
   Factors f = factors_for(factor, 0);
-  // An input may be compared with a number (the selected tool point): coarse enough that whole numbers arrive
-  // as themselves.
+  // An input may be compared with a number (the selected tool point). Its format must be coarse
+  // enough that integers are exact.
   const auto missed = [&] {
     return std::abs(std::ldexp(f.first, -f.shift) - factor) * std::ldexp(widest, -channel.pre_shift);
   };
@@ -274,8 +275,8 @@ void ProgramBuilder::add_terms(const std::vector<Product>& products, int sum_bit
     if (p.b) {
       b = *p.b;
     } else {
-      // A factor that meets the sum's own format needs no shift; it may cost as much as the result's
-      // rounding.
+      // A factor with the sum's own format needs no shift. Its error may be as large as the
+      // result's rounding.
       const int wanted = sum_bits - at(p.a).fraction_bits, finest = bits_of_constant(p.factor);
       const double error = wanted < -60 ? 1 : std::ldexp(0.5, -wanted) * largest_count(p.a) * lsb(p.a);
       const bool meets = wanted <= finest && error <= std::ldexp(1.0, -result_bits);
@@ -286,7 +287,7 @@ void ProgramBuilder::add_terms(const std::vector<Product>& products, int sum_bit
     meta.uses.push_back({b, ra.range.magnitude()});
     const int shift = ra.fraction_bits + rb.fraction_bits - sum_bits;
     if (shift > 0) meta.own_error += std::ldexp(1.0, -sum_bits);
-    if (shift > 62) continue;  // a product is below 2^62: all of it is less than that unit
+    if (shift > 62) continue;  // a product is below 2^62: it is smaller than that unit
     p_.terms.push_back(
         {static_cast<std::uint16_t>(p.a), static_cast<std::uint16_t>(b), static_cast<std::uint16_t>(shift)});
     ++(p.minus ? step.b : step.a);
@@ -399,7 +400,7 @@ ProgramBuilder::Id ProgramBuilder::sine_cosine(Id angle, const Interval& sine, c
   const int shift = std::min(30 - std::ilogb(per_count), static_cast<int>(kMaxShift));
   if (shift < 0) throw text::InputError("cannot be compiled: an angle of too many turns: " + at(angle).name);
   const double multiplier = std::round(std::ldexp(per_count, shift));
-  // Where rounding reaches 2^31, one less is as good.
+  // If rounding reaches 2^31, one less is equally accurate.
   const auto k = static_cast<std::int32_t>(std::min(multiplier, 2147483647.0));
   const double turning = std::abs(std::ldexp(k, -shift) / per_count - 1) * largest_count(angle) * lsb(angle) *
                              maths::kRadPerDeg +

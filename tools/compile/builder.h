@@ -10,48 +10,51 @@
 
 namespace vernier::compile {
 
-/// Registers while the program grows: constants, channels and results live in three provisional stretches,
-/// because the number of constants is only known at the end. finish() closes the gaps.
+/// Registers during the construction of the program. Constants, channels and results are in three
+/// provisional ranges, because the number of constants is known only at the end. finish() closes
+/// the gaps.
 class ProgramBuilder {
  public:
   using Id = std::uint32_t;
 
   ProgramBuilder();
 
-  /// A constant in the finest format that holds it, or in the given one.
+  /// Adds a constant in the finest format that contains it, or in the given format.
   Id constant(double value);
   Id constant(double value, int fraction_bits);
-  /// counts: the range in the quantity's own counts; unit: size of a count in the machine file's unit.
-  /// reach: largest magnitude that must be representable beside the range itself (stations of a table).
+  /// counts: the range in the quantity's own counts; unit: size of a count in the machine file's
+  /// unit. reach: largest magnitude that must be representable in addition to the range (stations
+  /// of a table).
   Id channel(Channel channel, double unit, double reach, const std::string& name);
 
-  /// A register of another program, `source` there, as a channel of this one.
+  /// Makes a register of another program, `source` there, a channel of this one.
   Id imported(const LoweredProgram& other, std::uint32_t source);
 
   /// k*a + l*b. exact: interval of the exact value.
   Id linear(double k, Id a, double l, Id b, const Interval& exact, const std::string& name);
   Id product(Id a, Id b, const Interval& exact, const std::string& name);
-  /// A register times another one, or times a factor; added or subtracted.
+  /// A product of two registers, or of a register and a factor; added or subtracted.
   struct Product {
     Id a;
     std::optional<Id> b;
-    double factor = 1;  // > 0; where there is no b
+    double factor = 1;  // > 0; if there is no b
     bool minus = false;
   };
-  /// constant + the sum of products, rounded once. exact: interval of the exact value.
+  /// Adds constant + the sum of products, rounded once. exact: interval of the exact value.
   Id dot(double constant, std::vector<Product> products, const Interval& exact, const std::string& name);
-  /// An operation whose result has the given format and needs no shift; error: its own, in the result's unit.
+  /// Adds an operation whose result has the given format and needs no shift. error: its own, in
+  /// the result's unit.
   Id plain(Instruction step, int fraction_bits, const Interval& exact, double error, ErrorSource source,
            std::vector<Register::Use> uses, const std::string& name);
-  /// One look-up: a result for each column, in the order of `results` (name, format, range, own error and
-  /// uses). Returns the first.
+  /// Adds one table interpolation. It has a result for each column, in the order of `results`
+  /// (name, format, range, own error and uses). Returns the first result.
   Id look_up(Id position, LoweredTable table, std::vector<Register> results);
-  /// Sine and cosine of an angle in deg; the cosine is the register after the one returned.
+  /// Adds sine and cosine of an angle in deg. The cosine is the register after the returned one.
   Id sine_cosine(Id angle, const Interval& sine, const Interval& cosine);
-  /// a in the given format (no instruction where it has it).
+  /// Returns a in the given format (without an instruction if it already has that format).
   Id reformat(Id a, int fraction_bits);
 
-  /// From here on the register's value counts as exact (Register::given).
+  /// From this call on, the register's value counts as exact (Register::given).
   void give(Id id) { registers_[id].given = true; }
 
   std::uint16_t add_wrap(const Wrap& wrap);
@@ -60,20 +63,20 @@ class ProgramBuilder {
   const Register& at(Id id) const { return registers_[id]; }
   const ValueRange& counts(Id id) const { return ranges_[id]; }
   double lsb(Id id) const;
-  /// Registers that are taken so far.
+  /// Number of registers so far.
   std::size_t size() const;
-  /// The place of a register in the finished program; valid once nothing is added any more.
+  /// Returns the index of a register in the finished program. Valid after the last addition.
   Id final_id(Id id) const;
   LoweredProgram finish(const std::vector<std::pair<Output, Id>>& outputs);
 
  private:
   Id append(const Instruction& step, std::vector<Register> results, bool& overflow);
-  /// Error that a register carries on.
+  /// Error that a register propagates.
   double error_of(Id id) const { return registers_[id].given ? 0 : registers_[id].error; }
   double largest_count(Id id) const;
   double largest_value(const Product& p) const;
-  // The terms of a sum in the format of sum_bits, for a result of result_bits; in `meta` their errors and
-  // uses.
+  // Adds the terms of a sum in the format of sum_bits, for a result of result_bits. `meta` gets
+  // their errors and uses.
   void add_terms(const std::vector<Product>& products, int sum_bits, int result_bits, Instruction& step,
                  Register& meta);
   std::string unique(const std::string& name);
@@ -87,7 +90,7 @@ class ProgramBuilder {
   std::vector<ErrorTable> table_views_;
 };
 
-/// Most fraction bits with which `magnitude` fits int32; at most 50.
+/// Returns the largest number of fraction bits with which `magnitude` fits int32; at most 50.
 int fraction_bits_for(double magnitude);
 
 }  // namespace vernier::compile

@@ -161,7 +161,7 @@ Interval Enclosure::of(NodeId id) {
   } else if (n.args.size() == 2) {
     range = range_of_choice(n.kind, of(n.args[0]), of(n.args[1]));
   }
-  // Both hold: the whole range's own and the part's.
+  // Both are valid: the whole range's own and the part's.
   range = {std::max(range.low, n.range.low), std::min(range.high, n.range.high)};
   return known_[id] = range;
 }

@@ -19,9 +19,9 @@
 namespace vernier::compile {
 namespace {
 
-// What is left out at first, and the finest that is tried to meet a budget.
+// Initial neglect limit, and the finest that is tried to meet a budget.
 constexpr double kNeglect_mm = 5e-6, kFinestNeglect_mm = 5e-9;
-// Each evaluation leaves the slope of the errors, far below a hundredth, of what the one before left.
+// Each evaluation reduces the remaining error by the slope of the errors, far below a hundredth.
 constexpr int kMostEvaluations = 3;
 
 const OutputBound& worst(const std::vector<OutputBound>& bounds) {
@@ -57,7 +57,8 @@ CompiledMachine compile_once(const model::Machine& machine, std::uint32_t tick_u
   return result;
 }
 
-/// Do the steps of Newton's iteration leave too much? Where they are not bounded, two have to do.
+/// Is the remaining error of the Newton steps too large? Without a bound for them, two steps are
+/// used.
 bool needs_another(const CompiledMachine& so_far, const CompileOptions& options) {
   if (so_far.tilt && so_far.tilt->second_order_deg > options.most_second_order_deg) return true;
   const double most = std::min(options.most_second_order_um, options.budget_um.value_or(INFINITY));
@@ -67,7 +68,8 @@ bool needs_another(const CompiledMachine& so_far, const CompileOptions& options)
   });
 }
 
-/// With more evaluations; as it was, with a note, where an image has no room for them.
+/// Compiles with more evaluations. If an image has no space for them, the machine stays as it was,
+/// with a note.
 CompiledMachine compile_again(const model::Machine& machine, std::uint32_t tick_us, double neglect_mm,
                               int evaluations, CompiledMachine before) {
   try {
@@ -121,7 +123,7 @@ CompiledMachine compile_machine(const model::Machine& machine, const std::string
   result.header = print_header(machine, result.program, source_hash, result.fingerprint);
   result.source = print_source(machine, result.program, source_hash);
   load_image(result.image,
-             machine);  // the compiler's own output passes the board's verifier, or it is no output
+             machine);  // the compiler's own output must pass the board's verifier
   return result;
 }
 

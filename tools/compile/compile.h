@@ -11,23 +11,24 @@
 
 namespace vernier::compile {
 
-/// Compiles a machine (FORMATS section 1). Throws InputError in one line where it cannot, LimitNotMet where
-/// the bound exceeds the budget, naming the dominant term. machine_text: the file's bytes, for its hash.
-/// tool.
+/// Compiles a machine (FORMATS section 1). Throws InputError in one line if it cannot. Throws
+/// LimitNotMet, naming the dominant term, if the bound exceeds the budget. machine_text: the
+/// file's bytes, for its hash. tool.
 CompiledMachine compile_machine(const model::Machine& machine, const std::string& machine_text,
                                 const CompileOptions& options);
 
-/// A compiled directory (`vernier compile -o DIR`) ready to run: DIR/machine.xml and DIR/machine.vimg.
+/// A compiled directory (`vernier compile -o DIR`), ready to execute: DIR/machine.xml and
+/// DIR/machine.vimg.
 struct LoadedImage {
   model::Machine machine;
-  std::vector<std::uint64_t> words;  // the image, aligned as ImageView wants it
+  std::vector<std::uint64_t> words;  // the image, aligned as ImageView requires
   ImageView view;
   ImageWorkspace workspace;
 };
-/// Throws InputError where a file is missing, the image is refused (with the cause) or is not of that
-/// machine.xml. tool.
+/// Throws InputError if a file is missing, if the image is refused (with the cause), or if it does
+/// not belong to that machine.xml. tool.
 std::unique_ptr<LoadedImage> load_image_dir(const std::string& directory);
-/// The same from bytes. Throws InputError with the cause.
+/// Reads the same from bytes. Throws InputError with the cause.
 std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image,
                                         const model::Machine& machine);
 

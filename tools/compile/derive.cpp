@@ -26,10 +26,10 @@ void check_machine(const model::Machine& machine) {
     throw text::InputError({machine.file, 0}, machine.name, "more axes or inputs than an image holds");
 }
 
-/// A derivation on the way: the corrected axes are chosen between its two halves.
+/// A derivation in progress. The corrected axes are chosen between its two halves.
 class Attempt {
  public:
-  /// begun: what is derived already; added: the corrections of axes that it does not choose.
+  /// begun: the part derived so far; added: the corrections of axes that it does not choose.
   Attempt(const model::Machine& machine, double neglect_mm, bool rotary_too, Derivation begun = {},
           const Additions& added = {})
       : machine_(machine),
@@ -40,7 +40,8 @@ class Attempt {
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       if (!machine.axes[i].rotary || rotary_too) axes_.push_back(i);
     const std::size_t end = end_of_motion();
-    // The last motion, if it is a turn, is taken as one: in front of it nothing else has to be turned.
+    // The last motion, if it is a rotation, is handled as one. Before it, no other vector has to
+    // be rotated.
     const bool turn_last = end > 0 && steps_[end - 1].turn;
     frozen_from_ = turn_last ? end - 1 : end;
     for (std::size_t i = 0; i < frozen_from_; ++i) {
@@ -55,7 +56,7 @@ class Attempt {
     }
   }
 
-  /// Steps of the chain in front of the frame of the deviation.
+  /// Steps of the chain before the frame of the deviation.
   std::size_t frozen_from() const { return frozen_from_; }
   /// mm of tool point per mm or deg of any axis, at most.
   double lever_of(std::size_t axis) {
@@ -113,7 +114,7 @@ class Attempt {
     }
   }
 
-  /// Length of an axis' column at most: what its turns swing and its shifts carry.
+  /// Upper bound of the length of an axis' column: motions by its rotations and its shifts.
   double length_of(std::size_t axis, const Step* last_turn) {
     Derivative by_axis(d_.graph, channel(axis));
     double length = 0;
@@ -139,7 +140,7 @@ class Attempt {
   std::vector<AxisColumn> columns_;
 };
 
-/// Does the deviation stay within what the directions span? (Told by the terms that it has, not their sums.)
+/// Is the deviation within the span of the directions? (Tested by its terms, not by their sums.)
 bool holds(const Graph& g, const Span& span, const NodeVector& deviation) {
   const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - span.basis * span.basis.transpose();
   for (std::size_t c = 0; c < 3; ++c)
@@ -154,7 +155,7 @@ std::string names_of(const model::Machine& machine, const Derivation& d) {
   return names;
 }
 
-/// A derivation with its outputs, and what a second evaluation needs to know of it.
+/// A derivation with its outputs, and data for a second evaluation.
 struct Solution {
   Derivation derivation;
   Solver solve;
@@ -198,8 +199,8 @@ Solution position_only(const model::Machine& machine, double neglect_mm) {
   return solved(machine, all);
 }
 
-/// What the terms of the chain add to the rotary axes that correct the direction, beside the linear ones'
-/// parts.
+/// Merges the contributions of the terms of the chain to the rotary axes that correct the
+/// direction with the parts of the linear axes.
 void merge_parts(Derivation& d, std::size_t linear_outputs) {
   const NodeId zero = d.graph.constant(0);
   const std::size_t outputs = d.outputs.size();
@@ -215,7 +216,7 @@ void merge_parts(Derivation& d, std::size_t linear_outputs) {
   }
 }
 
-/// The smallest turn that matters is a length at this lever, mm.
+/// The smallest relevant rotation is a length at this lever, mm.
 constexpr double kLever_mm = 1000;
 
 Additions taken_back(Graph& g, const std::vector<std::size_t>& axes, const std::vector<NodeId>& values) {
@@ -253,10 +254,10 @@ Solution position_and_direction(const model::Machine& machine, double neglect_mm
   return result;
 }
 
-/// A hold of a correction leaves this much room beyond what the first order can be.
+/// The limit of a correction has this margin beyond the first-order maximum.
 constexpr double kRoom = 1.25;
 
-/// Takes the corrections so far as given, held within what they can be.
+/// Makes the corrections so far given values, limited to their possible range.
 Evaluation taken_as_given(Derivation& d) {
   Graph& g = d.graph;
   Evaluation given;
@@ -276,7 +277,8 @@ Evaluation taken_as_given(Derivation& d) {
   return given;
 }
 
-/// The direction again at the corrected position; `added` gets the new corrections of its axes.
+/// Evaluates the direction again at the corrected position. `added` gets the new corrections of
+/// its axes.
 std::vector<NodeId> direction_again(const model::Machine& machine, Derivation& d, const Tilting& tilting,
                                     double neglect_mm, Additions& added) {
   Graph& g = d.graph;
@@ -323,8 +325,8 @@ void evaluate_again(const model::Machine& machine, Solution& so_far, double negl
   d.parts.push_back(std::move(rest));
 }
 
-/// What an evaluation that is not the last may leave out: the next takes it back but for the slope of the
-/// errors.
+/// Neglect limit of an evaluation that is not the last. The next evaluation corrects it except for
+/// the slope of the errors.
 constexpr double kCoarseNeglect_mm = 1e-4;
 
 }  // namespace

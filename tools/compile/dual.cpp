@@ -13,8 +13,8 @@
 namespace vernier::compile {
 namespace {
 
-// An interval that holds the spline, not only its stations: a cubic piece stays within its Bezier control
-// values.
+// Returns an interval that contains the spline, not only its stations. A cubic piece is within its
+// Bezier control values.
 Interval column_range(const model::Table& table, std::size_t column) {
   const model::StationTable look_up(table);
   Interval range{table.stations[0].value[column], table.stations[0].value[column]};
@@ -24,7 +24,7 @@ Interval column_range(const model::Table& table, std::size_t column) {
     if (table.interpolation == model::Interpolation::kLinear || i + 1 == table.stations.size()) continue;
     const double width = table.stations[i + 1].loc - table.stations[i].loc;
     const double next = table.stations[i + 1].value[column];
-    const double inside = 1e-9 * width;  // slopes are zero at held ends, the piece's own just inside
+    const double inside = 1e-9 * width;  // slopes are zero beyond the ends, the piece's own just inside
     const double near = value + look_up.slopes(table.stations[i].loc + inside)[column] * width / 3;
     const double far = next - look_up.slopes(table.stations[i + 1].loc - inside)[column] * width / 3;
     const double slack = 1e-6 * (std::abs(near - value) + std::abs(far - next));
@@ -33,7 +33,8 @@ Interval column_range(const model::Table& table, std::size_t column) {
   return range;
 }
 
-// The steepest that a column gets: a cubic piece's slope stays within the control values of its derivative.
+// Returns the steepest slope of a column. A cubic piece's slope is within the control values of
+// its derivative.
 double column_slope(const model::Table& table, std::size_t column) {
   const model::StationTable look_up(table);
   double steepest = 0;
@@ -141,11 +142,11 @@ void expand(const Graph& g, double k, NodeId id, double& number, std::map<NodeId
 
 }  // namespace
 
-// A function of an axis that is added to is not its nominal value plus a difference, whose intervals know
-// nothing of each other: where the two cancel, what is left of them is taken.
+// A function of an axis with an addition is not computed as its nominal value plus a difference,
+// because their intervals are independent. If the two cancel, the remainder is used.
 NodeId Translator::actual(const Dual& a) {
   if (added_.empty() || g_.is_zero(a.delta)) return g_.add(a.nominal, a.delta);
-  constexpr double kRounding = 1e-12;  // of a coefficient: what cancels to less is none
+  constexpr double kRounding = 1e-12;  // of a coefficient: a smaller remainder is zero
   double number = 0;
   std::map<NodeId, double> terms, sizes;
   expand(g_, 1, a.nominal, number, terms, sizes);
@@ -169,7 +170,7 @@ Dual Translator::lag(const Dual& u, const Dual& tau) {
   return {at_nominal, g_.subtract(g_.lag(actual(u), *nominal + *change), at_nominal)};
 }
 
-// An even power is a square, whose range is known not to be negative.
+// An even power is a square, whose range is not negative.
 NodeId Translator::whole_power(NodeId base, int n) {
   if (n == 0) return g_.constant(1);
   if (n % 2 != 0) return g_.product(whole_power(base, n - 1), base);
@@ -188,7 +189,8 @@ NodeId Translator::power(NodeId base, NodeId exponent) {
   return g_.function(Function::kExp, g_.product(exponent, g_.function(Function::kLog, base)));
 }
 
-// atan2 over the half plane where one of the two operands keeps its sign; elsewhere it has a step.
+// atan2 over the half plane in which one of the two operands keeps its sign. Elsewhere it has a
+// step.
 NodeId Translator::angle_of(NodeId y, NodeId x) {
   const auto v = g_.constant_value(y), u = g_.constant_value(x);
   if (v && u) return g_.constant(model::apply(model::Op::kAtan2, *v, *u));

@@ -8,24 +8,24 @@
 
 namespace vernier::compile {
 
-/// A quantity of the chain: its value in the nominal chain, and actual minus nominal, so that no big numbers
-/// are subtracted to find a small one.
+/// A quantity of the chain: its value in the nominal chain, and actual minus nominal. So no large
+/// numbers are subtracted to find a small one.
 struct Dual {
   NodeId nominal;
   NodeId delta;
 };
 
-/// What is added to the command of axes, mm or deg: the actual chain stands there, the nominal one at the
-/// command.
+/// Addition to the command of axes, mm or deg: the actual chain is at command plus addition, the
+/// nominal one at the command.
 using Additions = std::map<std::size_t, NodeId>;
 
-/// Turns expressions of the machine file into duals. tool.
+/// Converts expressions of the machine file into duals. tool.
 class Translator {
  public:
   Translator(const model::Machine& machine, Derivation& derivation, Additions added = {})
       : machine_(machine), d_(derivation), g_(derivation.graph), added_(std::move(added)) {}
 
-  /// Throws InputError naming `text` where the expression has no fixed-point form.
+  /// Throws InputError naming `text` if the expression has no fixed-point form.
   Dual translate(const model::Expr& expr, const std::string& text, std::size_t line);
   Dual constant(double nominal, double delta) { return {g_.constant(nominal), g_.constant(delta)}; }
   NodeId actual(const Dual& a);

@@ -10,8 +10,8 @@
 namespace vernier::compile {
 namespace {
 
-// Sine over an interval in degrees: its ends, and the crests and troughs at 90 + 360 k and -90 + 360 k
-// between.
+// Sine over an interval in degrees: its ends, and the maxima and minima at 90 + 360 k and -90 +
+// 360 k between them.
 Interval range_of_sine(const Interval& x) {
   if (x.high - x.low >= 360) return {-1, 1};
   constexpr double kSlack = 1e-15;  // of the library's sine
@@ -67,8 +67,9 @@ double slope_of(Function f, double x) {
   throw std::logic_error("unknown function");
 }
 
-// Every one of these functions has its steepest and most curved point at the end of the interval nearest to
-// zero, apart from exp (at the high end), sine, cosine and arc tangent (bounded everywhere).
+// Each of these functions has its largest slope and curvature at the end of the interval nearest
+// to zero. Exceptions are exp (at the high end), sine, cosine and arc tangent (bounded
+// everywhere).
 double slope_bound(Function f, const Interval& x) {
   const double nearest = std::min(std::abs(x.low), std::abs(x.high));
   switch (f) {

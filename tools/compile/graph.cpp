@@ -11,7 +11,7 @@
 namespace vernier::compile {
 namespace {
 
-// Coefficients that only rounding of cos 90 deg and the like keeps from being zero.
+// Coefficients that are nonzero only by rounding, for example of cos 90 deg.
 constexpr double kRoundOff = 1e-15;
 
 void check_domain(Function f, const Interval& x) {
@@ -96,7 +96,7 @@ NodeId Graph::channel(ChannelKind kind, std::uint32_t index, const Interval& ran
 
 NodeId Graph::sum(double constant_part, const std::vector<Term>& terms) {
   std::map<NodeId, double> collected;
-  std::map<NodeId, double> largest;  // to tell a cancelled coefficient from a small one
+  std::map<NodeId, double> largest;  // to distinguish a cancelled coefficient from a small one
   const auto collect = [&](double k, NodeId id) {
     collected[id] += k;
     largest[id] = std::max(largest[id], std::abs(k));
@@ -106,8 +106,8 @@ NodeId Graph::sum(double constant_part, const std::vector<Term>& terms) {
     if (node.kind == NodeKind::kConstant) {
       constant_part += term.coefficient * node.number;
     } else if (node.kind == NodeKind::kSum && node.terms.size() + (node.number != 0 ? 1 : 0) < 2) {
-      // A sum of several terms stays one value, or its terms would be computed again wherever it is used;
-      // lowering takes those apart that are used once.
+      // A sum of several terms stays one node, so that its terms are not computed again at each
+      // use. Lowering expands sums that are used once.
       constant_part += term.coefficient * node.number;
       for (const Term& inner : node.terms) collect(term.coefficient * inner.coefficient, inner.node);
     } else {
@@ -129,7 +129,8 @@ NodeId Graph::sum(double constant_part, const std::vector<Term>& terms) {
 }
 
 NodeId Graph::product(NodeId a, NodeId b) {
-  // Coefficients move out of products, so that k*x*y and x*y share the product; not where they keep it small.
+  // Coefficients move out of products, so that k*x*y and x*y share the product, unless the
+  // coefficient keeps the product small.
   constexpr double kHuge = 1e12;
   const NodeId whole_a = a, whole_b = b;
   double coefficient = 1;
@@ -193,7 +194,7 @@ NodeId Graph::lag(NodeId input, double tau_s) {
 }
 
 bool Graph::depends_on(NodeId id, NodeId other) const {
-  // Operands come before their node, so one pass from `other` upwards decides it.
+  // Operands precede their node, so one pass from `other` upwards is sufficient.
   if (id < other) return false;
   std::vector<char> reached(id + 1 - other, 0);
   reached[0] = 1;

@@ -17,7 +17,7 @@ namespace vernier::compile {
 /// A value of the error equation; index into Graph's nodes.
 using NodeId = std::uint32_t;
 
-/// What a node computes from real numbers, in the units of the machine file (mm, deg, s, mm/min ...).
+/// Operation of a node on real numbers, in the units of the machine file (mm, deg, s, mm/min ...).
 enum class NodeKind : std::uint8_t {
   kConstant,  // number
   kChannel,   // channel kind and index
@@ -51,18 +51,18 @@ struct Node {
   Interval range;
 };
 
-/// The error equation as a graph of real-valued operations. Equal nodes are one node (hash-consing),
-/// constants are folded, zeros pruned, sums flattened and like terms collected. Nothing is ever removed;
-/// unreachable nodes cost nothing. tool.
+/// The error equation as a graph of real-valued operations. Equal nodes are one node
+/// (hash-consing). Constants are folded, zeros are pruned, sums are flattened and like terms are
+/// collected. Nodes are never removed. Unreachable nodes need no computing time. tool.
 class Graph {
  public:
   NodeId constant(double value);
-  /// range: what the channel can read, in the machine file's unit.
+  /// range: the possible readings of the channel, in the machine file's unit.
   NodeId channel(ChannelKind kind, std::uint32_t index, const Interval& range);
   NodeId sum(double constant_part, const std::vector<Term>& terms);
   NodeId product(NodeId a, NodeId b);
   NodeId table(std::uint32_t axis, std::uint32_t column, NodeId position, const Interval& range);
-  /// Throws std::domain_error where the function is not defined over the whole range of the argument.
+  /// Throws std::domain_error if the function is not defined over the whole range of the argument.
   NodeId function(Function f, NodeId argument);
   /// kAbs, kSign (b unused), kMin, kMax, kEqual, kLess.
   NodeId choice(NodeKind kind, NodeId a, NodeId b);
@@ -77,7 +77,7 @@ class Graph {
   bool is_zero(NodeId id) const { return nodes_[id].kind == NodeKind::kConstant && nodes_[id].number == 0; }
   std::optional<double> constant_value(NodeId id) const;
 
-  /// d node / d channel where that is a constant; nullopt where it varies or is not known.
+  /// Returns d node / d channel if it is constant; nullopt if it varies or is not known.
   std::optional<double> constant_slope(NodeId id, NodeId channel) const;
 
   bool depends_on(NodeId id, NodeId other) const;
@@ -91,7 +91,7 @@ class Graph {
   std::map<Key, NodeId> known_;
 };
 
-/// All values of a choice.
+/// Returns the range of a choice.
 Interval range_of_choice(NodeKind kind, const Interval& a, const Interval& b);
 
 }  // namespace vernier::compile

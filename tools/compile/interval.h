@@ -5,7 +5,7 @@
 
 namespace vernier::compile {
 
-/// All values that a quantity can take over the declared ranges; low <= high.
+/// The range of a quantity over the declared ranges; low <= high.
 struct Interval {
   double low = 0, high = 0;
 

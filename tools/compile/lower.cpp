@@ -67,8 +67,8 @@ std::string channel_name(const model::Machine& machine, ChannelKind kind, std::s
 
 class Lowering {
  public:
-  /// most_shared: sums whose (terms - 1) * (uses - 1) is no more are added term by term wherever they are
-  /// used.
+  /// most_shared: sums with (terms - 1) * (uses - 1) up to this number are added term by term at
+  /// each use.
   Lowering(const model::Machine& machine, const Derivation& d, std::uint32_t tick_us, std::size_t most_shared)
       : machine_(machine), d_(d), g_(d.graph), tick_us_(tick_us), most_shared_(most_shared) {}
 
@@ -88,7 +88,7 @@ class Lowering {
     return program;
   }
 
-  /// The first `most` shares; the caller sees from the registers whether they fit.
+  /// The first `most` shares. The caller tests by the registers whether they fit.
   LoweredShares run_shares(const LoweredProgram& tick, std::size_t most, std::size_t& registers) {
     tick_ = &tick;
     for (const EffectPart& part : d_.parts)
@@ -205,13 +205,14 @@ class Lowering {
       const model::Axis& axis = machine_.axes[n.index[0]];
       if (const model::Table* const t = machine_.table_of(n.index[0]))
         reach = std::max(std::abs(t->stations.front().loc), std::abs(t->stations.back().loc));
-      // A whole turn at least: positions beyond come back by turns.
+      // At least one revolution. Positions beyond it wrap around.
       if (axis.rotary && axis.rollover && c.high - c.low >= kTurnCounts) c.wrap = kTurnCounts;
     }
     return b_.channel(c, unit, reach, channel_name(machine_, n.channel, n.index[0]));
   }
 
-  // The bounds of the least squares and of the direction are distinguished by these.
+  // Gives separate registers to the values that the bounds of the least squares and of the
+  // direction use.
   void keep_pieces_of_bounds() {
     for (const Evaluation& e : d_.before) {
       given_.insert(e.values.begin(), e.values.end());
@@ -230,7 +231,8 @@ class Lowering {
     kept_.insert({l.determinant, l.reciprocal});
   }
 
-  // What the outputs need: columns of tables are looked up together, sine and cosine computed together.
+  // Registers the uses of the outputs: columns of tables are interpolated together, sine and
+  // cosine are computed together.
   void note_use(NodeId node) {
     if (++uses_[node] > 1) return;
     const Node& n = g_[node];
@@ -244,9 +246,9 @@ class Lowering {
     for (const Term& term : n.terms) note_use(term.node);
   }
 
-  // Whether it costs less to add the terms of a sum to the sums that use it than to give it a register: a
-  // register costs a rounding, and a multiplication and an addition a use. Not where a coefficient would part
-  // a product from its fusion.
+  // Is it faster to add the terms of a sum to the sums that use it than to give it a register? A
+  // register needs a rounding, and a multiplication and an addition per use. False if a
+  // coefficient would separate a product from its fusion.
   bool goes_into_sums(NodeId id, double coefficient) const {
     const Node& n = g_[id];
     if (n.kind != NodeKind::kSum || kept_.contains(id) || factors_.contains(id)) return false;
@@ -283,7 +285,7 @@ class Lowering {
     return flat;
   }
 
-  // A product within a sum is no register of its own: it is added at full length and rounded with the sum.
+  // A product within a sum has no register. It is added at full length and rounded with the sum.
   bool fuses(const Term& term) const {
     return g_[term.node].kind == NodeKind::kProduct && std::abs(term.coefficient) == 1 &&
            !kept_.contains(term.node);
@@ -306,7 +308,7 @@ class Lowering {
     return b_.dot(n.number, std::move(products), n.range, base);
   }
 
-  // Terms in order of size, so that partial sums keep the finest format as long as they can.
+  // Adds terms in order of size, so that partial sums keep the finest format as long as possible.
   Id sum(const Node& whole, const std::string& name) {
     const Node n = flattened(whole);
     if (n.terms.empty()) return b_.constant(n.number);
@@ -376,7 +378,8 @@ class Lowering {
     const double first = t.stations.front().loc, last = t.stations.back().loc;
     Id position = value(n.args[0]);
     const Interval range = g_[n.args[0]].range;
-    // A corrected position is no channel, whose format knows the stations beyond the range.
+    // A corrected position is not a channel, so its format does not include the stations beyond
+    // the range.
     const int bits =
         fraction_bits_for(std::max({std::abs(first), std::abs(last), range.magnitude()}) * (1 + 1e-6));
     if (g_[n.args[0]].kind != NodeKind::kChannel && b_.at(position).fraction_bits > bits)
@@ -403,7 +406,7 @@ class Lowering {
     return looked_up_[place].at(n.index[1]);
   }
 
-  // Coefficients of one column, and what the register that looks it up is like.
+  // Returns the coefficients of one column, and the properties of its result register.
   static std::vector<std::int32_t> linear_column(const model::Table& t, std::size_t column,
                                                  double position_lsb, Register& r) {
     double slope = 0, step = 0;
@@ -421,8 +424,8 @@ class Lowering {
       values.push_back(static_cast<std::int32_t>(count(i)));
       values.push_back(static_cast<std::int32_t>(count(i + 1) - count(i)));
     }
-    // Value and interpolation half an LSB each; a station half an LSB of the position off; fraction below
-    // 2^-29.
+    // Value and interpolation have an error of half an LSB each. A station has half an LSB of the
+    // position. The fraction has less than 2^-29.
     r.own_error =
         std::ldexp(1.0, -r.fraction_bits) + 2 * slope * 0.5 * position_lsb + step * std::ldexp(1.0, -29);
     r.uses = {{0, slope}};
@@ -436,8 +439,8 @@ class Lowering {
     double size = 0, slope = 0;
     for (std::size_t i = 0; i + 1 < t.stations.size(); ++i) {
       const double a = t.stations[i].loc, h = t.stations[i + 1].loc - a;
-      // A cubic is fixed by its values at four places; end slopes come from them without touching the held
-      // ends.
+      // Its values at four positions determine a cubic. End slopes follow from them without the
+      // range beyond the ends.
       const auto at = [&](double f) {
         return f == 0   ? t.stations[i].value[column]
                : f == 1 ? t.stations[i + 1].value[column]
@@ -486,14 +489,16 @@ class Lowering {
     return b_.look_up(argument, make_table("pieces_" + name, pieces.segments, 3, {pieces.coefficients}), {r});
   }
 
-  // A register may reach zero (by rounding, or because its integers know less) where the exact value cannot:
-  // held at the exact value's edge, which takes nothing from its accuracy.
+  // A register may reach zero (by rounding, or because its integer range is wider) although the
+  // exact value cannot. It is limited to the exact value's limit, which does not reduce its
+  // accuracy.
   Id held_in_domain(const Node& n, Id argument) {
     const bool open =
         n.function == Function::kLog || n.function == Function::kSqrt || n.function == Function::kReciprocal;
     const Interval exact = g_[n.args[0]].range;
     const ValueRange& counts = b_.counts(argument);
-    // A square is a product to the integers, which may be negative to them: exp(-c x^2) would be a giant.
+    // For the integers a square is a product, which may be negative: exp(-c x^2) would be very
+    // large.
     const bool steep =
         n.function == Function::kExp &&
         std::ldexp(static_cast<double>(counts.high), -b_.at(argument).fraction_bits) > exact.high + 0.1;
@@ -534,7 +539,7 @@ class Lowering {
     if (n.kind == NodeKind::kAbs) return one(OpCode::kAbs, b_.at(a).fraction_bits, 1, "abs_");
     if (n.kind == NodeKind::kSign) return b_.reformat(one(OpCode::kSign, 0, 0, "sign_"), kUnitBits);
     Id b = value(n.args[1]);
-    // The finest format that holds both, whatever their registers can take.
+    // The finest format for both, for the full range of their registers.
     const auto reach = [&](Id id) {
       const ValueRange& r = b_.counts(id);
       return b_.lsb(id) * static_cast<double>(std::max(std::abs(r.low), std::abs(r.high)) + 1);
@@ -567,8 +572,9 @@ class Lowering {
     const auto mantissa =
         static_cast<std::int32_t>(std::min(2147483647.0, std::round(std::ldexp(gain, shift))));
     const double width = n.range.high - n.range.low;
-    // Against an input that is linear between ticks: half a tick of delay, at most gain * width; then the
-    // time constant's quantisation, the output's rounding and what the state's truncation adds up to.
+    // Compared with an input that is linear between ticks: half a tick of delay, at most gain *
+    // width. The time constant's quantisation, the output's rounding and the accumulated
+    // truncation of the state are added.
     const double error = width * (gain + std::abs(std::ldexp(mantissa, -shift) / gain - 1)) +
                          b_.lsb(input) * (0.5 + std::ldexp(1.0, -30) / gain);
     return b_.plain({OpCode::kLag, static_cast<std::uint8_t>(shift), static_cast<std::uint16_t>(input),
@@ -582,17 +588,17 @@ class Lowering {
   const Graph& g_;
   std::uint32_t tick_us_;
   std::size_t most_shared_;
-  const LoweredProgram* tick_ = nullptr;  // whose registers the shares start from
+  const LoweredProgram* tick_ = nullptr;  // the shares use its registers
   std::vector<std::uint16_t> sources_;
   ProgramBuilder b_;
   std::string wanted_name_;
   std::map<NodeId, Id> done_;
   std::map<NodeId, std::size_t> uses_;
   mutable std::map<NodeId, std::size_t> flat_sizes_;
-  std::set<NodeId> factors_;                     // used otherwise than in a sum
-  std::set<NodeId> given_;                       // corrections that are taken back elsewhere as they are
-  std::set<NodeId> kept_;                        // have a register of their own, whatever it costs
-  using Place = std::pair<std::size_t, NodeId>;  // axis of a table, and where it is looked up
+  std::set<NodeId> factors_;                     // also used outside a sum
+  std::set<NodeId> given_;                       // corrections that other nodes use as given values
+  std::set<NodeId> kept_;                        // always have a register of their own
+  using Place = std::pair<std::size_t, NodeId>;  // axis of a table, and position of its interpolation
   std::map<Place, std::map<std::size_t, NodeId>> columns_;  // column -> node
   std::map<Place, std::map<std::size_t, Id>> looked_up_;    // column -> register
   std::map<NodeId, NodeId> sines_, cosines_;                // argument -> node
@@ -603,8 +609,8 @@ class Lowering {
 
 namespace {
 
-/// Instructions that the arithmetic takes, about (x86-64, printed form): what tells two forms of one equation
-/// apart.
+/// Returns the approximate number of instructions of the arithmetic (x86-64, printed form). It is
+/// used to compare two forms of one equation.
 std::size_t cost_of(const LoweredProgram& p) {
   std::size_t cost = 0;
   for (const Instruction& s : p.instructions) cost += s.op == OpCode::kLinear ? 6 : 3;

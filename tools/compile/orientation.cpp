@@ -16,12 +16,13 @@
 namespace vernier::compile {
 namespace {
 
-/// A column this small against 1 rad per rad tilts nothing.
+/// A column this small relative to 1 rad per rad does not tilt the tool.
 constexpr double kTiltsNothing = 1e-9;
 /// One pair of axes is better than one nearer to the tool if its determinant is larger by this factor.
 constexpr double kBetter = 1.05;
 
-/// How the nominal direction of the tool moves with an axis, per deg divided by `lever`: at most 1 long.
+/// Motion of the nominal direction of the tool with an axis, per deg divided by `lever`: length at
+/// most 1.
 struct Tilt {
   std::size_t axis;
   NodeVector direction;
@@ -41,7 +42,7 @@ NodeId simplified(Graph& g, NodeId node) {
 
 Eigen::ArrayXd sampled(const Graph& g, NodeId node) { return Samples(g, kSamples).of(node); }
 
-/// The chain as the direction meets it, up to its last turn by an axis.
+/// The chain in the order in which it acts on the direction, up to its last rotation by an axis.
 class DirectionChain {
  public:
   DirectionChain(const model::Machine& machine, Derivation& d, double neglect)
@@ -57,7 +58,7 @@ class DirectionChain {
 
   std::optional<std::size_t> last_turn() const { return last_; }
 
-  /// The axes that tilt the tool, nearest to it first.
+  /// Returns the axes that tilt the tool, nearest to it first.
   std::vector<Tilt> tilts() {
     std::vector<std::size_t> order;
     for (const Step& step : steps_)
@@ -107,7 +108,7 @@ class DirectionChain {
   NodeVector direction_{};
 };
 
-/// J'J of one or two tilts, and its inverse where they are damped.
+/// J'J of one or two tilts, and its inverse if they are damped.
 struct Normal {
   std::vector<std::vector<NodeId>> square;  // J'J
   NodeId determinant = 0;
@@ -151,11 +152,11 @@ std::vector<Tilt> best_pair(Graph& g, const std::vector<Tilt>& tilts) {
   return best.empty() ? std::vector<Tilt>{tilts.front()} : best;
 }
 
-/// What of the determinant is known: where it is damped, and its reciprocal after that.
+/// Properties of the determinant: the range of damping, and its reciprocal with damping.
 struct Damping {
   NodeId lambda = 0, reciprocal = 0;  // of det(J'J + lambda)
-  double floor = 0, gain = 0;         // det below floor: damped; |(J'J + lambda)^-1 J'| about, at most
-  std::optional<double> share;        // of the poses
+  double floor = 0, gain = 0;   // det below floor: damped; upper bound of |(J'J + lambda)^-1 J'|, approximate
+  std::optional<double> share;  // of the poses
 };
 
 Damping damped(Graph& g, const Normal& n) {
@@ -179,7 +180,8 @@ Damping damped(Graph& g, const Normal& n) {
     if (n.square.size() == 2)
       determinant =
           g.subtract(g.product(determinant, plus(n.square[1][1])), g.product(n.square[0][1], n.square[0][1]));
-    // Both eigenvalues at least lambda, their product at least floor / 2 for axes that turn alike fast.
+    // Both eigenvalues are at least lambda. Their product is at least floor / 2 for axes that
+    // rotate at the same rate.
     low = 0.5 * sampled(g, determinant).minCoeff();
   }
   if (g[determinant].range.low < low) determinant = g.choice(NodeKind::kMax, determinant, g.constant(low));

@@ -51,7 +51,7 @@ std::string interface_comment(const model::Machine& machine, const LoweredProgra
          fmt::format("/// lag: {} states; starting: puts them on their inputs. realtime.\n", p.lag_count);
 }
 
-/// Does the C++ name it?
+/// Does the C++ text contain the name?
 bool is_named(std::string_view text, std::string_view name) {
   for (std::size_t at = 0; (at = text.find(name, at)) != std::string_view::npos; at += name.size()) {
     const std::size_t end = at + name.size();
@@ -65,7 +65,7 @@ class Printer {
  public:
   explicit Printer(const LoweredProgram& p) : p_(p) {}
 
-  /// body: what uses them; a constant that was folded into others is not printed.
+  /// body: the code that uses them. A constant that was folded into others is not printed.
   std::string stores(const std::string& body) const {
     std::string text;
     for (std::size_t i = 0; i < p_.constants.size(); ++i)
@@ -100,7 +100,7 @@ class Printer {
     return value == INT32_MIN ? "INT32_MIN" : std::to_string(value);
   }
   const std::string& name(std::uint32_t id) const { return p_.registers[id].name; }
-  // One record a line: its segment, then column after column.
+  // One record per line: its segment, then column after column.
   std::string table(const LoweredTable& t) const {
     std::string text = fmt::format("constexpr std::int32_t {}_records[] = {{", t.name);
     const std::size_t stride = t.view().stride();

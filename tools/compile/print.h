@@ -8,7 +8,8 @@
 
 namespace vernier::compile {
 
-/// The program as readable C++: equation.h and equation.cpp. Same program, same bytes. tool.
+/// Returns the program as readable C++: equation.h and equation.cpp. The same program gives the
+/// same bytes. tool.
 std::string print_header(const model::Machine& machine, const LoweredProgram& program,
                          std::uint64_t source_hash, std::uint64_t fingerprint);
 std::string print_source(const model::Machine& machine, const LoweredProgram& program,

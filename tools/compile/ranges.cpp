@@ -8,8 +8,7 @@
 namespace vernier::compile {
 namespace {
 
-// Where a machine file declares no range, these hold: faster, hotter or longer is held at the edge and
-// flagged.
+// Defaults for a machine file without declared ranges. Values beyond are limited and flagged.
 constexpr double kLinearSpeed = 1000;          // mm/s
 constexpr double kRotarySpeed = 1000;          // deg/s
 constexpr double kLinearAcceleration = 10000;  // mm/s^2
@@ -17,7 +16,7 @@ constexpr double kRotaryAcceleration = 10000;  // deg/s^2
 constexpr double kFeed = 60000;                // mm/min
 constexpr double kCurvature = 1;               // 1/mm
 constexpr double kTime = 1e6;                  // s
-constexpr double kVisits = 1e6;                // rows of a clock: a day at ten a second
+constexpr double kVisits = 1e6;                // rows of a clock: a day at ten per second
 
 double half_width_of(const std::string& unit) {
   if (unit == "degC" || unit == "K") return 50;
@@ -41,7 +40,8 @@ Interval input_range(const model::Machine& machine, std::size_t input) {
   const model::Input& one = machine.inputs[input];
   const double width = half_width_of(one.unit);
   Interval range{one.reference - width, one.reference + width};
-  constexpr double kBeyond = 0.1;  // of what was measured: a day a little warmer than that of the survey
+  constexpr double kBeyond =
+      0.1;  // of the measured range: a day that is a little warmer than that of the survey
   if (machine.fitted)
     for (const model::FitRecord::Range& measured : machine.fitted->measured)
       if (measured.name == one.name) {

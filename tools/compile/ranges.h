@@ -8,10 +8,10 @@
 
 namespace vernier::compile {
 
-/// Range of a channel in the unit of the machine file: declared, or the default of docs for its kind and
-/// unit.
+/// Returns the range of a channel in the unit of the machine file: declared, or the default of
+/// docs for its kind and unit.
 Interval axis_range(const model::Machine& machine, std::size_t axis);
-/// Where nothing is declared, the default reaches as far as the last fit's rows did, and a tenth beyond.
+/// Without a declared range, the default extends over the last fit's rows and a tenth beyond.
 Interval input_range(const model::Machine& machine, std::size_t input);
 Interval channel_range(const model::Machine& machine, ChannelKind kind, std::size_t index);
 

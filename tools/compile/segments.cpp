@@ -52,7 +52,8 @@ std::vector<Segment> make_segments(const std::vector<std::int64_t>& positions) {
 
 namespace {
 
-// The grid over the mean spacing; kept only where the board's own rule finds every piece with it.
+// Sets the grid over the mean spacing. It is kept only if the board's own rule finds every piece
+// with it.
 void set_grid(LoweredTable& table) {
   const Segment last = segment_at(table.view().record(table.pieces - 1));
   const double span = static_cast<double>(last.start) + last.length - table.records[0];
@@ -108,7 +109,8 @@ CubicPiece hermite(double near, double far, double near_slope, double far_slope)
 FunctionPieces make_pieces(Function f, std::int64_t low, std::int64_t high, int argument_bits) {
   const double unit = std::ldexp(1.0, -argument_bits);
   const Interval x{static_cast<double>(low) * unit, static_cast<double>(high) * unit};
-  // Rounding of the argument may carry it over the edge of the domain that its exact range respects.
+  // Rounding of the argument may move it over the limit of the domain, which its exact range does
+  // not exceed.
   const bool open_at_zero = f == Function::kLog || f == Function::kSqrt || f == Function::kReciprocal;
   if (open_at_zero && low <= 0 && (f != Function::kReciprocal || high >= 0))
     throw std::domain_error("its argument comes too close to zero");

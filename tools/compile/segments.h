@@ -10,24 +10,26 @@
 
 namespace vernier::compile {
 
-/// A segment between two integer positions, with the reciprocal that reaches one exactly at its far end.
+/// Returns a segment between two integer positions. Its reciprocal gives exactly one at the far
+/// end.
 Segment make_segment(std::int64_t start, std::int64_t end);
 
 /// Segments between consecutive positions (strictly increasing, at least two).
 std::vector<Segment> make_segments(const std::vector<std::int64_t>& positions);
 
-/// A table from its segments and, for each column, its coefficients piece after piece (degree + 1 a piece);
-/// with a grid where the stations are even. tool.
+/// Returns a table from its segments and the coefficients of each column, piece after piece
+/// (degree + 1 per piece). It has a grid if the stations are even. tool.
 LoweredTable make_table(const std::string& name, const std::vector<Segment>& segments, std::uint16_t degree,
                         const std::vector<std::vector<std::int32_t>>& columns);
 
-/// A wrap of `period` counts from `first` that comp/verify.h accepts. period: 4 .. 2^31 - 1.
+/// Returns a wrap of `period` counts from `first` that comp/verify.h accepts. period: 4 .. 2^31 -
+/// 1.
 Wrap make_wrap(std::int64_t first, std::int64_t period);
 
 /// A smooth function as cubic pieces over the whole range of a register.
 struct FunctionPieces {
   std::vector<Segment> segments;
-  std::vector<std::int32_t> coefficients;  // four a segment, in the result's format
+  std::vector<std::int32_t> coefficients;  // four per segment, in the result's format
   int fraction_bits = 0;                   // of the result
   double error = 0;                        // bound: interpolation (4th derivative) + quantisation + rounding
   double slope = 0;                        // largest |derivative|
@@ -38,8 +40,8 @@ struct FunctionPieces {
 /// 2^-26 of the result's magnitude. tool.
 FunctionPieces make_pieces(Function f, std::int64_t low, std::int64_t high, int argument_bits);
 
-/// Value, slopes and their quantised form of one cubic piece from end values and end slopes (per unit of
-/// fraction).
+/// Value, slopes and their quantised form of one cubic piece, from end values and end slopes (per
+/// unit of fraction).
 struct CubicPiece {
   double c[4];
 };

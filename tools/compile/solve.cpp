@@ -13,7 +13,7 @@
 namespace vernier::compile {
 namespace {
 
-/// A singular value this small against the largest is none.
+/// A singular value this small relative to the largest counts as zero.
 constexpr double kFlat = 1e-9;
 
 using Matrix = std::vector<std::vector<NodeId>>;  // rows
@@ -52,7 +52,7 @@ class Algebra {
     return simplified(g.sum(0, terms));
   }
   NodeId dot(const std::vector<NodeId>& a, const std::vector<NodeId>& b) { return product_sum(g, a, b); }
-  /// A number where the node is one: cos^2 + sin^2 and the like.
+  /// Returns a number if the node is constant: cos^2 + sin^2 and the like.
   NodeId simplified(NodeId node) {
     if (g.constant_value(node)) return node;
     const auto value = sampled_constant(samples_, node);
@@ -119,7 +119,7 @@ std::vector<NodeId> components(Graph& g, const Eigen::Matrix3Xd& basis, const No
   return along;
 }
 
-/// Columns and deviation in the directions that the axes span at all.
+/// Columns and deviation in the directions that the axes span.
 struct Reduced {
   Eigen::Matrix3Xd basis;
   Matrix rows;  // rank x axes, columns scaled to at most 1
@@ -151,7 +151,8 @@ Reduced reduce(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& c
   return r;
 }
 
-/// Square and regular over the whole ranges: x = J^-1 deviation. Nothing where that is not proved.
+/// Square and regular over the whole ranges: x = J^-1 deviation. Returns an empty function if that
+/// is not proved.
 Solver solve_square(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns,
                     const Reduced& r) {
   if (r.rows.size() != columns.size()) return {};
@@ -197,7 +198,7 @@ NodeId limited(Graph& g, NodeId node, double magnitude) {
   return g[node].range.high > magnitude ? g.choice(NodeKind::kMin, node, g.constant(magnitude)) : node;
 }
 
-/// det(J J') held at a floor, and the note on what that means.
+/// Returns det(J J') with a lower limit, and adds the note about its consequences.
 NodeId held_determinant(Derivation& d, Algebra& algebra, NodeId determinant, double& floor) {
   Graph& g = d.graph;
   const Eigen::ArrayXd seen = algebra.sampled(determinant);
@@ -217,8 +218,8 @@ NodeId held_determinant(Derivation& d, Algebra& algebra, NodeId determinant, dou
   return g.choice(NodeKind::kMax, determinant, g.constant(floor));
 }
 
-/// What (K K')^-1 is taken of: the components of a vector in the directions; where the nearest point is
-/// sought, K times them.
+/// Right side of (K K')^-1: the components of a vector in the directions. For the nearest point, K
+/// times them.
 std::vector<NodeId> right_side(Graph& g, const LeastSquares& least, const std::vector<NodeId>& components) {
   if (!least.nearest) return components;
   std::vector<NodeId> along;
@@ -227,7 +228,7 @@ std::vector<NodeId> right_side(Graph& g, const LeastSquares& least, const std::v
   return along;
 }
 
-/// (K K')^-1 times a right side.
+/// Returns (K K')^-1 times a right side.
 std::vector<NodeId> weights_of(Graph& g, const LeastSquares& least, const std::vector<NodeId>& right) {
   const double size = least.largest * least.spread_mm * (least.nearest ? std::sqrt(least.trace) : 1);
   std::vector<NodeId> weights;
@@ -236,8 +237,8 @@ std::vector<NodeId> weights_of(Graph& g, const LeastSquares& least, const std::v
   return weights;
 }
 
-/// The motions of the axes: K' times the weights, or where the nearest point is sought the weights
-/// themselves.
+/// Returns the motions of the axes: K' times the weights, or the weights themselves for the
+/// nearest point.
 std::vector<NodeId> motions_of(Graph& g, const LeastSquares& least, const std::vector<NodeId>& weights) {
   std::vector<NodeId> motions;
   for (std::size_t k = 0; k < least.lever.size(); ++k) {
@@ -257,9 +258,9 @@ Matrix transposed(const Matrix& m) {
   return result;
 }
 
-// x = K' (K K')^-1 deviation, the columns scaled alike so that no axis is asked to move the tool point more
-// than another. Known lengths limit what intervals overrate: a turn keeps a length, but not a component's
-// interval.
+// x = K' (K K')^-1 deviation. The columns are scaled alike, so that no axis moves the tool point
+// more than another. Known lengths reduce the overestimate of intervals: a rotation keeps a
+// length, but not a component's interval.
 Solver solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn>& columns,
                    const Reduced& r) {
   Graph& g = d.graph;
@@ -281,14 +282,14 @@ Solver solve_least(Derivation& d, Algebra& algebra, const std::vector<AxisColumn
       square[i][k] = square[k][i] =
           limited(g, algebra.simplified(algebra.dot(least.jacobian[i], least.jacobian[k])),
                   i == k ? least.trace : least.trace / 2);
-  // Of adj(J J'): the product of its two largest singular values, of a sum trace at most.
+  // Of adj(J J'): the product of its two largest singular values, whose sum is at most the trace.
   least.largest = rank == 3 ? least.trace * least.trace / 4 : rank == 2 ? least.trace : 1;
   least.square = square;
   least.adjugate = algebra.adjugate(square);
   for (std::vector<NodeId>& row : least.adjugate)
     for (NodeId& entry : row) entry = limited(g, entry, least.largest);
   const NodeId determinant = algebra.determinant(square, least.adjugate);
-  // A determinant is at most that of the equal singular values of the same sum.
+  // A determinant is at most that of equal singular values with the same sum.
   const double most = std::pow(least.trace / static_cast<double>(rank), static_cast<double>(rank));
   least.determinant = limited(g, held_determinant(d, algebra, determinant, least.floor), most);
   least.reciprocal = g.function(Function::kReciprocal, least.determinant);

@@ -10,7 +10,8 @@
 namespace vernier::compile {
 namespace {
 
-/// The terms that an expression is the sum of, each with its own share of the expression's delta.
+/// Splits an expression into the terms of its sum, each with its own share of the expression's
+/// delta.
 void split(const model::Expr& expr, double sign, Translator& translate, Graph& g, std::size_t line,
            std::vector<Step::Part>& parts) {
   if (expr.op == model::Op::kAdd || expr.op == model::Op::kSubtract || expr.op == model::Op::kNegate) {
@@ -24,7 +25,8 @@ void split(const model::Expr& expr, double sign, Translator& translate, Graph& g
   if (!g.is_zero(delta)) parts.push_back({(sign < 0 ? "-" : "") + text, delta});
 }
 
-/// The elementary steps of one transform in the order in which a point beyond it meets them.
+/// Returns the elementary steps of one transform in the order in which they act on a point beyond
+/// it.
 std::vector<Step> steps_of(const model::Transform& t, const char* branch, Translator& translate,
                            Graph& graph) {
   std::vector<Step> steps;
@@ -136,8 +138,8 @@ double Walk::norm_of(const NodeVector& v) const {
 double Walk::reach_mm() const { return std::min(reach_mm_, norm_of(nominal_)); }
 double Walk::spread_mm() const { return std::min(spread_mm_, norm_of(deviation_)); }
 
-// Cosine and sine; exact where the angle is a multiple of 90 deg, so that a machine built of right angles
-// stays sparse.
+// Cosine and sine. They are exact if the angle is a multiple of 90 deg, so that a machine with
+// right angles stays sparse.
 std::pair<NodeId, NodeId> Walk::direction_of(NodeId angle_deg) {
   const auto value = g_.constant_value(angle_deg);
   if (!value) return {g_.function(Function::kCos, angle_deg), g_.function(Function::kSin, angle_deg)};
@@ -190,7 +192,8 @@ void Walk::add_part(const std::string& name, const NodeVector& v) {
   if (!fresh) place->second = plus(place->second, v);
 }
 
-// A turn's terms share what is linear in it; what is not belongs to the turn as a whole.
+// The terms of a rotation share its linear part. The nonlinear part belongs to the rotation as a
+// whole.
 void Walk::split_turn(const Step& step, const NodeVector& point, const NodeVector& all) {
   const auto a = static_cast<std::size_t>((step.axis + 1) % 3),
              b = static_cast<std::size_t>((step.axis + 2) % 3);
@@ -211,7 +214,7 @@ void Walk::split_turn(const Step& step, const NodeVector& point, const NodeVecto
     add_part(step.where + ": higher orders", seen_from_frame(rest));
 }
 
-// What a turn leaves out lies across its axis.
+// The omitted part of a rotation is perpendicular to its axis.
 bool Walk::small(double bound_mm, const Step& step, const char* what) {
   if (bound_mm > neglect_mm_) return false;
   if (bound_mm == 0) return true;
@@ -223,7 +226,8 @@ bool Walk::small(double bound_mm, const Step& step, const char* what) {
   return true;
 }
 
-// Sizes of components after a turn; a cosine's and a sine's size do not depend on its sense.
+// Sizes of components after a rotation. The size of a cosine or sine does not depend on its
+// direction.
 void Walk::turn_sizes(std::array<double, 3>& sizes, int axis, NodeId angle_deg) {
   const auto [c, s] = direction_of(angle_deg);
   const double cosine = g_[c].range.magnitude(), sine = g_[s].range.magnitude();
@@ -234,8 +238,8 @@ void Walk::turn_sizes(std::array<double, 3>& sizes, int axis, NodeId angle_deg) 
   b = std::min(turned_b, most);
 }
 
-// (R(delta) - 1) (nominal + deviation): sine and 1 - cosine of the small angle by their series, as far as
-// they matter.
+// (R(delta) - 1) (nominal + deviation): sine and 1 - cosine of the small angle by their series, up
+// to the relevant order.
 void Walk::deviate_by_turn(const Step& step) {
   if (g_.is_zero(step.by.delta)) return;
   const auto a = static_cast<std::size_t>((step.axis + 1) % 3),

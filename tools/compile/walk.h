@@ -9,8 +9,8 @@
 
 namespace vernier::compile {
 
-/// One elementary step along the chain, as the point meets it: a turn about a coordinate axis, or a shift
-/// along it.
+/// One elementary step along the chain, in the order in which it acts on the point: a rotation
+/// about a coordinate axis, or a shift along it.
 struct Step {
   bool turn;
   int axis;  // 0..2: X Y Z
@@ -20,38 +20,40 @@ struct Step {
     std::string term;
     NodeId delta;
   };
-  std::vector<Part> parts;  // the terms that by.delta is the sum of
+  std::vector<Part> parts;  // the terms whose sum is by.delta
 };
 
 /// The elementary steps of the chain from the tool point through the tool branch to the base, and on through
 /// the workpiece branch, reversed, to the workpiece.
 std::vector<Step> all_steps(const model::Machine& machine, Translator& translate, Graph& graph);
 
-/// How a point moves with an axis, mm per mm or deg, in the frame in front of `last_turn` (null: where the
-/// point is), a turn behind it that the axis may drive too. Throws std::domain_error where it has a step.
+/// Returns the motion of a point with an axis, mm per mm or deg, in the frame before `last_turn`
+/// (null: the frame of the point). The axis may also drive that rotation. Throws std::domain_error
+/// if it has a step.
 NodeVector motion_of(Graph& graph, NodeId axis, const NodeVector& point, const Step* last_turn);
 
-/// Carries a point through the chain: its nominal place, and what the actual chain adds to it. tool.
+/// Moves a point through the chain: its nominal position, and the addition of the actual chain.
+/// tool.
 class Walk {
  public:
-  /// neglect_mm: a higher-order term smaller than this is left out and entered in `neglected`.
+  /// neglect_mm: a higher-order term smaller than this is omitted and entered in `neglected`.
   Walk(Derivation& derivation, double neglect_mm, std::vector<Neglected>& neglected);
-  /// The same for the direction of the tool, the z axis of its last frame, in place of a point: shifts leave
-  /// it alone, and all lengths are of a vector of length 1.
+  /// The same for the direction of the tool, the z axis of its last frame, instead of a point.
+  /// Shifts do not change it, and all lengths are of a vector of length 1.
   static Walk of_direction(Derivation& derivation, double neglect, std::vector<Neglected>& neglected);
 
   void take(const Step& step);
-  /// From here on no corrected axis moves: nominal turns no longer turn the deviation (they turn the axes
-  /// alike).
+  /// From this call on no corrected axis moves. Nominal rotations no longer rotate the deviation,
+  /// because they rotate the axes in the same way.
   void freeze() { frozen_ = true; }
 
   const NodeVector& nominal() const { return nominal_; }
-  /// What each term of the chain adds to the deviation.
+  /// Contribution of each term of the chain to the deviation.
   const std::map<std::string, NodeVector>& parts() const { return parts_; }
   /// In the frame in which the walk was frozen.
   const NodeVector& deviation() const { return deviation_; }
-  /// Bounds of the two vectors' lengths, mm: turns keep a length, so these do not grow with every turn as
-  /// the components' intervals do.
+  /// Bounds of the two vectors' lengths, mm. Rotations keep a length, so these bounds do not grow
+  /// with every rotation as the components' intervals do.
   double reach_mm() const;
   double spread_mm() const;
 
@@ -84,8 +86,8 @@ class Walk {
   std::vector<Step> turns_;  // nominal turns since freeze()
 };
 
-/// A walk along the whole chain with `added` on the axes, seen from the frame that `frozen_from` steps lead
-/// to.
+/// Returns a walk along the whole chain with `added` on the axes, in the frame after `frozen_from`
+/// steps.
 Walk walked(const model::Machine& machine, Derivation& derivation, const Additions& added,
             std::size_t frozen_from, Walk walk);
 

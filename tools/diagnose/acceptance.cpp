@@ -18,16 +18,17 @@ std::vector<Eigen::Index> rows_of(const std::vector<int>& blocks, int block) {
   return rows;
 }
 
-/// How many directions the other runs do not determine. `information`: theirs of each direction, increasing;
-/// `least`: of what is theirs.
+/// Returns the number of directions that the other runs do not determine. `information`: theirs of
+/// each direction, increasing; `least`: required share of it.
 Eigen::Index lost_directions(const Eigen::VectorXd& information, double least) {
   Eigen::Index lost = 0;
   while (lost < information.size() && information[lost] < least) ++lost;
   return lost;
 }
 
-/// What of the model's free parameters only the rows left out determine (their own set-up), as orthonormal
-/// columns over these rows: it is fitted to them. New columns are not, they must come from the other rows.
+/// Returns the part of the model's free parameters that only the held-out rows determine (their
+/// own set-up), as orthonormal columns over these rows. It is fitted to them. New columns are not
+/// fitted to them: they must come from the other rows.
 Eigen::MatrixXd fitted_to_block_alone(const Eigen::MatrixXd& model_rows, double least) {
   if (model_rows.cols() == 0) return model_rows;  // nothing is free
   const Eigen::MatrixXd normal =
@@ -37,8 +38,9 @@ Eigen::MatrixXd fitted_to_block_alone(const Eigen::MatrixXd& model_rows, double 
       model_rows * eigen.eigenvectors().leftCols(lost_directions(eigen.eigenvalues(), least)), 1e-6, nullptr);
 }
 
-/// Level of each value: levels are apart where neighbours in size are by `least_width`; where that gives one
-/// level or too many of them, parts of the range, if each part is as wide.
+/// Returns the level of each value. Levels are separated where neighbours in size differ by
+/// `least_width`. If that gives one level or too many levels, the range is divided into parts, if
+/// each part has at least that width.
 std::vector<int> levels_of(const std::vector<double>& values, double least_width,
                            const AcceptanceThresholds& thresholds) {
   const auto parts = static_cast<int>(thresholds.parts_of_sweep);

@@ -7,25 +7,27 @@
 
 namespace vernier::diagnose {
 
-/// What leaving out whole runs says of columns that a model would gain.
+/// Result of leaving out whole runs, for the columns that a model would gain.
 struct HeldOut {
   double chi_square = 0;          // of all rows, each predicted from the other runs
   std::vector<double> agreement;  // per run left out: cosine between its columns' part and that of all runs
 };
 
-/// Predicts every run of the fit rows from the others, with the model's free parameters and `columns` (any
-/// columns, after projection on the complement of what the model absorbs). Parameters that only the run left
-/// out determines are fitted to it. `within_runs`: leaves out parts of runs instead (for effects that are a
-/// property of a run). `watched`: first and count of the columns whose agreement is reported.
+/// Predicts every run of the fit rows from the others, with the model's free parameters and
+/// `columns` (any columns, after projection on the complement of what the model absorbs).
+/// Parameters that only the held-out run determines are fitted to it. `within_runs`: leaves out
+/// parts of runs instead (for effects that are a property of a run). `watched`: first and count of
+/// the columns whose agreement is reported.
 HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                        Eigen::Index watched_count, bool within_runs = false);
 
-/// The same with any blocks left out in turn: an index for each fit observation.
+/// The same with any blocks held out in turn: one index per fit observation.
 HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                          Eigen::Index watched_count, const std::vector<int>& blocks);
 
-/// Whole feeds, and whole temperatures of each thermometer, as blocks: what a term learned on features must
-/// be proved on, for features follow both. One list for each quantity that has two levels or more.
+/// Returns blocks of whole feeds, and of whole temperatures of each thermometer. A term learned on
+/// features must be confirmed on them, because features depend on both. One list for each quantity
+/// that has two levels or more.
 std::vector<std::vector<int>> level_blocks(const Evidence& evidence);
 
 }  // namespace vernier::diagnose

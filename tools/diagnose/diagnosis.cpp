@@ -74,8 +74,8 @@ class Diagnoser {
     return options;
   }
 
-  /// The answer where the readings are not those of this machine, as `fit` has it: a search would only find
-  /// effects that imitate the mistake.
+  /// Returns the verdict if the readings are not those of this machine, as `fit` reports. A search
+  /// would only find effects that imitate the mistake.
   Diagnosis refused() {
     result_.noise = base_.noise;
     result_.noise_unit = fit::noise_unit(measurement_);
@@ -87,15 +87,16 @@ class Diagnoser {
     return std::move(result_);
   }
 
-  /// With the noise that the search settled on.
+  /// Options with the noise that the search found.
   fit::FitOptions settled_noise() const {
     fit::FitOptions options;
     options.noise = result_.noise;
     return options;
   }
 
-  /// The machine with several items added and fitted, from the linear estimate. A period or time constant
-  /// that the fit drives out of the range in which it was looked for is held at the value found there.
+  /// Returns the machine with several items added and fitted, starting at the linear estimate. If
+  /// the fit moves a period or time constant out of the range of its search, it is held at its
+  /// found value.
   effects::FittedEffects fit_with(const std::vector<std::size_t>& items) const {
     std::vector<effects::EffectToFit> effects;
     for (const std::size_t item : items) {
@@ -117,27 +118,29 @@ class Diagnoser {
                                effects::choice_at(pool_.candidate(item), pool_[item].scored.scanned));
   }
 
-  /// Fall of chi^2, or of what stands for it where nothing says how large the noise is.
+  /// Decrease of chi^2, or of its substitute if the noise is unknown.
   double fall_of(const fit::FitResult& before, const fit::FitResult& after) const {
     if (fit::has_uncertainty(measurement_)) return before.chi_square - after.chi_square;
     return static_cast<double>(before.after.count) * std::log(before.chi_square / after.chi_square);
   }
 
-  /// What bears a step out, as a natural logarithm of a likelihood ratio.
+  /// Evidence for a step, as a natural logarithm of a likelihood ratio.
   struct StepEvidence {
     double value = 0;
-    bool of_check_rows = false;  // 20 to 1; else of runs left out in turn
+    bool of_check_rows = false;  // 20 to 1; else from runs held out in turn
   };
 
-  /// Nothing: held-out rows do not confirm it. Check rows are asked first, as far as the step shows on
-  /// them; runs that were left out where they do not reach 20 to 1.
+  /// Returns nullopt if held-out rows do not confirm the step. Check rows are tested first, as far
+  /// as the step is visible on them. Held-out runs are tested if the check rows cannot reach 20 to
+  /// 1.
   std::optional<StepEvidence> borne_out_by(const fit::FitResult& before, const fit::FitResult& after,
                                            std::size_t item) const {
     const ProofThresholds& limits = options_.thresholds.proof;
     const Proof proof = proof_of(before, after);
     const std::optional<double> asked = proof.asked(limits);
     if (asked && proof.evidence < *asked) return std::nullopt;
-    // A step of one run carries to no other: rows of others that grow by it are enough.
+    // A step of one run does not apply to another run. It is sufficient that rows of other runs
+    // become worse with it.
     if (!pool_.candidate(item).choice.runs.empty() && proof.evidence < 0) return std::nullopt;
     if (asked && proof.evidence >= limits.evidence) return StepEvidence{proof.evidence, true};
     const double held_out = finder_.held_out_evidence(item);
@@ -155,8 +158,8 @@ class Diagnoser {
     return proof_on_check_rows(measurement_, before.residual, after.residual, noise, variance);
   }
 
-  /// The fitted machine as a file, with what its own rest says of the readings: the search began from
-  /// independent ones, and who would run this machine must know of a step or drift.
+  /// Returns the fitted machine as a file, with the noise findings of its own residual. The search
+  /// began with independent readings, and the user of this machine must know of a step or drift.
   std::string first_rung() const {
     return model::update_machine_text(text_, fit::fit(base_.machine, measurement_).machine, true);
   }
@@ -179,7 +182,7 @@ class Diagnoser {
       const std::vector<std::size_t> items(chosen_.begin(),
                                            chosen_.begin() + static_cast<std::ptrdiff_t>(count));
       const effects::FittedEffects fitted = fit_with(items);
-      // What the linear estimate promised and the fit does not keep is no step.
+      // A decrease that the linear estimate predicts but the fit does not reach is not a step.
       if (fall_of(result_.end, fitted.fit) < options_.thresholds.acceptance.evidence) {
         chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(count - 1));
         continue;
@@ -211,7 +214,7 @@ class Diagnoser {
     }
   }
 
-  /// Items in the order in which they are shown: the accepted ones, then by what each does alone.
+  /// Items in the order of the report: the accepted ones, then by the decrease of each alone.
   std::vector<std::size_t> shown_items() const {
     std::vector<std::pair<double, std::size_t>> rest;
     for (std::size_t i = 0; i < pool_.size(); ++i) {
@@ -266,8 +269,8 @@ class Diagnoser {
     }
   }
 
-  /// The residual at the end of the ladder (mm, deg) with the correlated errors taken out of the fit
-  /// rows: what an independent reading would have left.
+  /// The residual at the end of the stepwise model (mm, deg) without the correlated errors of the
+  /// fit rows: the residual of independent readings.
   Eigen::VectorXd independent_residual(const model::Measurement& rows) const {
     const fit::NoiseModel& noise = result_.noise;
     Eigen::VectorXd residual = result_.end.residual;
@@ -280,25 +283,27 @@ class Diagnoser {
     const fit::NoiseLayout layout = fit::noise_layout(rows, fitted, options_.thresholds.layout);
     fit::whiten(layout, noise, left);
     if (!noise.steps.empty()) {
-      // The fit knew nothing of the steps and gave way to them: what it did is taken out with them.
+      // The fit did not contain the steps and absorbed part of them. That part is removed together
+      // with them.
       const Eigen::MatrixXd &seen = finder_.evidence().absorbed(), named = pool_.columns(chosen_);
       Eigen::MatrixXd columns = fit::step_columns(layout, noise.steps, left.rows());
       fit::whiten(layout, noise, columns);
-      if (seen.rows() == left.rows()) {  // else the search looked at every k-th row only
+      if (seen.rows() == left.rows()) {  // otherwise the search used only every k-th row
         const Eigen::Index steps = columns.cols();
         columns.conservativeResize(Eigen::NoChange, steps + seen.cols() + named.cols());
         columns.rightCols(seen.cols() + named.cols()) << seen, named;
       }
       left -= columns * maths::least_norm(columns, left);
     }
-    // Whitened readings are in units of the readings' own noise. Where no u is given, 1 of it is no length.
+    // Whitened readings are in units of the independent noise. If no u is given, 1 of it is not a
+    // length.
     const double unit = fit::has_uncertainty(rows) ? 1 : noise.own;
     residual(fitted) = unit * left.col(0).cwiseQuotient(weights(fitted));
     return residual;
   }
 
-  /// The instrument, where errors correlated in time or by run are as large as the readings' own noise;
-  /// empty elsewhere.
+  /// Returns a sentence about the instrument if errors correlated in time or by run are as large
+  /// as the independent noise; else empty.
   std::string drift_of_instrument() const {
     const fit::NoiseModel& noise = result_.noise;
     double drift = std::hypot(noise.run, noise.drift);
@@ -307,8 +312,8 @@ class Diagnoser {
     return "The instrument does not hold still: " + ::vernier::fit::in_words(noise, result_.noise_unit) + ".";
   }
 
-  /// Is one of the candidates, whether it passed the tests or not, more than chance beside what was accepted
-  /// and noise of the size that is left?
+  /// Is one of the candidates, accepted or not, significant beside the accepted effects and noise
+  /// of the size of the residual?
   bool something_stands_out() const {
     for (std::size_t item = 0; item < pool_.size(); ++item) {
       const bool chosen = std::find(chosen_.begin(), chosen_.end(), item) != chosen_.end();
@@ -317,9 +322,10 @@ class Diagnoser {
     return false;
   }
 
-  /// Does the fit at the end of the ladder leave noise? By chi^2 where the uncertainty is given; where chi^2
-  /// is above it by so little that the uncertainty itself may be in doubt, and where none is given, by
-  /// whether what is left has any structure. `rows`: for the machine at that end.
+  /// Is the residual of the fit at the end of the stepwise model noise? If the uncertainty is
+  /// given, chi^2 decides. If chi^2 is so little above it that the uncertainty may be too small,
+  /// or if no uncertainty is given, remaining structure decides. `rows`: for the machine at that
+  /// end.
   bool down_to_noise(const model::Measurement& rows) {
     const model::Machine& machine = result_.end.machine;
     residual::StructureOptions structure;
@@ -334,23 +340,23 @@ class Diagnoser {
     const double reduced =
         (told ? weights.cwiseProduct(left).squaredNorm() : result_.end.chi_square) / freedom;
     if (!fit::has_uncertainty(measurement_)) return !structured || stands_without_u();
-    // More noise than stated is believed where nothing that was looked for stands out of it, and where there
-    // are enough readings for structure to show.
+    // Noise above the stated value is accepted only if no tested candidate is significant, and if
+    // there are enough readings to show structure.
     const double stated = result_.end.chi_square / freedom;
     if (noise.independent() && stated > limits_.doubtful_uncertainty) {
       if (stated > limits_.implausible_uncertainty || something_stands_out()) return false;
-      // Too few readings to show structure: no more is believed than without any u.
+      // With too few readings to show structure, the requirement is the same as without u.
       if (freedom < limits_.enough_readings) return !structured && stands_without_u();
     }
-    // The number alone is enough for one effect or two that hit the noise; what is near it only, or was put
-    // together from more, must leave no structure either.
+    // The number alone is sufficient for one or two effects that reach the noise. If the result is
+    // only near the noise, or has more effects, it must also have no structure.
     const double sigmas = (reduced - 1) / std::sqrt(2 / freedom);
     if (sigmas < limits_.hit_sigmas && !chosen_.empty() && chosen_.size() <= limits_.few_effects) return true;
     if (sigmas < limits_.noise_sigmas) return !structured;
     return reduced < limits_.doubtful_uncertainty && !structured;
   }
 
-  /// Is the first effect larger than all that is left beside it, and most explained?
+  /// Is the first effect larger than the residual beside it, and is most of chi^2 explained?
   bool stands_without_u() const {
     return !chosen_.empty() && is_mostly_explained() &&
            finder_.growth_without(chosen_.front()) > limits_.larger_than_rest;
@@ -363,7 +369,8 @@ class Diagnoser {
   void decide() {
     const model::Measurement rows = model::rebind(measurement_, base_.machine, result_.end.machine);
     const timebase::TimeBaseFinding clock = timebase::examine_time_base(measurement_, base_.residual);
-    // What effects of the machine take away was no clock: a reading that comes late looks like one.
+    // What effects of the machine explain is not a clock error. A late reading looks like a clock
+    // error.
     const bool explained = !chosen_.empty() && is_mostly_explained() &&
                            !timebase::examine_time_base(rows, result_.end.residual).found;
     if (clock.found && !explained) {
@@ -451,9 +458,9 @@ class Diagnoser {
     }
   }
 
-  /// Why what is named does not carry to the check rows; empty where it does, or where they cannot tell. They
-  /// are off by no more than the fit rows are, but for their own spread and for what the model's parameters
-  /// leave open.
+  /// Returns why the named cause does not hold on the check rows; empty if it holds, or if they
+  /// cannot decide. Their error must not exceed that of the fit rows, except for their own scatter
+  /// and the uncertainty of the model's parameters.
   std::string does_not_carry() const {
     const auto& check = result_.end.normalised_check;
     if (!check) return {};
@@ -470,9 +477,9 @@ class Diagnoser {
         std::sqrt(ratio));
   }
 
-  /// How many terms that only a search found are more likely pieces of one thing: all of them, where there
-  /// are two at one degree of freedom, or two that the check rows do not both confirm. 0: each stands for
-  /// itself.
+  /// Returns the number of searched terms that are more likely pieces of one function. It is all
+  /// of them if two are at one degree of freedom, or if the check rows do not confirm two of them.
+  /// 0: each is a cause of its own.
   std::size_t terms_without_standing() const {
     std::vector<effects::DofPlace> places;
     bool apart = true;
@@ -486,8 +493,8 @@ class Diagnoser {
     return places.size() > 1 && !apart ? places.size() : 0;
   }
 
-  /// Periods that the positions do not tell from the found ones, of the first accepted effect that has any;
-  /// empty: each is the only one.
+  /// Returns periods that the positions cannot distinguish from the found ones, of the first
+  /// accepted effect that has any; empty: each period is unique.
   std::string other_periods() {
     std::string text;
     for (const std::size_t item : chosen_) {
@@ -502,7 +509,7 @@ class Diagnoser {
       text = fmt::format("{}: {}, with any of {} periods: the positions of {} do not tell them apart. {:.5g}",
                          choice.effect->title, pool_.candidate(item).spoken, aliases.size() + 1, axis.name,
                          pool_[item].scored.scanned.front());
-      constexpr std::size_t kListed = 20;  // periods that a sentence bears
+      constexpr std::size_t kListed = 20;  // largest number of periods in a sentence
       for (std::size_t i = 0; i < std::min(kListed, aliases.size()); ++i)
         text += fmt::format(", {:.5g}", aliases[i]);
       text += fmt::format(" {}{}. Measure {} in uneven steps.", axis.rotary ? "deg" : "mm",
@@ -511,21 +518,22 @@ class Diagnoser {
     return text;
   }
 
-  /// The cause with its coefficients, how far the next one is behind, and what the whole ladder does.
+  /// Returns the cause with its coefficients, the distance of the next cause, and the decrease by
+  /// the whole stepwise model.
   std::string in_words() const {
     const CandidateFinding& cause = result_.candidates.front();
     std::string text = said_of(cause) + ".";
     if (rivals_.best)
       text += fmt::format(" The next best other cause, {}, is {:.0f} behind.",
                           pool_.candidate(*rivals_.best).spoken, rivals_.distance);
-    std::vector<std::string> beside;  // the ladder begins with the model as given
+    std::vector<std::string> beside;  // the stepwise model starts with the given model
     for (std::size_t i = 1; i < result_.ladder.size(); ++i)
       if (result_.ladder[i].said != cause.candidate.spoken) beside.push_back(result_.ladder[i].said);
     if (!beside.empty()) text += fmt::format(" Beside it: {}.", fmt::join(beside, "; "));
     return text + check_rows_in_words();
   }
 
-  /// What the check rows do with every step, and which step makes them worse.
+  /// Returns the result of every step on the check rows, and the step that makes them worse.
   std::string check_rows_in_words() const {
     std::string way, worse;
     const bool lengths = result_.ladder[0].check_rms_um.has_value();
@@ -549,7 +557,7 @@ class Diagnoser {
     return text + ".";
   }
 
-  /// Why one of the accepted effects cannot be what its name says; empty where all can.
+  /// Returns why one of the accepted effects cannot be what its name states; empty if all can.
   std::string doubt_of_shapes() const {
     for (const std::size_t item : chosen_)
       if (const std::string doubt = doubt_of_shape(finder_.evidence(), pool_, chosen_, item); !doubt.empty())
@@ -557,10 +565,10 @@ class Diagnoser {
     return {};
   }
 
-  /// Where what is left fails, in up to three sentences.
+  /// Returns where the residual fails the tests, in up to three sentences.
   std::string where_left() const {
     std::string text;
-    constexpr std::size_t kSentences = 3;  // that a person follows
+    constexpr std::size_t kSentences = 3;  // number of sentences that a reader can follow
     for (std::size_t i = 0; i < std::min(kSentences, result_.left.findings.size()); ++i)
       text += " " + result_.left.findings[i].sentence + ".";
     return text;
@@ -594,8 +602,8 @@ class Diagnoser {
   fit::FitResult base_;
   std::string text_;  // of the machine, fitted
   Finder finder_;
-  const Pool& pool_;                 // the finder's
-  std::vector<std::size_t> chosen_;  // the finder's, without those that gain nothing in the fit
+  const Pool& pool_;                 // of the finder
+  std::vector<std::size_t> chosen_;  // of the finder, without those that gain nothing in the fit
   std::vector<std::size_t> shown_;
   std::set<std::size_t> proven_;        // items that the check rows confirm
   std::vector<std::string> disproved_;  // labels of steps that the check rows contradict
@@ -635,15 +643,15 @@ const char* verdict_name(Verdict verdict) {
 
 namespace {
 
-/// The search, and once more without gross outliers where these may be the cause.
+/// Runs the search, and repeats it without gross outliers if these may be the cause.
 Diagnosis searched(const std::string& text, const model::Machine& machine,
                    const model::Measurement& measurement, const DiagnoseOptions& options) {
   Diagnosis all = Diagnoser(text, machine, measurement, options).run();
   if (!all.base.mistake.empty()) return all;
-  // Outliers beside effects that were found are not the whole answer either.
+  // Outliers beside found effects are not the whole cause either.
   const bool more_than_outliers =
       all.verdict == Verdict::kInstrument && all.ladder.size() > 1 && !all.time_base.found;
-  // Without u nothing says that readings far off are too far: they are looked for whatever was found.
+  // Without u, no limit defines an outlier. Outliers are therefore searched in every case.
   const bool by_spread = !fit::has_uncertainty(measurement) && !all.time_base.found;
   if (all.verdict != Verdict::kUnexplained && !more_than_outliers && !by_spread) return all;
   const model::Measurement rows = model::rebind(measurement, all.base.machine, all.end.machine);
@@ -664,8 +672,8 @@ Diagnosis searched(const std::string& text, const model::Machine& machine,
   return all;
 }
 
-/// No good verdict that the fit itself contradicts: it did not converge, or it leaves more of the readings
-/// than any machine does.
+/// Withdraws a good verdict if the fit contradicts it: the fit did not converge, or its residual
+/// exceeds that of any machine.
 void heed_the_fit(Diagnosis& answer) {
   if (answer.end.absurd.empty() && answer.end.converged) return;
   const std::string why = answer.end.absurd.empty() ? "the fit did not converge" : answer.end.absurd;

@@ -17,33 +17,35 @@
 namespace vernier::diagnose {
 
 enum class Verdict : std::uint8_t { kMissingEffect, kAmbiguous, kUnexplained, kInstrument, kConsistent };
-/// As the JSON result writes it: "missing-effect" ...
+/// Returns the name as the JSON result writes it: "missing-effect" ...
 const char* verdict_name(Verdict verdict);
 
 struct DiagnoseOptions {
   std::vector<effects::Effect> effects = effects::built_in_effects();
-  std::size_t most_effects = 5;  // steps of the ladder
+  std::size_t most_effects = 5;  // steps of the stepwise model
   std::size_t shown = 8;         // candidates that are fitted and listed
   DiagnoseThresholds thresholds;
   std::function<void(double, const std::string&)> progress = [](double, const std::string&) {};
 };
 
-/// What one candidate would do alone, fitted in earnest.
+/// The result of one candidate alone, by a full fit.
 struct CandidateFinding {
   effects::Candidate candidate;
   std::string add;
-  std::optional<std::size_t> axis;  // that drives it, else that of the receiving transform
+  std::optional<std::size_t> axis;  // axis that drives it, else the axis of the transform on which it acts
   std::vector<fit::ParameterEstimate> parameters;
   std::optional<double> rms_after_um, check_rms_before_um, check_rms_after_um;
   double share = 0, p_value = 1;
   double score = 0;       // decrease of the extended BIC; above 6 is evidence
-  bool accepted = false;  // stands in the ladder
+  bool accepted = false;  // is in the stepwise model
   std::string why_not;    // the test that it fails
   std::vector<std::string> confounded_with;
-  std::vector<double> aliases;  // other periods that the positions do not tell from its own, longest first
+  std::vector<double>
+      aliases;  // other periods that the positions cannot distinguish from its own, longest first
 };
 
-/// "Z carriage: lag 0.137 +- 0.007 ms": what it is and how much, for people (tools/effects/spoken.h).
+/// Returns "Z carriage: lag 0.137 +- 0.007 ms": cause and size for people
+/// (tools/effects/spoken.h).
 std::string said_of(const CandidateFinding& finding);
 
 struct LadderStep {
@@ -53,13 +55,14 @@ struct LadderStep {
   std::optional<double> rms_um, check_rms_um;      // of lengths
   std::optional<double> rms_urad, check_rms_urad;  // of rotations
   double chi_square_per_freedom = 0;
-  /// Do rows that neither fit nor selection saw bear it out, and by what likelihood ratio (natural
-  /// logarithm): the check rows, where the step is large enough there to tell, else runs left out in turn.
+  /// Do held-out rows confirm it, and by what likelihood ratio (natural logarithm)? Check rows are
+  /// used if the step is large enough there. Otherwise runs are held out in turn.
   std::optional<bool> confirmed;
   std::optional<double> evidence;
 };
 
-/// Places of the candidates are those of base.machine, which may hold a stand-in row (with_base_row).
+/// Locations of the candidates are those of base.machine, which may have an additional row
+/// (with_base_row).
 struct Diagnosis {
   Verdict verdict = Verdict::kConsistent;
   std::string explanation;
@@ -68,22 +71,23 @@ struct Diagnosis {
   std::vector<LadderStep> ladder;
   std::vector<std::string> next_measurement;
   std::optional<std::size_t> runner_up;  // index into candidates
-  double runner_up_distance = 0;         // by how much its criterion is worse
-  std::string machine_text;              // with all effects of the ladder, fitted
+  double runner_up_distance = 0;         // difference by which its criterion is worse
+  std::string machine_text;              // with all effects of the stepwise model, fitted
   fit::FitResult end;                    // of that machine
-  residual::FailurePicture failure;      // where the fitted model fails, before anything is added
-  residual::FailurePicture left;         // and at the end of the ladder
-  timebase::TimeBaseFinding time_base;   // `found` where the clock is the likelier cause
-  std::size_t searched = 0;              // candidates looked at
-  fit::NoiseModel noise;                 // how the errors of the readings are correlated
-  fit::NoiseUnit noise_unit;             // what 1 of it stands for
+  residual::FailurePicture failure;      // where the fitted model fails, before any effect is added
+  residual::FailurePicture left;         // and at the end of the stepwise model
+  timebase::TimeBaseFinding time_base;   // `found` if the clock is the more likely cause
+  std::size_t searched = 0;              // number of tested candidates
+  fit::NoiseModel noise;                 // correlation of the errors of the readings
+  fit::NoiseUnit noise_unit;             // unit of a weighted reading
 };
 
-/// Which physical effect is missing? Fits the model, ranks the catalogue at every place, accepts what passes
-/// all tests, and says which of the five answers the data give (FORMATS section 3). Readings that `fit`
-/// refuses by name (FitResult::mistake) are searched for nothing: kInstrument, with `end` = `base`. `text`:
-/// of the machine file. Check rows enter nothing but the figures that judge. The candidates point into
-/// options.effects, which must outlive them. Throws InputError. tool.
+/// Finds the missing physical effect. Fits the model, ranks the catalogue at every location,
+/// accepts candidates that pass all tests, and returns one of the five verdicts (FORMATS section
+/// 3). Readings that `fit` refuses by name (FitResult::mistake) are not searched: kInstrument,
+/// with `end` = `base`. `text`: of the machine file. Check rows are used only for the figures that
+/// test the result. The candidates point into options.effects, which must outlive them. Throws
+/// InputError. tool.
 Diagnosis diagnose(const std::string& text, const model::Machine& given,
                    const model::Measurement& measurement, const DiagnoseOptions& options = {});
 

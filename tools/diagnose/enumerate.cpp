@@ -23,7 +23,7 @@ bool is_symbol(const model::Expr& node, std::string_view name) {
 
 bool is_wave(const model::Expr& node) { return node.op == model::Op::kSin || node.op == model::Op::kCos; }
 
-/// Does a node of the term answer that stands within no function?
+/// Is the condition true for a node of the term that is inside no function?
 template <class Is>
 bool any_outside_functions(const model::Expr& node, const Is& is) {
   return is(node) || (model::function_name(node.op) == nullptr &&
@@ -45,7 +45,7 @@ bool is_bent_or_mixed(const model::Expr& node) {
          grows_with_axis(node);
 }
 
-/// A sign that a wave sets: one value only where the wave never crosses zero.
+/// Is the sign set by a wave? It has one value only if the wave never crosses zero.
 bool is_switched_by_wave(const model::Expr& node) {
   return (node.op == model::Op::kSign && is_wave(*node.args[0])) ||
          std::any_of(node.args.begin(), node.args.end(),
@@ -101,7 +101,7 @@ class Enumerator {
   }
 
  private:
-  /// Touches are readings along a normal; readings that a trigger takes have no second clock.
+  /// Touches are readings along a normal. Readings that a trigger takes have no second clock.
   bool goes_with_readings(const effects::Effect& effect, const effects::EffectForm& form) const {
     if (effect.needs_touches) return has_normals_;
     return !(form.place == effects::PlaceRule::kEachAxis && has_normals_);
@@ -112,14 +112,15 @@ class Enumerator {
     return evidence_.response(at).squaredNorm() > 0 && !is_outshone_[at];
   }
 
-  /// The row that stands in at the base takes what no row of the file can express, and nothing that an axis
-  /// drives: what moves or bends with an axis is carried by it.
+  /// The added row at the base gets effects that no row of the file can express. It gets no effect
+  /// that an axis drives, because the transform of that axis carries such an effect.
   bool is_open(const effects::DofPlace& place, const effects::Choice& choice) const {
     if (!effects::is_stand_in(machine_, place)) return true;
     return !choice.axis && std::find(distinct_.begin(), distinct_.end(), place) != distinct_.end();
   }
 
-  /// Which places turn about a horizontal axis or move along gravity, on average over some rows.
+  /// Finds the locations that rotate about a horizontal axis or move along gravity, on average
+  /// over some rows.
   void find_sag() {
     model::Machine probed = machine_;
     std::vector<char> active(probed.statics.size(), 0);
@@ -157,7 +158,8 @@ class Enumerator {
     }
   }
 
-  /// Sums of the angles of parallel joints that follow one another: the direction of a link depends on them.
+  /// Finds sums of the angles of successive parallel joints. The direction of a link depends on
+  /// them.
   void find_sums() {
     sums_.resize(machine_.axes.size());
     std::vector<std::size_t> rotary;
@@ -179,7 +181,8 @@ class Enumerator {
     for (std::size_t k = 0; k < twists.size(); ++k)
       direction[chain.keys()[k] - machine_.statics.size()] = twists[k].rotation.normalized();
     for (std::size_t i = 0; i < rotary.size(); ++i) {
-      // From the first joint that is parallel to this one without a break, up to each joint at or behind it.
+      // From the first joint that is parallel to this one without interruption, up to each joint
+      // at or behind it.
       std::size_t first = i;
       while (first > 0 && std::abs(direction[first - 1].dot(direction[i])) > thresholds_.parallel_cosine)
         --first;
@@ -224,7 +227,8 @@ class Enumerator {
     }
   }
 
-  /// Does a column count on with the rows, as a cycle or a stamp does? It says no more than time.
+  /// Does a column increase with the rows, as a cycle counter or a time stamp does? It has the
+  /// same information as time.
   bool is_like_a_clock(std::size_t input) const {
     const std::vector<std::size_t>& rows = evidence_.rows();
     Eigen::MatrixXd both(static_cast<Eigen::Index>(rows.size()), 2);
@@ -250,8 +254,8 @@ class Enumerator {
       if (!own_[axis]) continue;
       const bool turns =
           form.any([](const model::Expr& node) { return is_wave(node) && is_symbol(*node.args[0], "{q}"); });
-      if (turns && !machine_.axes[axis].rotary) continue;  // degrees of a turn, not millimetres
-      // Once per turn; what gravity does to an arm has that period whatever its travel.
+      if (turns && !machine_.axes[axis].rotary) continue;  // degrees of a revolution, not millimetres
+      // Once per revolution. The effect of gravity on an arm has that period at any travel.
       const bool own_wave = form.place == effects::PlaceRule::kOwn ||
                             form.place == effects::PlaceRule::kCross ||
                             form.place == effects::PlaceRule::kTurn;
@@ -274,16 +278,17 @@ class Enumerator {
     }
   }
 
-  /// A power of an angle says nothing: errors of a rotary axis are periodic, or a table.
+  /// A power of an angle has no meaning: errors of a rotary axis are periodic, or a table.
   static bool has_meaning_of_turns(const effects::EffectForm& form) {
     const auto bent = [](const model::Expr& tree) { return any_outside_functions(tree, is_bent_or_mixed); };
     if (form.asks_for("mid") || any_tree(form, bent)) return false;
     return form.place == effects::PlaceRule::kOwn || !any_tree(form, grows_with_axis);
   }
 
-  /// Hats stand on the range that was measured, waves on the declared one where that was measured too.
+  /// A piecewise linear basis uses the measured range. A wave uses the declared range if that was
+  /// measured too.
   void set_range(effects::Choice& choice, std::size_t axis) const {
-    // Outwards to a thousandth of the range, so that the term can be read.
+    // Rounded outwards to a thousandth of the range, so that the term is readable.
     const double span = range_[axis].high - range_[axis].low;
     const double digit = span > 0 ? std::pow(10, std::floor(std::log10(span / 1000))) : 1;
     choice.from = std::floor(range_[axis].low / digit) * digit;
@@ -363,7 +368,7 @@ class Enumerator {
     }
   }
 
-  /// Effects that speak of lengths (thermal growth, squareness) mean no rotary axis.
+  /// Effects on lengths (thermal growth, squareness) do not apply to rotary axes.
   static bool needs_linear(const effects::EffectForm& form) { return form.asks_for("T"); }
 
   void with_sum(const effects::Choice& choice) {
@@ -373,7 +378,7 @@ class Enumerator {
     }
     if (!choice.form->asks_for("sum")) return with_runs(choice);
     for (const std::string& sum : sums_[*choice.axis]) {
-      // The two-link forms say the same as one link where the sum is the joint itself.
+      // The two-link forms are the same as one link if the sum is the joint itself.
       if (choice.form->asks_for("q") && sum == machine_.axes[*choice.axis].name) continue;
       effects::Choice one = choice;
       one.sum = sum;
@@ -408,8 +413,8 @@ class Enumerator {
     finish(choice);
   }
 
-  /// Was the axis read near every station of a table; of one that has a sense, in both of them? An end is
-  /// reached in one.
+  /// Was the axis read near every station of a table? For a table with an approach direction, in
+  /// both directions? An end is reached in one direction only.
   bool is_each_hat_read(const effects::Choice& choice) const {
     const std::size_t axis = *choice.axis;
     const double length = range_[axis].high - range_[axis].low;
@@ -463,7 +468,8 @@ class Enumerator {
     std::vector<double> grid;
     if (length <= 0 || range.step <= 0) return grid;
     const CandidateThresholds& to = thresholds_;
-    // Even steps cannot tell a period below two of them from a longer one; uneven steps can.
+    // Even steps cannot distinguish a period below two of them from a longer one. Uneven steps
+    // can.
     const double shortest = std::max(range.even ? to.steps_per_period * range.step : 0, shortest_[axis]);
     const double fastest = to.most_periods / std::max(length, to.most_periods * shortest);
     // A long wave on even positions may be the alias of a short one.
@@ -475,14 +481,14 @@ class Enumerator {
       for (double harmonic = 1; harmonic <= static_cast<double>(to.harmonics_of_turn); ++harmonic)
         if (harmonic / 360 <= fastest && length > to.least_of_a_period * 360 / harmonic)
           grid.push_back(360 / harmonic);
-    // At two even steps a wave has lost its sine, and may still be the true one's only likeness.
+    // At two even steps a wave has lost its sine. It may still be the only form of the true wave.
     if (range.even && !grid.empty()) grid.push_back(2 * range.step);
     std::sort(grid.begin(), grid.end());
     return grid;
   }
 
   void finish(effects::Choice choice) {
-    // Starts of the scanned unknowns: any value of the grid, to make the candidate whole.
+    // Starts of the scanned unknowns: any value of the grid, to complete the candidate.
     ScannedCandidate item;
     for (const effects::UnknownRule& rule : choice.effect->unknowns) {
       if (rule.kind == effects::UnknownKind::kLinear || !uses(*choice.form, rule.name)) continue;
@@ -500,7 +506,7 @@ class Enumerator {
     list_.push_back(std::move(item));
   }
 
-  /// Is the candidate's first term one value in all rows?
+  /// Does the candidate's first term have the same value in all rows?
   bool never_changes(const effects::Candidate& candidate) const {
     model::Machine scratch = machine_;
     for (const std::size_t unknown : effects::add_unknowns(scratch, candidate, {}))
@@ -514,7 +520,7 @@ class Enumerator {
     });
   }
 
-  /// A wave by itself is looked for below the grid too.
+  /// A wave alone is also searched below the grid.
   void add_fine_periods(ScannedCandidate& item) {
     if (item.grid.size() != 1 || !item.candidate.choice.axis) return;
     for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(item.candidate))
@@ -541,9 +547,10 @@ class Enumerator {
   Pulls pulls_;
   std::vector<std::optional<effects::DofPlace>> own_;
   std::vector<Evidence::Range> range_;
-  std::vector<double> shortest_;             // period that the positions of an axis tell from longer ones
+  std::vector<double>
+      shortest_;  // shortest period that the positions of an axis distinguish from longer ones
   std::map<std::size_t, FinePeriods> fine_;  // of an axis, without carrier
-  std::vector<char> is_outshone_;            // by place
+  std::vector<char> is_outshone_;            // by location
   std::vector<effects::DofPlace> distinct_, sag_;
   std::vector<std::vector<std::string>> sums_;
   bool has_normals_ = false;
@@ -554,7 +561,7 @@ class Enumerator {
 
 bool ScannedCandidate::is_driven_out(std::size_t unknown, double found, double value) const {
   const std::vector<double>& range = grid[unknown];
-  // From one wave to the next that the range tells apart.
+  // To the next wave that the range distinguishes.
   if (fine.holds(found)) return !(std::abs(1 / value - 1 / found) * fine.length <= 1);
   return !(value >= range.front() / most_driven && value <= range.back() * most_driven);
 }

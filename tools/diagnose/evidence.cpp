@@ -22,12 +22,12 @@
 namespace vernier::diagnose {
 namespace {
 
-/// All free parameters held: only the probes of a machine are left free.
+/// Holds all free parameters. Only the probes of a machine remain free.
 void hold_all(model::Machine& machine) {
   for (model::Freedom& one : model::freedoms_of(machine)) one.set_free(false);
 }
 
-/// Every how many rows one is kept, so that the Jacobian has no more than `most` numbers.
+/// Returns k, if every k-th row is kept so that the Jacobian has at most `most` numbers.
 std::size_t stride_of(const model::Measurement& all, std::size_t parameters, double most) {
   const double numbers = static_cast<double>(all.observations.size()) * static_cast<double>(parameters + 60);
   return numbers <= most ? 1 : static_cast<std::size_t>(std::ceil(numbers / most));
@@ -76,7 +76,7 @@ void Evidence::take_inputs() {
     input.unit = candidate.unit;
     machine_.inputs.push_back(input);
     model::Column column = candidate.value;
-    // An empty cell says nothing: the column's mean makes the least of it.
+    // An empty cell gets the column's mean, which has the least influence.
     double sum = 0, count = 0;
     for (const double value : column)
       if (std::isfinite(value)) {
@@ -128,7 +128,8 @@ void Evidence::silence_rounding() {
 }
 
 void Evidence::find_reach(const Eigen::VectorXd& predicted) {
-  // Of each length that is read, how far the model goes; a ball bar's own length does not show it.
+  // Extent of the model for each length that is read. The own length of a ball bar does not show
+  // it.
   std::map<model::ObservationKind, std::pair<double, double>> ranges;
   for (const std::size_t i : observation_) {
     const model::ObservationKind kind = measurement_.observations[i].kind;
@@ -168,7 +169,7 @@ void Evidence::absorb() {
   const Eigen::Index rank = std::min(values.size() - lost, residual_.size());
   const Eigen::MatrixXd seen = jacobian * (eigen.eigenvectors().rightCols(rank) *
                                            values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal());
-  // Once more through a factorisation: the weak directions come out of the eigenvectors with few digits.
+  // A second factorisation: the eigenvectors give the weak directions with few digits.
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(seen);
   absorbed_ = qr.householderQ() * Eigen::MatrixXd::Identity(residual_.size(), rank);
   residual_ -= absorbed_ * (absorbed_.transpose() * residual_);
@@ -183,7 +184,7 @@ void Evidence::split_blocks() {
     rows.push_back(row);
     ++total;
   }
-  // A run that holds most rows is cut into blocks of rows that follow one another.
+  // A run that contains most rows is divided into blocks of successive rows.
   std::map<std::size_t, std::size_t> parts, first;
   std::size_t next = 0;
   for (const auto& [run, rows] : rows_of_run) {
@@ -217,7 +218,8 @@ std::vector<std::vector<Eigen::Index>> Evidence::readings_at_one_pose() const {
 
 double Evidence::shared_pose_error(const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted) const {
   const std::vector<std::vector<Eigen::Index>> groups = readings_at_one_pose();
-  // Squares of the poses' means and of what differs within them; what was fitted takes its share of both.
+  // Squares of the poses' means and of the differences within them. The fitted columns reduce
+  // both.
   double between = 0, within = 0, freedom_between = 0, freedom_within = 0, count = 0;
   for (const std::vector<Eigen::Index>& readings : groups) {
     const auto n = static_cast<double>(readings.size());
@@ -420,7 +422,7 @@ int Evidence::sense_of(std::size_t axis, std::size_t row) const {
   const model::Column& direction = measurement_.states.direction[axis];
   if (measurement_.has_recorded(format::axis_column(format::AxisQuantity::kSense, machine_.axes[axis].name)))
     return static_cast<int>(direction[at]);
-  // Not told: the way from the row before, over repeats at one place.
+  // If not recorded: the motion from the row before, across repeats at one position.
   for (Eigen::Index before = at; before-- > 0;) {
     const double step = position_[axis][at] - position_[axis][before];
     if (step != 0) return step > 0 ? 1 : -1;

@@ -17,7 +17,7 @@
 namespace vernier::diagnose {
 namespace {
 
-/// Does one noise model say what another says, but for this share of the noise?
+/// Are two noise models the same to within this share of the noise?
 bool is_alike(const fit::NoiseModel& a, const fit::NoiseModel& b, double share) {
   const double same = share * std::max(a.total(), b.total());
   return std::abs(a.own - b.own) < same && std::abs(a.pose - b.pose) < same &&
@@ -30,7 +30,7 @@ std::vector<fit::NoiseStep> set_ups_in(const fit::NoiseModel& noise) {
   return steps;
 }
 
-/// The same but for the readings' own noise.
+/// The same except for the independent noise.
 bool hangs_alike(fit::NoiseModel a, const fit::NoiseModel& b, double share) {
   const double scale = b.own / a.own;
   a.own = b.own;
@@ -168,15 +168,15 @@ void Finder::simplify(double share) {
       const bool does_it = apart - trial.chi_square >= share * (apart - chi_square_);
       if (!does_it && trial.criterion - criterion_ >= thresholds_.evidence + most_price) continue;
       if (simplest && trial.criterion >= best.criterion) continue;
-      // The same columns from a place further from the axis, or from a term without a name, are only the
-      // longer way to say it.
+      // The same columns from a location further from the axis, or from a term without a name, are
+      // only a longer form of the same term.
       const bool named = pool_.is_custom(chosen_[i]) && !pool_.is_custom(other);
       const bool same_but_nearer =
           pool_.same_kind(chosen_[i], other) &&
           (named || pool_.penalty(pool_[other].scored) < pool_.penalty(pool_[chosen_[i]].scored)) &&
           pool_.same_columns(chosen_[i], other);
       if (!same_but_nearer && !pool_.contains(chosen_[i], other)) continue;
-      // One of many that hold it fits better by chance: it must lower the BIC by more.
+      // One of many forms that contain it fits better by chance, so it must lower the BIC by more.
       const double price = same_but_nearer ? 0 : 2 * std::log(std::max(1.0, holders_of(other)));
       if (!does_it && trial.criterion - criterion_ >= thresholds_.evidence + price) continue;
       simplest = other;
@@ -202,12 +202,12 @@ double Finder::holders_of(std::size_t simple) const {
 void Finder::search() {
   scan_beside({}, 0.05, 0.3);
   select_again();
-  constexpr int kMostScans = 6;  // of all candidates beside what is chosen, at most
+  constexpr int kMostScans = 6;  // of all candidates beside the chosen ones, at most
   for (int round = 0; round < kMostScans && !chosen_.empty(); ++round) {
     const std::vector<std::size_t> before = chosen_;
     const double criterion = criterion_;
     scan_beside(chosen_, 0.3 + 0.08 * round, 0.34 + 0.08 * round);
-    // Rivals of each accepted one, the others given.
+    // Alternatives of each accepted item, with the others unchanged.
     if (chosen_.size() > 1)
       for (const std::size_t item : before)
         scan_beside(without(item), 0.34 + 0.08 * round, 0.38 + 0.08 * round);
@@ -242,7 +242,7 @@ void Finder::search_under(const fit::NoiseModel& noise) {
 
 double Finder::priced_criterion() const {
   const fit::NoiseModel& used = evidence_.noise();
-  // Of the readings' own scale only what is left of them counts (restricted likelihood), as in the
+  // Only the remaining part of the readings' own scale counts (restricted likelihood), as in the
   // selection's criterion.
   const auto readings = static_cast<double>(evidence_.residual().size());
   const double own = 2 * std::log(used.own) * (readings - evidence_.freedom());
@@ -281,8 +281,8 @@ void Finder::share_poses() {
   };
   if (const double share = evidence_.shared_pose_error(left, all); share > 0) return search_with(share);
   if (chosen_.empty()) return;
-  // Few places that each have an error of their own, and effects enough to meet them all: what was named is a
-  // rival of that error, and it is the better account of the readings that stands.
+  // There are few positions with independent errors, and enough effects to fit them all. The named
+  // effects are then an alternative to those errors. The better account of the readings is used.
   const double share = evidence_.shared_pose_error(evidence_.residual(),
                                                    Eigen::MatrixXd::Zero(evidence_.residual().size(), 0));
   if (share <= 0) return;
@@ -293,18 +293,19 @@ void Finder::share_poses() {
 }
 
 void Finder::weigh_correlation() {
-  // The instrument is an alternative to every name: correlated errors may be its own drift, or what an
-  // effect leaves of itself. Both ways are gone, from all that a search can explain and from nothing
-  // explained, and the better one is taken.
+  // The instrument is an alternative to every named cause. Correlated errors may be its own drift,
+  // or the remainder of an effect. The search runs both from all that a search can explain and
+  // from nothing explained. The better result is used.
   const fit::NoiseModel white = evidence_.noise();
   const fit::NoiseModel after_all = evidence_.estimate(raw_columns(chosen_));
   const fit::NoiseModel after_none =
       chosen_.empty() ? after_all : evidence_.estimate(Eigen::MatrixXd(evidence_.residual().size(), 0));
-  // A set of effects stands only with the noise that it leaves.
+  // A set of effects is valid only together with the noise of its residual.
   const double same = thresholds_.same_noise;
   const bool stands = hangs_alike(after_all, white, same);
   const std::optional<fit::NoiseModel> set_ups = touched_anew(after_all);
-  // What moves as slowly as a drift does takes it over: the drift that only the others leave is its rival.
+  // A drift can absorb an effect that is as slow. Its alternative is the drift beside the other
+  // effects only.
   const std::vector<std::size_t> quick = quick_ones();
   const fit::NoiseModel after_quick =
       quick.size() < chosen_.size() ? evidence_.estimate(raw_columns(quick)) : after_all;
@@ -313,7 +314,7 @@ void Finder::weigh_correlation() {
   const Eigen::Index quick_columns = raw_columns(quick).cols();
   double best = stands ? priced_criterion() : std::numeric_limits<double>::infinity();
   fit::NoiseModel kept = white;
-  bool is_current = true;  // do search and evidence stand as `kept` has them?
+  bool is_current = true;  // are search and evidence in the state of `kept`?
   std::vector<fit::NoiseModel> starts = {after_all};
   if (!is_alike(after_none, after_all, same)) starts.push_back(after_none);
   if (!is_alike(after_quick, after_all, same) && !is_alike(after_quick, after_none, same))
@@ -322,8 +323,8 @@ void Finder::weigh_correlation() {
   for (const fit::NoiseModel& start : starts) {
     if (hangs_alike(start, white, same)) continue;
     double value = settle_noise_from(start);
-    // The instrument is preferred to names that a drift could take over; the others have to stand as they
-    // did.
+    // The instrument is preferred to causes that a drift could absorb. The other causes must stay
+    // as they were.
     const bool for_slow_ones = !chosen_.empty() && quick_ones().size() == chosen_.size() &&
                                raw_columns(chosen_).cols() >= quick_columns;
     if (for_slow_ones || (chosen_.empty() && !is_one_offset(start))) value -= thresholds_.instrument_distance;
@@ -365,7 +366,7 @@ std::optional<fit::NoiseModel> Finder::touched_anew(const fit::NoiseModel& expla
   const double fall = evidence_.left_in_full(none) - evidence_.left_in_full(columns);
   const double price = static_cast<double>(steps.size()) * std::log(static_cast<double>(none.rows()));
   if (fall < (price + thresholds_.instrument_distance) * explained.own * explained.own) return std::nullopt;
-  // From independent readings: what else is correlated may be a cause that is still to be found.
+  // From independent readings: other correlation may be a cause that is not yet found.
   fit::NoiseModel start = evidence_.estimate(none, std::move(steps));
   start.own = explained.own;
   start.pose = start.run = start.drift = 0;
@@ -487,14 +488,16 @@ double Finder::extent_of(const effects::Candidate& candidate) const {
 }
 
 double Finder::typical_size(const effects::Candidate& candidate, std::size_t linear, std::size_t item) const {
-  // Where it was read, and all along the axis that drives it: a curve may leave its stations there.
+  // At the read positions, and all along the axis that drives it: a curve may be large between
+  // them.
   const model::States& read = evidence_.measurement().states;
   double largest = largest_value(candidate, linear, item, read);
   if (candidate.choice.axis) {
     const Evidence::Range range = evidence_.range_of(*candidate.choice.axis);
     model::States along = model::select_states(read, evidence_.rows());
     model::Column& position = along.axis[*candidate.choice.axis];
-    constexpr double kGolden = 0.61803398874989485;  // of a turn: even over the range in any order of rows
+    constexpr double kGolden =
+        0.61803398874989485;  // of a turn: evenly distributed over the range in any order of rows
     for (Eigen::Index i = 0; i < position.size(); ++i) {
       const double at = static_cast<double>(i) * kGolden;
       position[i] = range.low + (at - std::floor(at)) * (range.high - range.low);
@@ -549,7 +552,7 @@ Eigen::VectorXd Finder::own_coefficients(std::size_t item) const {
 }
 
 void Finder::accept() {
-  // Every round bans an item: it ends with a set that passes, or with none.
+  // Every round bans an item, so the loop terminates with a set that passes, or with an empty set.
   while (!chosen_.empty()) {
     const auto failing = std::find_if(chosen_.rbegin(), chosen_.rend(),
                                       [&](std::size_t item) { return !failed_test(item).empty(); });
@@ -573,7 +576,8 @@ double Finder::p_value_beside(std::size_t item) const {
   const Eigen::MatrixXd beside = maths::orthonormal(pool_.columns(chosen_), 1e-6, nullptr);
   const Eigen::VectorXd left = evidence_.residual() - beside * (beside.transpose() * evidence_.residual());
   Eigen::MatrixXd own = pool_[item].columns - beside * (beside.transpose() * pool_[item].columns);
-  // What little a copy has beside its original is rounding, or the curvature of a period.
+  // The small difference between a copy and its original is rounding, or the curvature of a
+  // period.
   constexpr double kCopy = 1e-3;  // of its squares
   if (own.squaredNorm() < kCopy * pool_[item].columns.squaredNorm()) return 1;
   return chance_of(item, own, left, evidence_.freedom() - static_cast<double>(beside.cols()));
@@ -604,7 +608,8 @@ Rivals Finder::rivals_of(std::size_t item) const {
     set.push_back(rival);
     const double distance = evaluate(set).criterion - criterion_;
     if (distance < thresholds_.distance) {
-      // A form that holds this one and more would need evidence of its own: no rival.
+      // A form that contains this one and additional terms needs evidence of its own. It is not an
+      // alternative.
       if (pool_.contains(rival, item)) continue;
       const effects::Choice &mine = pool_.candidate(item).choice, &other = pool_.candidate(rival).choice;
       const bool alike =

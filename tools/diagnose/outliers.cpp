@@ -15,8 +15,8 @@
 namespace vernier::diagnose {
 namespace {
 
-/// Rows with a reading more than `far` spreads from the fit; the spread is that of most of them, and u at
-/// least.
+/// Returns rows with a reading more than `far` standard deviations from the fit. The standard
+/// deviation is that of most rows, and at least u.
 std::vector<std::size_t> far_rows(const model::Measurement& rows, const Eigen::VectorXd& residual,
                                   double far) {
   const Eigen::VectorXd weights = fit::fit_weights(rows);
@@ -36,21 +36,21 @@ std::vector<std::size_t> far_rows(const model::Measurement& rows, const Eigen::V
 }
 
 struct Peeled {
-  model::Measurement rows;         // that are left
-  std::vector<std::size_t> lines;  // of those that are not, in order
-  std::vector<std::size_t> kept;   // rows of all that are left
-  fit::FitResult fit;              // to the rows that are left
+  model::Measurement rows;         // the remaining rows
+  std::vector<std::size_t> lines;  // lines of the excluded rows, in order
+  std::vector<std::size_t> kept;   // indices of the remaining rows
+  fit::FitResult fit;              // to the remaining rows
 };
 
-/// Leaves out far rows and fits again, until there are none; nothing where there never were, or more than
-/// `most`.
+/// Excludes outlying rows and fits again until there are no more. Returns nullopt if there were no
+/// outliers, or more than `most`.
 std::optional<Peeled> peel(const model::Machine& machine, const model::Measurement& all,
                            const Eigen::VectorXd& of_all, double far, double most) {
   Peeled peeled{all, {}, {}, {}};
   peeled.kept.resize(all.rows());
   std::iota(peeled.kept.begin(), peeled.kept.end(), std::size_t{0});
   peeled.fit.residual = of_all;
-  constexpr int kMostRounds = 5;  // of taking out what lies far off, at most
+  constexpr int kMostRounds = 5;  // rounds of excluding outliers, at most
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<std::size_t> found = far_rows(peeled.rows, peeled.fit.residual, far);
     if (found.empty()) break;
@@ -69,7 +69,7 @@ std::optional<Peeled> peel(const model::Machine& machine, const model::Measureme
   return peeled;
 }
 
-/// "12 of 400 rows (line 14, 142, ...)"
+/// Returns "12 of 400 rows (line 14, 142, ...)"
 std::string rows_in_words(const Peeled& peeled, const model::Measurement& all) {
   constexpr std::ptrdiff_t kNamed = 8;
   const auto count = static_cast<std::ptrdiff_t>(peeled.lines.size());
@@ -84,7 +84,7 @@ std::optional<std::string> outliers_to_blame(const model::Machine& machine,
                                              const model::Measurement& measurement,
                                              const Eigen::VectorXd& of_all,
                                              const VerdictThresholds& thresholds) {
-  if (!fit::has_uncertainty(measurement)) return std::nullopt;  // nothing says what the rest should be
+  if (!fit::has_uncertainty(measurement)) return std::nullopt;  // the expected residual is unknown
   const auto peeled = peel(machine, measurement, of_all, thresholds.outlier_spreads,
                            thresholds.outliers_alone * static_cast<double>(measurement.rows()));
   if (!peeled || peeled->fit.freedom <= 0) return std::nullopt;

@@ -11,24 +11,25 @@
 
 namespace vernier::diagnose {
 
-/// A few readings far from all others, and the rest noise once their rows are left out and the machine is
-/// fitted again: that is the instrument (a lost beam, a bumped target). The sentence that says so, with line
-/// numbers; nothing where it is not so or where no uncertainty says what noise is. `of_all`: residual of the
-/// machine's fit to all rows, mm or deg. tool.
+/// Tests whether the instrument is the cause: a few readings are far from all others, and the rest
+/// is noise after their rows are excluded and the machine is fitted again (a lost beam, a bumped
+/// target). Returns the sentence with line numbers. Returns nullopt if that is not so, or if no
+/// uncertainty defines the noise. `of_all`: residual of the machine's fit to all rows, mm or deg.
+/// tool.
 std::optional<std::string> outliers_to_blame(const model::Machine& machine,
                                              const model::Measurement& measurement,
                                              const Eigen::VectorXd& of_all,
                                              const VerdictThresholds& thresholds);
 
-/// The rows beside the gross outliers, and the sentence that says which were left out.
+/// The rows without the gross outliers, and the sentence that lists the excluded rows.
 struct WithoutOutliers {
   std::vector<std::size_t> kept;
   std::string sentence;
 };
 
-/// Leaves out the rows with a reading far off what the effects found so far leave, up to a share of the rows;
-/// nothing where there are none or more. `machine`, `of_all`: with
-/// those effects. tool.
+/// Excludes the rows with a reading far from the model with the effects found so far, up to a
+/// share of the rows. Returns nullopt if there are no such rows or more than that. `machine`,
+/// `of_all`: with those effects. tool.
 std::optional<WithoutOutliers> without_gross_outliers(const model::Machine& machine,
                                                       const model::Measurement& measurement,
                                                       const Eigen::VectorXd& of_all,

@@ -46,8 +46,8 @@ double power_at(const Positions& positions, Index column, double frequency) {
   return std::pow((value * phase.cos()).sum(), 2) + std::pow((value * phase.sin()).sum(), 2);
 }
 
-/// The same of every column (one row each) at frequencies first + k * step. Sines follow from the ones before
-/// by a rotation; that loses a digit in a thousand steps.
+/// The same for every column (one row each) at frequencies first + k * step. Each sine follows
+/// from the previous one by a rotation. That loses one digit in a thousand steps.
 Eigen::MatrixXd powers(const Positions& positions, double first, double step, Index count) {
   constexpr Index kBlock = 32;  // frequencies in one product
   const Index size = positions.at.size();
@@ -80,8 +80,8 @@ double peak_between(const Positions& positions, Index column, double low, double
       .at;
 }
 
-/// The positions of an axis, one of those that a wave as short as any looked for does not tell apart: where
-/// an axis stood, and not how often. A weight of 1 each.
+/// Returns the positions of an axis, without repeats. Positions that the shortest searched wave
+/// does not distinguish count once, however often they were read. Each has weight 1.
 Positions stations(const Evidence& evidence, std::size_t axis, double length, int sense = 0) {
   const double apart = 1 / (4 * evidence.thresholds().fine.most_periods);
   const std::vector<double> kept = evidence.places_read(axis, sense, apart * length);
@@ -94,8 +94,8 @@ double most_frequency(const Positions& positions, double length, const FinePerio
          length;
 }
 
-/// Peaks of a row of powers worth a closer look: the `most` highest ones, and the slowest of those that come
-/// within `margin` of the highest.
+/// Returns peaks of a row of powers for refinement: the `most` highest ones, and the slowest of
+/// those within `margin` of the highest.
 std::vector<Index> best_peaks(const Eigen::MatrixXd& power, Index row, double least, double margin,
                               std::size_t most) {
   std::vector<Index> peaks;
@@ -116,7 +116,7 @@ std::vector<Index> best_peaks(const Eigen::MatrixXd& power, Index row, double le
 }  // namespace
 
 std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis, double most) {
-  constexpr double kPerWindow = 5, kFirst = 1.5;  // frequencies for each that the range tells apart
+  constexpr double kPerWindow = 5, kFirst = 1.5;  // tested frequencies for each that the range distinguishes
   const double partly = evidence.thresholds().fine.alias_partly;
   const Evidence::Range range = evidence.range_of(axis);
   const double length = range.high - range.low;
@@ -142,10 +142,11 @@ std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis
 
 namespace {
 
-/// The same of some positions.
+/// The same for given positions.
 double shortest_of(const Evidence& evidence, const Positions& positions, double length) {
-  // The waves that look the same at two positions have a frequency at which all positions look alike.
-  constexpr double kPerWindow = 5;  // frequencies looked at for each that the range tells apart
+  // Waves that are the same at two positions differ by a frequency at which all positions have the
+  // same phase.
+  constexpr double kPerWindow = 5;  // tested frequencies for each that the range distinguishes
   const FinePeriodThresholds& limits = evidence.thresholds().fine;
   const double steps_per_alias = evidence.thresholds().candidates.steps_per_period;
   const double step = 1 / (kPerWindow * length), first = 1.5 / length;
@@ -173,8 +174,9 @@ double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
   if (length <= 0) return 0;
   const Positions all = stations(evidence, axis, length);
   const double together = shortest_of(evidence, all, length);
-  // Two senses whose stops are out of step make a finer comb than either has: what it shows and they do not
-  // is how the senses differ.
+  // If the stops of the two approach directions are at different positions, together they form a
+  // finer grid. An effect that only this finer grid shows is the difference between the
+  // directions.
   double apart = 1e300;
   for (const int sense : {-1, 1}) {
     const Positions one = stations(evidence, axis, length, sense);
@@ -198,7 +200,7 @@ FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::
   fine.axis = axis;
   fine.length = range.high - range.low;
   fine.step = 1 / (limits.per_range * fine.length);
-  // The two lists overlap, so that a peak between them is one of this.
+  // The two lists overlap, so that a peak between them is in this list.
   fine.slowest = 1 / grid.front() - 3 * fine.step;
   fine.fastest = most_frequency(stations(evidence, axis, fine.length), fine.length, limits);
   if (shortest > 0) fine.fastest = std::min(fine.fastest, 1 / shortest);
@@ -207,7 +209,7 @@ FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::
 
 Eigen::VectorXd carrier_of(const Evidence& evidence, const effects::Candidate& candidate,
                            const FinePeriods& fine) {
-  constexpr double kSame = 1e-9;  // relative: the same period but for rounding
+  constexpr double kSame = 1e-9;  // relative: the same period except for rounding
   Eigen::VectorXd carrier;
   for (const double frequency : {fine.slowest, fine.fastest}) {
     const Eigen::MatrixXd columns = evidence.columns(candidate, {1 / frequency});
@@ -231,7 +233,8 @@ std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
   std::vector<std::vector<double>> found(of_axis.size());
   if (of_axis.empty()) return found;
   const FinePeriods& fine = *of_axis.front();
-  // The columns are weighed as the residual is; a symmetric weighing of the residual once more does as well.
+  // The columns are weighted like the residual. For a symmetric weighting, weighting the residual
+  // once more is equivalent.
   Eigen::MatrixXd weighed = residual;
   evidence.whiten(weighed);
   Eigen::MatrixXd products(residual.size(), static_cast<Index>(of_axis.size()));
@@ -240,7 +243,7 @@ std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
   const Positions positions = by_position(evidence, fine.axis, products);
   const auto count = static_cast<Index>(std::floor((fine.fastest - fine.slowest) / fine.step)) + 1;
   const Eigen::MatrixXd power = powers(positions, fine.slowest, fine.step, count);
-  // Power at which the wave explains as much as the highest of so many waves does of noise.
+  // Power at which the wave explains as much as the highest of so many waves explains of noise.
   const double variance = residual.squaredNorm() / std::max(1.0, evidence.freedom());
   const FinePeriodThresholds& limits = evidence.thresholds().fine;
   for (std::size_t i = 0; i < of_axis.size(); ++i) {

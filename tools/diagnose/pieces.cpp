@@ -8,7 +8,7 @@
 namespace vernier::diagnose {
 namespace {
 
-/// Period of an item in the unit of its axis; 0 for one that has none.
+/// Returns the period of an item in the unit of its axis; 0 if it has no period.
 double period_of(const Pool& pool, std::size_t item) {
   auto value = pool[item].scored.scanned.begin();
   for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(pool.candidate(item))) {
@@ -24,7 +24,8 @@ bool harmonics(double a, double b, double allowed) {
   return std::round(ratio) > 1 && std::abs(ratio - std::round(ratio)) < allowed * ratio;
 }
 
-/// Do two periods beat less than once over a length? Then they are one wave whose height or length changes.
+/// Do two periods beat less than once over a length? Then they are one wave whose amplitude or
+/// period changes.
 bool unresolved(double a, double b, double length) {
   return a > 0 && b > 0 && length * std::abs(1 / a - 1 / b) < 1;
 }
@@ -34,7 +35,7 @@ bool is_function_of_its_axis(const Evidence& evidence, const effects::Candidate&
          drivers_of(evidence.machine(), candidate).empty();
 }
 
-/// A wave that repeats often enough in the range to be seen for one.
+/// A wave with enough periods in the range to be identified.
 bool is_plain_wave(const Evidence& evidence, const Pool& pool, std::size_t item) {
   const double period = period_of(pool, item);
   if (period <= 0 || !pool.candidate(item).choice.axis) return false;
@@ -47,7 +48,8 @@ bool moves_alike(const Evidence& evidence, const effects::DofPlace& a, const eff
   return std::abs(x.dot(y)) > evidence.thresholds().shape.moves_alike * x.norm() * y.norm();
 }
 
-/// The largest group of functions, seen from each of them; `alike` says which belong together.
+/// Returns the largest group of functions, as seen from each of them. `alike` decides which belong
+/// together.
 template <class Counts, class Alike>
 std::vector<std::size_t> largest_group(const Evidence& evidence, const Pool& pool,
                                        const std::vector<std::size_t>& items, const Counts& counts,
@@ -68,7 +70,8 @@ std::vector<std::size_t> largest_group(const Evidence& evidence, const Pool& poo
   return most;
 }
 
-/// Two periods of one axis at places that move the readings alike, that the range read does not resolve.
+/// Two periods of one axis that the measured range does not resolve, at locations that move the
+/// readings alike.
 std::vector<std::size_t> unresolved_periods(const Evidence& evidence, const Pool& pool,
                                             const std::vector<std::size_t>& items) {
   for (const std::size_t a : items)
@@ -90,7 +93,7 @@ bool has_one_reading_a_row(const Evidence& evidence) {
                      [&](const model::Observation& o) { return o.kind == all.front().kind; });
 }
 
-/// Position, or what follows from it along a path at a steady feed.
+/// Position, or a quantity that follows from it along a path at a steady feed.
 bool follows_from_position(const Evidence& evidence, const effects::Candidate& candidate) {
   const auto drivers = drivers_of(evidence.machine(), candidate);
   return std::all_of(drivers.begin(), drivers.end(), [](const auto& driver) {
@@ -109,7 +112,8 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
   const auto choice = [&](std::size_t item) -> const effects::Choice& { return pool.candidate(item).choice; };
   const auto waves = static_cast<std::size_t>(std::count_if(
       items.begin(), items.end(), [&](std::size_t item) { return is_plain_wave(evidence, pool, item); }));
-  // Waves beside a curve of the same axis are what a table cannot follow of one function, a chirp.
+  // Waves beside a curve of the same axis are the part of one function that a table cannot follow,
+  // a chirp.
   const auto beside_a_curve = [&](std::size_t wave) {
     return std::any_of(items.begin(), items.end(), [&](std::size_t item) {
       return choice(item).axis == choice(wave).axis && period_of(pool, item) <= 0 &&

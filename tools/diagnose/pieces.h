@@ -7,14 +7,15 @@
 
 namespace vernier::diagnose {
 
-/// Items that are more likely the pieces of one function that the catalogue does not hold than as many
-/// causes; empty where there are no such. A curve and a period of one axis may well stand beside each other;
-/// a third function of that axis at the same degree of freedom (or at places that move the readings alike)
-/// takes the place of what was not found. Where every row has but one reading, of one kind, a fourth function
-/// of position does, of whatever axis, a third beside a curve (three coefficients or more), or a second
-/// curve: on a circle all of them are functions of its angle, and two curves span every such function.
-/// Periods that are harmonics of one another count once; two periods that beat less than once over the range
-/// that was read are one wave that changes along it, no two causes. tool.
+/// Returns items that are more likely pieces of one function, which the catalogue does not
+/// contain, than separate causes; empty if there are no such items. A curve and a period of one
+/// axis may both be real. A third function of that axis at the same degree of freedom (or at
+/// locations that move the readings alike) represents a function that was not found. If every row
+/// has only one reading, of one kind, the limit is a fourth function of position, of any axis, a
+/// third beside a curve (three coefficients or more), or a second curve. On a circle all of them
+/// are functions of its angle, and two curves span every such function. Periods that are harmonics
+/// of one another count once. Two periods that beat less than once over the measured range are one
+/// wave that changes along it, not two causes. tool.
 std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
                                                 const std::vector<std::size_t>& items);
 

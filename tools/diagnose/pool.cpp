@@ -10,8 +10,8 @@ namespace vernier::diagnose {
 
 namespace {
 
-/// Between forms that fit alike the simpler one wins: at the axis' own degree of freedom first, then across
-/// the axis, then anywhere. Far below any evidence.
+/// Rank among forms that fit alike, simplest first: at the axis' own degree of freedom, then
+/// across the axis, then anywhere. The steps are far below any evidence.
 double rank_of(const effects::Candidate& candidate, double step) {
   switch (candidate.choice.form->place) {
     case effects::PlaceRule::kOwn:
@@ -40,8 +40,8 @@ bool has_period(const effects::Candidate& candidate) {
   return !scanned.empty() && (*scanned.begin()).kind == effects::UnknownKind::kPeriod;
 }
 
-/// What an axis moves out bends what carries it. A sag of what it carries, or of the other branch, has no
-/// load that would change with it.
+/// The extension of an axis bends the structure that carries it. A sag of a part that it carries,
+/// or of the other branch, has no load that changes with it.
 bool carries_not(const effects::AxisPlaces& axes, const effects::Choice& choice) {
   if (choice.form->place != effects::PlaceRule::kSag || !choice.axis || !choice.place) return false;
   const std::optional<effects::DofPlace>& own = axes.own(*choice.axis);
@@ -80,14 +80,15 @@ double Pool::penalty(const Scored& scored) const {
   const ScannedCandidate& item = scanner_.candidates()[scored.candidate];
   double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) +
                 rank_of(item.candidate, thresholds_.step_of_place);
-  // A jump between runs follows any slow drift: it is named only where no continuous effect does as well.
+  // A jump between runs can follow any slow drift. It is named only if no continuous effect fits
+  // as well.
   const effects::Choice& choice = item.candidate.choice;
-  // A term without a name is met more seldom than the causes that have one.
+  // A term without a name is rarer than the causes with a name.
   const bool nameless = choice.effect == &effects::custom_effect();
   if (choice.effect->rare || choice.form->rare || !choice.runs.empty() || nameless) cost += thresholds_.rare;
   if (carries_not(axes_, choice)) cost += 2 * thresholds_.rare;
-  // A scanned unknown is as many tries as the grid has values that differ, where that is more than the price
-  // of a coefficient.
+  // A scanned unknown counts as many tests as the grid has distinct values, if that exceeds the
+  // penalty of a coefficient.
   for (std::size_t i = 0; i < item.grid.size(); ++i) {
     double tries = static_cast<double>(item.grid[i].size()) / thresholds_.points_per_try;
     if (item.fine.holds(scored.scanned.at(i))) tries += item.fine.tries();
@@ -96,7 +97,7 @@ double Pool::penalty(const Scored& scored) const {
   return cost;
 }
 
-/// One key per effect and place; a second period at the same place is another one.
+/// One key per effect and location. A second period at the same location has another key.
 std::string Pool::place_key(const Scored& scored) const {
   const effects::Candidate& candidate = scanner_.candidates()[scored.candidate].candidate;
   const effects::Choice& c = candidate.choice;
@@ -204,7 +205,7 @@ bool Pool::same_columns(std::size_t a, std::size_t b) const {
   const Eigen::MatrixXd x = maths::orthonormal(items_[a].columns, 1e-6, nullptr);
   const Eigen::MatrixXd y = maths::orthonormal(items_[b].columns, 1e-6, nullptr);
   if (x.cols() != y.cols()) return false;
-  // Squares of the cosines between the two spans, the least of them decides.
+  // Squares of the cosines between the two spans. The smallest of them decides.
   const double common = (x.transpose() * y).squaredNorm();
   return static_cast<double>(x.cols()) - common < thresholds_.same_share;
 }
@@ -226,7 +227,7 @@ bool Pool::contains(std::size_t general, std::size_t special) const {
     return items_[i].columns.cols() + static_cast<Eigen::Index>(items_[i].scored.scanned.size());
   };
   if (unknowns(general) <= unknowns(special) || x.cols() < y.cols()) return false;
-  // Time may follow a jump between runs closely, and is no richer way to say it.
+  // Time may follow a jump between runs closely, but it is not a richer form of the same term.
   const auto mine = drivers_of(evidence_.machine(), candidate(general)),
              its = drivers_of(evidence_.machine(), candidate(special));
   if (!std::includes(mine.begin(), mine.end(), its.begin(), its.end())) return false;
@@ -234,7 +235,7 @@ bool Pool::contains(std::size_t general, std::size_t special) const {
 }
 
 bool Pool::same_kind(std::size_t a, std::size_t b) const {
-  // An input is a quantity of its own; speed is speed on whatever axis.
+  // Each input is a separate quantity. Speed is one quantity for all axes.
   const auto kinds = [&](std::size_t i) {
     std::set<std::pair<int, std::size_t>> found;
     for (const auto& [kind, index] : drivers_of(evidence_.machine(), candidate(i))) {

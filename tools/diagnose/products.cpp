@@ -22,7 +22,7 @@ bool varies(const model::Column& column, const std::vector<std::size_t>& rows) {
   return false;
 }
 
-/// An input about its reference.
+/// An input minus its reference.
 ProductFactor input_factor(const Evidence& evidence, std::size_t index) {
   const model::Input& input = evidence.machine().inputs[index];
   return {model::subtract_number(model::make_symbol(input.name), evidence.reference_of(index)), input.name,
@@ -78,7 +78,7 @@ ScannedCandidate as_candidate(const model::Machine& machine, const effects::Axis
   return item;
 }
 
-constexpr std::size_t kMostFactors = 3;  // a physical law of four quantities is not found by search
+constexpr std::size_t kMostFactors = 3;  // a search does not find a physical law of four quantities
 
 std::size_t factors_in(const model::Expr& term) {
   std::size_t count = 0;
@@ -86,7 +86,7 @@ std::size_t factors_in(const model::Expr& term) {
   return count;
 }
 
-/// A sense times itself is 1: what that leaves is a simpler term.
+/// A sense times itself is 1, so the product is a simpler term.
 bool would_cancel(const model::Expr& term, const ProductFactor& factor) {
   if (!factor.is_sense) return false;
   const std::string name = model::to_text(*factor.value);

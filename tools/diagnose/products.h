@@ -14,8 +14,9 @@ struct Product {
   std::vector<std::string> inputs, units;
 };
 
-/// The search beyond the catalogue: all products of one or two recorded quantities at every place where
-/// `extend` is empty, else each of `extend` with one factor more.
+/// Searches beyond the catalogue. If `extend` is empty, returns all products of one or two
+/// recorded quantities at every location. Otherwise returns each of `extend` with one additional
+/// factor.
 std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
                                                  const std::vector<Product>& extend);
 

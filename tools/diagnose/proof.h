@@ -9,20 +9,22 @@
 
 namespace vernier::diagnose {
 
-/// What rows that no fit and no selection saw say of a step from one model to another.
+/// Evidence of held-out rows for a step from one model to another.
 struct Proof {
-  double evidence = 0;  // natural logarithm of the likelihood ratio (an e-value): how much likelier the step
-                        // makes these rows
-  double expected = 0;  // what it would be on average if the step were true; the opposite if it were not
-                        // there at all. Either way its variance is twice that.
-  /// What the step must bring: 20 to 1 where all but one true step in a hundred would, less where it is too
-  /// small on these rows for that, but never less than nothing. None where it hardly shows on them.
+  double evidence = 0;  // natural logarithm of the likelihood ratio (an e-value) of these rows, with the step
+                        // against without it
+  double expected = 0;  // its mean if the step is true; the opposite if the step is absent. In both cases its
+                        // variance is twice that value.
+  /// The required evidence of a step: 20 to 1 if all but one in a hundred true steps would reach
+  /// it. It is smaller if the step is too small on these rows for that, but never below zero.
+  /// nullopt if the step is hardly visible on them.
   std::optional<double> asked(const ProofThresholds& thresholds) const;
 };
 
-/// The check rows under two models. before, after: residuals (measured - model) of all observations; noise:
-/// how the readings' errors are correlated; variance: of a weighted reading's own part, where the stated u is
-/// too small, at least 1 (with u); without u its square in mm. tool.
+/// Evaluates the check rows under two models. before, after: residuals (measured - model) of all
+/// observations; noise: correlation of the readings' errors; variance: of the independent noise of
+/// a weighted reading, if the stated u is too small, at least 1 (with u); without u its square in
+/// mm. tool.
 Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
                           const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance);
 

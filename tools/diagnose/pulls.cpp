@@ -14,7 +14,7 @@ namespace {
 /// Angles of a sixdof: rX is its fourth degree of freedom.
 constexpr std::size_t kFirstAngle = 3;
 
-/// Is a column a sum of others, all but what a cosine of `alike` leaves?
+/// Is a column a sum of others, up to a cosine of `alike`?
 bool is_held_by(const Eigen::VectorXd& column, const std::vector<Eigen::VectorXd>& others, double alike) {
   if (others.empty()) return false;
   Eigen::MatrixXd all(column.size(), static_cast<Eigen::Index>(others.size()));
@@ -39,13 +39,13 @@ bool Pulls::admits(const effects::EffectForm& form, const effects::DofPlace& pla
     return effects::transform_at(machine_, place).kind == model::TransformKind::kSixDof &&
            place.dof == kFirstAngle && gravity_.is_rigid(place);
   if (form.place != effects::PlaceRule::kLink) return true;
-  // A joint's own turn is compliance.
+  // The own rotation of a joint is compliance.
   const auto axis = axes_.axis_of(place);
   return effects::is_angle(machine_, place) != form.asks_for("along") &&
          !(axis && axes_.is_own(*axis, place));
 }
 
-/// Driven by several axes, or by any; and of a size that fits a tick.
+/// Driven by several axes, or by any; and small enough for a tick.
 bool Pulls::is_told(const std::optional<effects::Wave>& wave, bool several) const {
   if (!wave || wave->terms() > evidence_.thresholds().candidates.most_terms_of_gravity) return false;
   const auto phases = wave->phases();
@@ -62,7 +62,7 @@ std::vector<effects::Choice> Pulls::variants(const effects::Choice& choice) cons
   std::vector<effects::Choice> list;
   const std::size_t own = effects::local_axis(machine_, place);
   const bool joint = form.place == PlaceRule::kJoint;
-  // About a joint, the sine and the cosine of a sum of parallel ones have their own forms.
+  // About a joint, the sine and the cosine of a sum of parallel joints have their own forms.
   const auto is_several = [&](const std::optional<effects::Wave>& wave) {
     return joint ? is_told(wave, false) && wave->terms() > 1 : is_told(wave, true);
   };
@@ -116,8 +116,8 @@ Eigen::VectorXd Pulls::column(const effects::Wave& wave) const {
   return read;
 }
 
-/// Masses from the tool inwards: what the arm carries first. One whose moment goes as another's over the
-/// rows, or as that of a bar at the joint itself, is left out.
+/// Masses from the tool inwards: first the load at the tool. A mass is excluded if its moment is
+/// proportional to that of another over the rows, or to that of a bar at the joint itself.
 void Pulls::with_masses(const effects::Choice& choice, std::vector<effects::Choice>& list) const {
   const effects::DofPlace& joint = *choice.place;
   const bool beside_own = choice.form->asks_for("across1");
@@ -128,7 +128,7 @@ void Pulls::with_masses(const effects::Choice& choice, std::vector<effects::Choi
     if (is_told(bar, false)) own.push_back(column(*bar));
   }
   if (beside_own && own.size() < 2)
-    return;  // a link that gravity does not turn both ways has no unknown for each
+    return;  // a link that gravity does not turn in both directions has no separate unknown for each
   if (!beside_own) seen = own;
   for (std::size_t m = machine_.tool.size(); m-- > joint.transform;) {
     const auto wave = gravity_.moment(joint, m);
@@ -141,7 +141,7 @@ void Pulls::with_masses(const effects::Choice& choice, std::vector<effects::Choi
     seen.push_back(std::move(here));
     list.push_back(choice);
     list.back().mass = m;
-    // Beside the joint's own link one load is enough: that of the tool.
+    // In addition to the joint's own link, one load is sufficient: that of the tool.
     if (beside_own) return;
   }
 }

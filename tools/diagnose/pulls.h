@@ -8,17 +8,19 @@
 
 namespace vernier::diagnose {
 
-/// Which of the functions that gravity has along a chain are worth a candidate: those that several axes
-/// drive together (what one axis or a sum of parallel ones drives has forms of its own), few enough to tell.
+/// Selects the gravity functions along a chain that become candidates: those that several axes
+/// drive together, few enough to distinguish. Functions of one axis or of a sum of parallel axes
+/// have forms of their own.
 class Pulls {
  public:
   explicit Pulls(const Evidence& evidence);
 
-  /// Does a form ask for such a function?
+  /// Does a form need such a function?
   static bool asks(const effects::EffectForm& form);
-  /// May such a form stand at this place? `toward` is tried for a bend only by variants().
+  /// Is such a form possible at this location? For a bend, only variants() tries `toward`.
   bool admits(const effects::EffectForm& form, const effects::DofPlace& place) const;
-  /// A choice with its place, once for every bar and every mass that make a function of their own.
+  /// Returns a choice with its location, once for every bar and every mass with a distinct
+  /// function.
   std::vector<effects::Choice> variants(const effects::Choice& choice) const;
 
  private:

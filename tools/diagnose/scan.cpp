@@ -13,9 +13,9 @@
 namespace vernier::diagnose {
 namespace {
 
-/// Columns projected at a time: one product of matrices instead of many of vectors.
+/// Columns that are projected together: one product of matrices instead of many of vectors.
 constexpr Eigen::Index kBatch = 192;
-/// 1/value of the values looked at on both sides of one that was.
+/// Returns 1/value of the neighbours of a tested value.
 std::pair<double, double> neighbours(const ScannedCandidate& item, std::size_t unknown, double value) {
   if (item.fine.holds(value)) return {1 / value - item.fine.step, 1 / value + item.fine.step};
   const std::vector<double>& grid = item.grid[unknown];
@@ -44,7 +44,8 @@ Scanner::Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& 
 
 namespace {
 
-/// Is a column nothing but rounding beside the others of its candidate: the sine of a wave of two even steps?
+/// Is a column only rounding relative to the others of its candidate? An example is the sine of a
+/// wave of two even steps.
 bool vanishes(const Eigen::MatrixXd& raw, Eigen::Index column) {
   constexpr double kRounding = 1e-9;  // of the longest column of its candidate
   return raw.col(column).norm() <= kRounding * raw.colwise().norm().maxCoeff();
@@ -146,7 +147,7 @@ std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside, const std::func
   std::vector<Scored> best(candidates_.size());
   // Each thread writes the entries of its own candidates only.
   const std::size_t threads = std::max(1U, std::min(4U, std::thread::hardware_concurrency()));
-  std::vector<std::future<void>> others;  // each hands on what its part throws
+  std::vector<std::future<void>> others;  // each passes on the exception of its part
   for (std::size_t k = 1; k < threads; ++k)
     others.push_back(std::async(
         std::launch::async, [&, k] { scan_part(first_candidate + k, threads, beside, residual, best, {}); }));
@@ -202,7 +203,7 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
   const Eigen::VectorXd residual = residual_beside(beside);
   ColumnMaker maker(evidence_);
   for (std::size_t i = 0; i < item.grid.size(); ++i) {
-    // In 1/value between the neighbours: phases of a period move evenly there.
+    // In 1/value between the neighbours: phases of a period change evenly there.
     const auto [low, high] = neighbours(item, i, scored.scanned[i]);
     constexpr int kSections = 14;  // of a golden search: to a thousandth of the grid's step
     std::vector<double> point = scored.scanned;
@@ -240,7 +241,7 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
     return gain_at(maker, scored, {1 / frequency}, beside, residual);
   };
   const double mine = gain_of(own), left = residual.squaredNorm() - mine;
-  // Readings that leave more than their noise tell apart by that.
+  // If the residual exceeds the noise, it is the scale for the distinction.
   const double spread = left / std::max(1.0, evidence_.freedom());
   const double near = mine - limits.told_apart * (evidence_.noise_known() ? std::max(1.0, spread) : spread);
   const auto known = [&](const std::vector<double>& list, double frequency) {
@@ -254,7 +255,7 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
       if (frequency > most || frequency * length < 0.5 || known(frequencies, frequency)) continue;
       constexpr int kSections = 10;  // of a golden search
       const double width = 0.25 / length;
-      // The middle itself is right where positions are even to the last digit.
+      // The centre itself is exact if positions are even to the last digit.
       const double there = gain_of(frequency);
       if (there < mine / 2) continue;
       const maths::Peak best = maths::golden_peak(gain_of, frequency - width, frequency + width, kSections);

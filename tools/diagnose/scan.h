@@ -10,42 +10,43 @@
 
 namespace vernier::diagnose {
 
-/// What a candidate at its best scanned values does to the residual, after the model's own free parameters
-/// have had their chance.
+/// Effect of a candidate at its best scanned values on the residual, after the model's own free
+/// parameters are fitted.
 struct Scored {
   std::size_t candidate = 0;    // index into the list that was scanned
   std::vector<double> scanned;  // values of its scanned unknowns
-  double gain = 0;              // fall of chi^2
-  double own_share = 0;         // least share of a column that the model cannot absorb
+  double gain = 0;              // decrease of chi^2
+  double own_share = 0;         // smallest share of a column that the model cannot absorb
   Eigen::Index unknowns = 0;    // coefficients and scanned values
 };
 
-/// Scores of all candidates against a residual. `beside`: orthonormal columns (in the complement of what the
-/// model absorbs) of effects already accepted; the candidates' parts along them do not count.
+/// Scores of all candidates against a residual. `beside`: orthonormal columns (in the complement
+/// of what the model absorbs) of effects already accepted. The candidates' parts along them do not
+/// count.
 class Scanner {
  public:
   Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates);
 
-  /// Best values on the grid for every candidate that the data can see at all; in the order of the list,
-  /// from `first_candidate` on.
-  /// `progress`: share done.
+  /// Returns the best values on the grid for every candidate that is visible in the data, in the
+  /// order of the list, from `first_candidate` on. `progress`: share done.
   std::vector<Scored> scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
                            std::size_t first_candidate = 0);
 
-  /// Waves below the periods of the grid: of each candidate that has them the best one that stands out of
-  /// chance; of those that do as well the longest, by whose name a field engineer would call the family.
+  /// Searches periods below those of the grid. For each candidate with such periods, returns the
+  /// best one above the level of chance. Of those that fit as well, it returns the longest, which
+  /// is the usual name of the family.
   std::vector<Scored> scan_fine(const Eigen::MatrixXd& beside, std::size_t first_candidate = 0) const;
 
-  /// The scanned values moved between the grid's neighbours to where the gain is largest.
+  /// Moves the scanned values between the grid's neighbours to the largest gain.
   void refine(Scored& scored, const Eigen::MatrixXd& beside) const;
 
-  /// The other periods at which a candidate with one period does as well, but for what chance would do: the
-  /// positions of its axis do not tell them apart. Longest first, down to 1/1000 of the range; empty for
-  /// other candidates.
+  /// Returns the other periods that fit as well as that of a candidate with one period, within
+  /// chance. The positions of its axis do not distinguish them. Longest first, down to 1/1000 of
+  /// the range; empty for other candidates.
   std::vector<double> aliases(const Scored& scored, const Eigen::MatrixXd& beside) const;
 
-  /// Independent columns of a scored candidate after projection; dropped are those that the model or the
-  /// columns before them hold already. `kept`: which of the linear unknowns they are.
+  /// Independent columns of a scored candidate after projection. Columns that the model or earlier
+  /// columns contain are dropped. `kept`: indices of their linear unknowns.
   Eigen::MatrixXd projected(const Scored& scored, std::vector<std::size_t>* kept = nullptr) const;
 
   const std::vector<ScannedCandidate>& candidates() const { return candidates_; }
@@ -58,12 +59,12 @@ class Scanner {
   void scan_part(std::size_t first, std::size_t step, const Eigen::MatrixXd& beside,
                  const Eigen::VectorXd& residual, std::vector<Scored>& best,
                  const std::function<void(double)>& progress) const;
-  /// Best of a candidate's periods, by what they explain in full.
+  /// Best of a candidate's periods, by the full decrease of the residual.
   Scored best_period(std::size_t candidate, const std::vector<double>& periods, const Eigen::MatrixXd& beside,
                      const Eigen::VectorXd& residual) const;
-  /// What candidates have to explain beside those columns.
+  /// The residual that candidates must explain beside those columns.
   Eigen::VectorXd residual_beside(const Eigen::MatrixXd& beside) const;
-  /// Gain of a scored candidate at other scanned values; 0 where the data cannot see it there.
+  /// Gain of a scored candidate at other scanned values; 0 if it is not visible in the data there.
   double gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
                  const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
   bool score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected, const Eigen::MatrixXd& beside,

@@ -37,13 +37,13 @@ void gather(const SelectionProblem& p, const std::vector<std::size_t>& chosen, E
   }
 }
 
-/// What a set explains of chi^2; nothing where its columns depend on one another.
+/// Returns the decrease of chi^2 by a set; nullopt if its columns are linearly dependent.
 bool explained(const SelectionProblem& p, const std::vector<std::size_t>& chosen, double& gain) {
   Eigen::MatrixXd gram;
   Eigen::VectorXd moment;
   gather(p, chosen, gram, moment);
   gain = 0;
-  // Cholesky column by column: the pivots tell what each column has of its own.
+  // Cholesky column by column: the pivots are the independent part of each column.
   const Eigen::Index n = moment.size();
   for (Eigen::Index j = 0; j < n; ++j) {
     const double before = gram(j, j);
@@ -72,7 +72,7 @@ bool clashes(const SelectionProblem& p, const std::vector<std::size_t>& chosen, 
   });
 }
 
-/// The best entry to put beside `kept`; `now` where none lowers the criterion.
+/// Returns the best entry to add to `kept`; `now` if none lowers the criterion.
 Selection best_addition(const SelectionProblem& p, const std::vector<std::size_t>& kept, Selection now) {
   std::vector<std::size_t> set = kept;
   set.push_back(0);
@@ -85,9 +85,9 @@ Selection best_addition(const SelectionProblem& p, const std::vector<std::size_t
   return now;
 }
 
-/// Forward steps, exchanges and backward steps until nothing lowers the criterion.
+/// Forward steps, exchanges and backward steps until the criterion does not decrease.
 Selection improve(const SelectionProblem& p, Selection now, std::size_t most) {
-  constexpr int kMostRounds = 50;  // of letting in and out, at most
+  constexpr int kMostRounds = 50;  // rounds of adding and removing, at most
   for (int round = 0; round < kMostRounds; ++round) {
     const double before = now.criterion;
     if (now.chosen.size() < most) now = best_addition(p, now.chosen, now);
@@ -110,7 +110,7 @@ Selection improve(const SelectionProblem& p, Selection now, std::size_t most) {
   return now;
 }
 
-/// The best pair: two effects may hide each other from every single step.
+/// The best pair: each of two effects may be invisible in every single step.
 Selection best_pair(const SelectionProblem& p) {
   Selection best = evaluate_selection(p, {});
   for (std::size_t a = 0; a < p.entries.size(); ++a)
@@ -122,7 +122,7 @@ Selection best_pair(const SelectionProblem& p) {
   return best;
 }
 
-/// Largest fall first.
+/// Orders by the decrease, largest first.
 void order(const SelectionProblem& p, Selection& selection) {
   std::vector<std::size_t> rest = selection.chosen, ordered;
   while (!rest.empty()) {
@@ -157,8 +157,8 @@ Selection evaluate_selection(const SelectionProblem& p, const std::vector<std::s
   }
   const double freedom = std::max(p.freedom, 1.0);
   const double reduced = result.chi_square / freedom;
-  // With the noise at its best value the likelihood is n log(chi^2/n); a noise below the given uncertainty is
-  // not believed.
+  // With the noise at its best value the likelihood is n log(chi^2/n). A noise below the given
+  // uncertainty is not accepted.
   const bool at_noise = p.noise_known && reduced <= 1;
   const double likelihood =
       at_noise ? result.chi_square : freedom * (1 + std::log(std::max(reduced, 1e-300)));

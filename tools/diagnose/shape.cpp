@@ -26,7 +26,8 @@ Eigen::VectorXd positions(const Evidence& evidence, std::size_t axis) {
   return u;
 }
 
-/// How many positions were read, those closer than `apart` (of the range) counted once.
+/// Returns the number of measured positions. Positions closer than `apart` (of the range) count
+/// once.
 int positions_read(Eigen::VectorXd u, double apart) {
   std::sort(u.begin(), u.end());
   int count = 0;
@@ -49,7 +50,8 @@ struct Gain {
   double rank = 0;
 };
 
-/// What columns explain of the residual beside what the model absorbs and `beside`, in units of the noise.
+/// Returns the part of the residual that columns explain beside what the model absorbs and
+/// `beside`, in units of the noise.
 Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside) {
   const double least_own = evidence.thresholds().shape.own;
   Eigen::MatrixXd own = raw;
@@ -72,7 +74,7 @@ Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::
   return {explained / std::max(variance, 1e-300), static_cast<double>(basis.cols())};
 }
 
-/// Line and half-waves over the range, as they show in the readings of a place.
+/// Line and half-waves over the range, as columns of the readings of a location.
 Eigen::MatrixXd half_waves(const Evidence& evidence, const effects::DofPlace& place, const Eigen::VectorXd& u,
                            int count) {
   Eigen::MatrixXd columns(u.size(), count + 1);
@@ -84,10 +86,10 @@ Eigen::MatrixXd half_waves(const Evidence& evidence, const effects::DofPlace& pl
   return columns;
 }
 
-/// How an item's columns move with its scanned unknowns, to first order: a period that is a little off is no
+/// Derivatives of an item's columns by its scanned unknowns. A small error of a period is not a
 /// change along the axis.
 Eigen::MatrixXd moved(const Evidence& evidence, const Pool& pool, std::size_t item) {
-  // Small against the phase of a thousandth of a period at the end of the range.
+  // Small relative to the phase of a thousandth of a period at the end of the range.
   constexpr double kStep = 1e-6;  // relative, of a difference
   const std::vector<double>& scanned = pool[item].scored.scanned;
   const effects::Candidate& candidate = pool.candidate(item);
@@ -103,7 +105,7 @@ Eigen::MatrixXd moved(const Evidence& evidence, const Pool& pool, std::size_t it
 }
 
 struct Jump {
-  double at = 0;    // share of the range that was read
+  double at = 0;    // share of the measured range
   double gain = 0;  // chi^2 that a jump there explains
 };
 
@@ -129,7 +131,8 @@ bool is_function_of_an_axis(const Evidence& evidence, const Pool& pool, std::siz
          drivers_of(evidence.machine(), candidate).empty();
 }
 
-/// The others that are no functions of the same axis: those may be pieces of the same one.
+/// The other items that are not functions of the same axis. Functions of the same axis may be
+/// pieces of one function.
 std::vector<std::size_t> of_other_axes(const Evidence& evidence, const Pool& pool,
                                        const std::vector<std::size_t>& items, std::size_t item) {
   std::vector<std::size_t> others;
@@ -143,7 +146,7 @@ std::vector<std::size_t> of_other_axes(const Evidence& evidence, const Pool& poo
 std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                            std::size_t item) {
   const ShapeThresholds& limits = evidence.thresholds().shape;
-  // A period was found among many: it asks for more witnesses than a curve.
+  // A period was selected among many, so it needs more supporting readings than a curve.
   const double seen_per_unknown =
       pool[item].scored.scanned.empty() ? limits.seen_per_unknown : limits.seen_per_period;
   const effects::Choice& choice = pool.candidate(item).choice;
@@ -210,7 +213,7 @@ double log_p_of_change(const Evidence& evidence, const Pool& pool, const std::ve
   Eigen::MatrixXd changed(raw.rows(), 2 * raw.cols() * static_cast<Index>(axes));
   Index count = 0;
   for (std::size_t axis = 0; axis < axes; ++axis) {
-    // A curve of an axis times that axis is a curve of it still.
+    // A curve of an axis times that axis is still a curve of it.
     if (curve && axis == *pool.candidate(item).choice.axis) continue;
     const Eigen::ArrayXd v = 2 * positions(evidence, axis).array() - 1;
     for (Index j = 0; j < raw.cols(); ++j) {
@@ -231,7 +234,8 @@ std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std
     const std::string doubt = doubt_of_curve(evidence, pool, items, item);
     if (!doubt.empty()) return doubt;
   }
-  // Without a given uncertainty nothing says that what is left is noise: it may hold other effects.
+  // Without a given uncertainty the residual is not known to be noise. It may contain other
+  // effects.
   if (evidence.noise_known() &&
       log_p_of_change(evidence, pool, items, item) < evidence.thresholds().shape.change_chance)
     return fmt::format("{} changes along the axes, which what it is called does not",

@@ -6,29 +6,32 @@
 
 namespace vernier::diagnose {
 
-// Every number of a diagnosis that was chosen and could have been chosen otherwise: one struct a concern,
-// each with its unit, its meaning and where it comes from. "Experiment" without a name is the sweep of
-// tools/docs/thresholds.md: halved and doubled over surveys of known truth. What is mere numerics (rounds
-// until something stands still, sections of a golden search, columns in a batch) stays where it is used.
+// All numbers of a diagnosis that were chosen and could have been chosen otherwise. One struct per
+// subject, each number with its unit, meaning and source. "Experiment" without a name is the sweep
+// of tools/docs/thresholds.md: halved and doubled over surveys of known truth. Purely numerical
+// constants (rounds until convergence, sections of a golden search, columns in a batch) are
+// defined where they are used.
 
-/// What the data are taken to say before any candidate is looked at.
+/// Assumptions about the data before any candidate is tested.
 struct EvidenceThresholds {
-  /// Directions of the scaled Jacobian below this share of the largest are not followed by a fit: they show
-  /// only through products of errors. Experiment: chains with station tables, whose spectrum has its gap
-  /// here.
+  /// Directions of the scaled Jacobian below this share of the largest are not followed by a fit.
+  /// They are visible only through products of errors. Experiment: chains with station tables,
+  /// whose spectrum has its gap here.
   double absorb_cutoff = 1e-4;
-  /// Numbers in the Jacobian above which every k-th row has to do: 240 MB. A guard against long surveys.
+  /// If the Jacobian has more numbers than this, only every k-th row is used: 240 MB. A limit for
+  /// long surveys.
   double most_numbers = 3e7;
-  /// Level at which readings of one pose are believed to share an error (analysis of variance). Searle 1992.
+  /// Significance level at which readings of one pose are assumed to share an error (analysis of
+  /// variance). Searle 1992.
   double pose_chance = 1e-3;
-  /// Degrees of freedom between and within poses that such a test asks for: below, the variance is known to
-  /// no better than a half (sqrt(2/10)).
+  /// Degrees of freedom between and within poses that such a test requires. Below, the uncertainty
+  /// of the variance exceeds a half (sqrt(2/10)).
   double pose_freedom = 10;
-  /// Steps of an axis are even where they are multiples of the least one but for this share of it. Stands for
-  /// the accuracy of positioning beside the step of a measurement.
+  /// Steps of an axis are even if they are multiples of the smallest one to within this share of
+  /// it. The value represents the positioning accuracy relative to the step of a measurement.
   double even_step = 0.05;
-  /// Response of a place, as a share of the largest of its kind, below which it is rounding: a point that no
-  /// turn about it moves.
+  /// Response of a location, as a share of the largest of its kind, below which it is rounding: a
+  /// point that no rotation about it moves.
   double rounding = 1e-9;
 
   template <class Visit>
@@ -42,60 +45,72 @@ struct EvidenceThresholds {
   }
 };
 
-/// Which candidates there are, and over which values their unknowns are looked for.
+/// The candidates, and the values over which their unknowns are searched.
 struct CandidateThresholds {
-  /// Share of a unit vector, on average over the rows, that has to lie along gravity (a length) or across it
-  /// (an axis of rotation) for a place to sag: 17 degrees. A tilted table of 15 degrees is level.
+  /// Share of a unit vector, on average over the rows, that must be along gravity (a length) or
+  /// across it (an axis of rotation) for a location to sag: 17 degrees. A tilted table of 15
+  /// degrees counts as level.
   double sag_share = 0.3;
-  /// Cosine between joints that count as parallel: 2.6 degrees. Errors of assembly are a tenth of it.
+  /// Cosine above which joints count as parallel: 2.6 degrees. Errors of assembly are a tenth of
+  /// it.
   double parallel_cosine = 0.999;
-  /// Products of sines and cosines in a function that gravity has along the chain: a tick computes them all.
-  /// An arm of seven joints on a tilted base has 30.
+  /// Largest number of products of sines and cosines in a gravity function along the chain: a tick
+  /// computes them all. An arm of seven joints on a tilted base has 30.
   std::size_t most_terms_of_gravity = 40;
-  /// Cosine between the moments of two masses over the rows from which on they are one: a hundredth of the
-  /// squares differs, below what any survey resolves.
+  /// Cosine between the moments of two masses over the rows above which they are one: a hundredth
+  /// of the squares differs, below the resolution of any survey.
   double same_moment = 0.995;
-  /// Share of the declared range from which on it stands for the range that was read, in terms that name it:
-  /// then they read "200" and not "199.3".
+  /// Share of the declared range above which terms name the declared range instead of the measured
+  /// range: "200" and not "199.3".
   double declared_range_share = 0.8;
-  /// More steps between runs than this follow any drift: they would name a jump where there is none.
+  /// Largest number of steps between runs. More steps can follow any drift and would report a
+  /// false jump.
   std::size_t most_steps_of_runs = 4;
-  /// Correlation with the number of the row from which on a logged column is a clock or a counter.
+  /// Correlation with the row number above which a logged column is a clock or a counter.
   double like_a_clock = 0.95;
-  /// Readings for each hat of a table: fewer let the table follow the noise of single readings.
+  /// Readings for each function of a piecewise linear basis. With fewer, the table follows the
+  /// noise of single readings.
   double readings_per_hat = 4;
-  /// Time constants looked for: from this many spacings of the rows, or this part of their duration where
-  /// that is longer, to this many durations. Beyond, a first-order lag is a step or a straight line.
+  /// Searched time constants: from this many intervals of the rows, or this part of their duration
+  /// if that is longer, to this many durations. Beyond, a first-order lag is a step or a straight
+  /// line.
   double time_least_steps = 3, time_least_part = 200, time_most = 3;
-  /// Values of a time constant in that range, logarithmic: a factor of 1.5 apart, refined afterwards.
+  /// Number of time constants in that range, logarithmic: a factor of 1.5 apart, refined
+  /// afterwards.
   std::size_t time_values = 16;
   /// Decay lengths: from this part of the range to that part of it.
   double travel_least_part = 500, travel_most_part = 2;
   std::size_t travel_values = 14;  // a factor of 1.6 apart, refined afterwards
-  /// Periods on the grid: up to so many in the range (shorter ones are looked for by a periodogram), so many
-  /// frequencies for each that the range tells apart, the longest this share of the range (a longer one is no
-  /// period yet, but a curve).
+  /// Periods on the grid: up to so many in the range (shorter ones are searched by a periodogram),
+  /// so many frequencies for each that the range distinguishes. The longest is this share of the
+  /// range. A longer one is a curve, not a period.
   double most_periods = 100, periods_per_range = 2.5, longest_period_share = 0.4;
-  /// The same for a linear axis that was read at even positions only, where a short wave looks like a long
-  /// one: six tenths of a wave in the range are no parabola yet.
+  /// The same for a linear axis that was read at even positions only, where a short wave looks
+  /// like a long one: six tenths of a wave in the range are not yet a parabola.
   double longest_aliased_share = 1.6;
-  /// Whole fractions of a turn that are always looked at: gears and bearings up to the twelfth order.
+  /// Integer fractions of a revolution that are always tested: gears and bearings up to the
+  /// twelfth order.
   std::size_t harmonics_of_turn = 12;
-  /// Share of a period that an axis must travel for that wave, whose period is known: less of it is a curve.
+  /// Share of a period that an axis must travel to show a cyclic error of known period. On a
+  /// shorter travel it is a curve.
   double least_of_a_period = 0.75;
-  /// The same of a wave of one turn, the commonest period of a rotary axis: half of it.
+  /// The same for a period of one revolution, the most frequent period of a rotary axis: half of
+  /// it.
   double least_of_a_turn = 0.5;
-  /// Positions of an axis in one sense, and share of the rows, from which on the sense has a comb of its own.
+  /// Number of positions of an axis in one approach direction, and share of the rows, above which
+  /// the direction has a grid of its own.
   std::size_t comb_positions = 6;
   double comb_share = 0.25;
-  /// Steps per period: the sampling theorem's two, and a twentieth for steps that are not quite even.
+  /// Steps per period: two by the sampling theorem, and a twentieth for steps that are not quite
+  /// even.
   double steps_per_period = 2.1;
-  /// 1 - cosine below which two places do the same to all readings: sqrt of rounding, with three digits to
-  /// spare.
+  /// 1 - cosine below which two locations have the same influence on all readings: sqrt of
+  /// rounding, with three digits of margin.
   double same_place = 1e-7;
-  /// How much more strongly another place must do the same for a place to be none: a tilt of 6 degrees.
+  /// Factor by which another location must have the same, stronger influence for a location to be
+  /// excluded: a tilt of 6 degrees.
   double outshone = 10;
-  /// Share of a fit's range by which a scanned unknown may leave the range in which it was looked for.
+  /// Share of a fit's range by which a scanned unknown may leave the range of its search.
   double driven_out = 2;
 
   template <class Visit>
@@ -133,26 +148,29 @@ struct CandidateThresholds {
 
 /// The periodogram below the grid's periods.
 struct FinePeriodThresholds {
-  /// Frequencies looked at for each that the range tells apart: a peak between two of them keeps nine tenths.
+  /// Tested frequencies for each that the range distinguishes. A peak between two of them keeps
+  /// nine tenths.
   double per_range = 3;
-  /// Waves over the range, and waves for each position read, beyond which none are looked for: a ball screw
-  /// of 1 mm on a metre; a wave of fewer positions is not shown by them.
-  /// With twelve positions the best of a thousand waves holds 80 % of a pattern that has nothing to do with
-  /// it, and others hold as much: such a cyclic error is reported with its aliases (Scanner::aliases).
+  /// Limits of the search: periods over the range, and periods for each measured position. The
+  /// first is a ball screw of 1 mm on a metre. The second: fewer positions do not show the wave.
+  /// With twelve positions the best of a thousand waves explains 80 % of an unrelated pattern, and
+  /// others explain as much. Such a cyclic error is reported with its aliases (Scanner::aliases).
   double most_periods = 1000, per_position = 80;
-  /// Peaks of a place that are scored in full, beside the slowest of those that do nearly as well.
+  /// Peaks of a location that are scored in full, in addition to the slowest of those that fit
+  /// nearly as well.
   std::size_t peaks = 3;
-  /// Power of the position's own window, as a share of its largest, at which waves are aliases of one
-  /// another: where to look, and where it is so.
+  /// Power of the positions' own window, as a share of its largest, at which waves are aliases of
+  /// one another: first for candidates, then for the decision.
   double alias_near = 0.8, alias_same = 0.9999;
-  /// The same from which on two waves are compared in full, whether the readings tell them apart.
+  /// The same limit above which two waves are compared in full, whether the readings distinguish
+  /// them.
   double alias_partly = 0.9;
-  /// Frequencies that are worth the search.
+  /// Smallest number of frequencies for a search.
   double fewest = 4;
-  /// chi^2 by which the highest peak may lead over a slower one that it may be the alias of. Kass and Raftery
-  /// 1995: very strong.
+  /// Difference of chi^2 by which the highest peak may exceed a slower one and still be its alias.
+  /// Kass and Raftery 1995: very strong.
   double nearly_as_well = 10;
-  /// The same among the periods that are scored in full: as far apart as rivals must be.
+  /// The same among the periods that are scored in full: the required distance of alternatives.
   double told_apart = 6;
 
   template <class Visit>
@@ -170,33 +188,38 @@ struct FinePeriodThresholds {
   }
 };
 
-/// What a column must be to count, and what a candidate costs.
+/// When a column counts, and the penalty of a candidate.
 struct PoolThresholds {
-  /// Share of a column's length outside of the model's reach below which the data cannot see it, and below
-  /// which a column of hats repeats the others. A thousandth of an effect of 100 um is the noise of a laser.
+  /// Share of a column's length outside the model's reach below which it is not visible in the
+  /// data, and below which a column of a piecewise linear basis repeats the others. A thousandth
+  /// of an effect of 100 um is the noise of a laser.
   double least_own = 1e-3, least_independent = 1e-3;
-  /// Share of a column's square left beside the columns of a set below which it is a copy of them.
+  /// Share of a column's square beside the columns of a set below which it is a copy of them.
   double least_pivot = 1e-5;
-  /// Between forms that fit alike the one nearest to the axis: a step of the BIC far below any
-  /// evidence.
+  /// Preference for the form nearest to the axis among forms that fit alike: a step of the BIC far
+  /// below any evidence.
   double step_of_place = 0.05;
-  /// Twice the logarithm of how much more seldom than the others a form is met that the catalogue calls so: a
-  /// twentieth.
+  /// Penalty of a form that the catalogue calls rare: twice the logarithm of its relative
+  /// frequency, a twentieth.
   double rare = 6;
-  /// Values of a grid that are one try: neighbours explain nearly the same.
+  /// Number of grid values that count as one test: neighbours explain nearly the same.
   double points_per_try = 2.5;
-  /// Candidates that enter the pool with one scan, and of each effect at least. Experiment.
+  /// Number of candidates that enter the pool with one scan, and at least of each effect.
+  /// Experiment.
   std::size_t most_at_once = 50, of_each_effect = 3;
-  /// Criterion above which a candidate is refined before it enters: none that far off comes back.
+  /// Criterion above which a candidate is refined before it enters. A lower one never becomes
+  /// significant.
   double refined_above = -20;
-  /// Share of chi^2 per freedom taken for the noise while the scan ranks: half of it is some effect's.
+  /// Share of chi^2 per degree of freedom that counts as noise during the ranking: half of it is
+  /// due to some effect.
   double noise_share = 0.5;
-  /// Periods of one place are different candidates where they differ by one part in this.
+  /// Periods of one location are different candidates if they differ by one part in this.
   double periods_per_e = 8;
-  /// Share of another's squares that a span may miss and still holds it; and where two are the same.
+  /// Share of another's squares that a span may lack and still contains it; and for two that are
+  /// the same.
   double held_share = 0.02, same_share = 1e-3;
-  /// Without u, where any structure left over counts as noise: share of what a richer form
-  /// explains from which on the simpler one that it holds is the cause, and the rest another matter.
+  /// Without u, where any remaining structure counts as noise: share of what a richer form
+  /// explains above which the simpler form in it is the cause. The rest has another cause.
   double simple_share = 0.9;
 
   template <class Visit>
@@ -218,45 +241,48 @@ struct PoolThresholds {
   }
 };
 
-/// What an effect must show to be accepted.
+/// Requirements for accepting an effect.
 struct AcceptanceThresholds {
-  /// Decrease of the BIC that is evidence, and the distance that an alternative must keep for a name to be
-  /// given. Kass and Raftery 1995: 6 is strong.
+  /// Decrease of the BIC that is evidence, and the required distance of an alternative for a named
+  /// cause. Kass and Raftery 1995: 6 is strong.
   double evidence = 6, distance = 6;
-  /// How much better a name must do than the instrument alone. Kass and Raftery 1995: 10 is very strong.
+  /// Required advantage of a named cause over the instrument alone. Kass and Raftery 1995: 10 is
+  /// very strong.
   double instrument_distance = 10;
-  /// Share of what an effect moves in all that it moves from row to row, below which it is as slow as a drift
-  /// of the instrument (von Neumann 1941: 1 for rows at random). Experiment: temperatures in a survey of rows
-  /// at random are at 0.01 to 0.1, carried by an axis at 0.3 to 1.
+  /// Share of an effect's motion that changes from row to row, below which it is as slow as a
+  /// drift of the instrument (von Neumann 1941: 1 for random rows). Experiment: temperatures in a
+  /// survey of random rows are at 0.01 to 0.1, multiplied by an axis position at 0.3 to 1.
   double slow_share = 0.15;
-  /// Of what an effect removes from the rows that it was fitted to, this much it removes from runs that were
-  /// left out. An effect of the noise removes nothing there, a true one nearly all.
+  /// Of the decrease on the rows to which an effect was fitted, it must reach this share on
+  /// held-out runs. An effect of the noise removes nothing there, a true one nearly all.
   double held_out_share = 0.2;
-  /// In this share of the runs left out its part keeps its direction, by this cosine (60 degrees).
+  /// In this share of the held-out runs its part must keep its direction, by this cosine (60
+  /// degrees).
   double stable_runs = 0.75, stable_cosine = 0.5;
-  /// Share of an effect in one block beyond which the others cannot tell of it.
+  /// Share of an effect in one block above which the others cannot confirm it.
   double in_one_block = 0.8;
-  /// A single run is cut into this many blocks, a run with this share of the rows too, and an effect of runs
-  /// is tested on this many parts of each.
+  /// A single run is divided into this many blocks, and so is a run with this share of the rows.
+  /// An effect of runs is tested on this many parts of each.
   std::size_t blocks_of_one_run = 5;
   double large_run = 1.0 / 3;
   std::size_t parts_of_run = 4;
-  /// Information on a direction that the other blocks must hold for it to be theirs, as a share.
+  /// Share of the information on a direction that the other blocks must contain to determine it.
   double determined_share = 0.01;
-  /// Levels of a feed or a temperature: apart by this share of the fastest feed, by so many degC; more levels
-  /// than this are a sweep, which is cut into so many parts.
+  /// Levels of a feed or a temperature: separated by this share of the fastest feed, by so many
+  /// degC. More levels than this are a sweep, which is divided into so many parts.
   double same_feed = 0.05, least_warmth_degC = 1;
   std::size_t most_levels = 8, parts_of_sweep = 3;
-  /// Share of the machine's reach, or of the travel of the rotary axis that drives it, up to which a term may
-  /// grow where the catalogue's own limit, made for machine tools, is less: the eccentricity of a resolver,
-  /// the sag of a long arm. Joints of humanoids give way by a degree in fifty.
+  /// Largest size of a term as a share of the machine's reach, or of the travel of the rotary axis
+  /// that drives it. It applies if the catalogue's own limit, made for machine tools, is smaller:
+  /// the eccentricity of a resolver, the sag of a long arm. Joints of humanoids yield by a degree
+  /// in fifty.
   double size_share = 0.02;
-  /// A product of the search is hollow with fewer readings than this behind it, or with this share of its
-  /// squares in the span of what failed.
+  /// A product of the search is rejected if fewer readings than this support it, or if this share
+  /// of its squares is in the span of failed effects.
   double witnesses = 10, copy_of_failed = 0.9;
-  /// Products that are tried with one factor more.
+  /// Number of products that are tried with one additional factor.
   std::size_t extended = 25;
-  /// Share of the noise by which two noise models may differ and say the same.
+  /// Share of the noise by which two noise models may differ and count as the same.
   double same_noise = 0.1;
 
   template <class Visit>
@@ -285,18 +311,18 @@ struct AcceptanceThresholds {
   }
 };
 
-/// What rows that no fit and no selection saw must say of a step, and of the whole answer.
+/// Evidence that held-out rows must give for a step, and for the whole result.
 struct ProofThresholds {
-  /// log of 20: an e-value of 20 is wrong for one step in twenty at most that is not there, whatever was
-  /// looked at before (Ville's inequality).
+  /// log of 20: an e-value of 20 is wrong for at most one in twenty absent steps, whatever was
+  /// tested before (Ville's inequality).
   double evidence = 2.996;
-  /// Expected evidence of a step below which the rows give no information about it: a true one would be
-  /// denied by chance one time in six.
+  /// Expected evidence of a step below which the rows give no information about it. A true step
+  /// would be rejected by chance one time in six.
   double least_expected = 2;
-  /// Spreads of that evidence below its mean that one true step in a hundred falls by.
+  /// Standard deviations below the mean of that evidence that one true step in a hundred reaches.
   double chance_sigmas = 2.33;
-  /// Mean square of the check rows, over what reading and model explain: beyond so many of its own standard
-  /// deviations above 1 the answer does not carry to rows that it was not made from.
+  /// Mean square of the check rows, divided by what reading and model explain. If it exceeds 1 by
+  /// more than so many of its own standard deviations, the result does not hold on held-out rows.
   double carries_sigmas = 4;
 
   template <class Visit>
@@ -308,38 +334,39 @@ struct ProofThresholds {
   }
 };
 
-/// Is what the ladder leaves noise, and whose?
+/// Is the residual of the stepwise model noise, and of which source?
 struct VerdictThresholds {
-  /// chi^2 per degree of freedom up to this many of its own standard deviations above 1 is noise; up to so
-  /// many it is enough by itself, for up to so many effects.
+  /// chi^2 per degree of freedom up to this many of its own standard deviations above 1 is noise.
+  /// Up to so many it is sufficient by itself, for up to so many effects.
   double noise_sigmas = 4, hit_sigmas = 2;
   std::size_t few_effects = 2;
-  /// Level below which what is left has structure, after the number of looks.
+  /// Significance level below which the residual has structure, corrected for the number of tests.
   double structure = 1e-4;
-  /// chi^2 per freedom up to which the stated uncertainty may be in doubt: 1.4 of u.
+  /// chi^2 per degree of freedom up to which the stated uncertainty may be too small: 1.4 of u.
   double doubtful_uncertainty = 2;
-  /// ... and beyond which it is not: nobody states a third of his uncertainty.
+  /// ... and beyond which that is excluded: nobody states a third of his uncertainty.
   double implausible_uncertainty = 9;
-  /// Without u: share of chi^2 that an accepted ladder explains, for its name to be believed.
+  /// Without u: share of chi^2 that an accepted stepwise model must explain for a named cause.
   double mostly_explained = 0.5;
-  /// ... and how many times chi^2 must grow without the effect that is named: then it is larger than all that
-  /// is left beside it.
+  /// ... and the factor by which chi^2 must increase without the named effect: then the effect is
+  /// larger than the residual beside it.
   double larger_than_rest = 2;
-  /// More noise than stated is believed from so many degrees of freedom on. Experiment: outside the
-  /// catalogue, 160 rows of one reading do not show structure, 400 do.
+  /// Noise above the stated value is accepted only above so many degrees of freedom. Experiment:
+  /// outside the catalogue, 160 rows of one reading do not show structure, 400 do.
   double enough_readings = 300;
-  /// ... and only where no candidate stands out of it at this level.
+  /// ... and only if no candidate is significant at this level.
   double stands_out = 1e-3;
-  /// The instrument does not hold still where the correlated part of the errors is this share of the
-  /// readings' own noise, and -2 log likelihood falls by this much for it.
+  /// The instrument is unstable if the correlated part of the errors is this share of the
+  /// independent noise, and -2 log likelihood decreases by this much for it.
   double drift_share = 0.7, drift_support = 20;
-  /// Spreads beyond which a reading is an outlier: one in 5e8 of a normal distribution.
+  /// Standard deviations beyond which a reading is an outlier: one in 5e8 of a normal
+  /// distribution.
   double outlier_spreads = 6;
-  /// The same where no u says how large the spread may be: tails of an effect that was not found reach
-  /// further.
+  /// The same if no u states the standard deviation: tails of an effect that was not found are
+  /// longer.
   double outlier_spreads_without_u = 8;
-  /// Share of the rows up to which outliers are the whole answer, and up to which they are left out beside an
-  /// effect.
+  /// Share of the rows up to which outliers are the whole cause, and up to which they are excluded
+  /// beside an effect.
   double outliers_alone = 0.05, outliers_beside = 0.15;
 
   template <class Visit>
@@ -365,35 +392,36 @@ struct VerdictThresholds {
 
 /// Is an accepted effect what its name says?
 struct ShapeThresholds {
-  /// Natural logarithm of the level at which a curve is doubted, and a change along the axes: every term is
-  /// asked, and none should be doubted by chance. 1e-3 and 1e-4.
+  /// Natural logarithm of the significance level for a doubt about a curve, and about a change
+  /// along the axes. Every term is tested, and chance should cause no doubt. 1e-3 and 1e-4.
   double curve_chance = -6.9, change_chance = -9.2;
-  /// Half-waves of a smooth curve, at most and at least: an eighth of the range is the shortest that a table
-  /// of 17 stations takes away.
+  /// Half-waves of a smooth curve, at most and at least: an eighth of the range is the shortest
+  /// that a table of 17 stations corrects.
   std::size_t most_half_waves = 8, fewest_half_waves = 3;
-  /// Share of what all half-waves explain that may be faster.
+  /// Share of what all half-waves explain that may have shorter half-waves.
   double fast_share = 0.15;
-  /// Coefficients from which on a function of an axis is a curve.
+  /// Number of coefficients above which a function of an axis is a curve.
   double curve = 3;
-  /// Independent functions of the axis that the readings show, for each unknown of a curve, and of a period
-  /// (one of many that were tried).
+  /// Required number of independent functions of the axis in the readings, for each unknown of a
+  /// curve, and of a period (one of many that were tried).
   double seen_per_unknown = 1.5, seen_per_period = 2;
-  /// Positions closer than this share of the range are one.
+  /// Positions closer than this share of the range count as one.
   double apart = 1.0 / 64;
-  /// Share of a column beside the others below which it is none of its own.
+  /// Share of a column beside the others below which it is not independent.
   double own = 1e-3;
-  /// Places along the axis at which a jump is tried.
+  /// Number of positions along the axis at which a jump is tried.
   std::size_t places_of_jump = 64;
-  /// Pieces of one function: so many functions of one axis, so many of position where rows have one reading,
-  /// so many beside a curve, are believed to be as many causes.
+  /// Pieces of one function: largest numbers of functions that count as separate causes, of one
+  /// axis, of position if rows have one reading, and beside a curve.
   std::size_t most_of_one_axis = 2, most_of_one_reading = 3, most_beside_a_curve = 2;
-  /// Periods of a wave in the range from which on it is a cause of its own (a worm, its gear) and no piece,
-  /// and how many such waves are believed.
+  /// Number of periods in the range above which a wave is a cause of its own (a worm, its gear)
+  /// and not a piece, and largest number of such waves.
   double periods_of_a_wave = 2;
   std::size_t most_waves = 3;
-  /// Share of the longer period by which a ratio of two may miss a whole number and be a harmonic.
+  /// Share of the longer period by which a ratio of two may differ from an integer and be a
+  /// harmonic.
   double harmonic = 0.03;
-  /// Cosine from which on two places move the readings alike.
+  /// Cosine above which two locations move the readings alike.
   double moves_alike = 0.9;
 
   template <class Visit>
@@ -419,7 +447,7 @@ struct ShapeThresholds {
   }
 };
 
-/// All of a diagnosis.
+/// All thresholds of a diagnosis.
 struct DiagnoseThresholds {
   EvidenceThresholds evidence;
   fit::LayoutThresholds layout;
@@ -432,7 +460,7 @@ struct DiagnoseThresholds {
   VerdictThresholds verdict;
   ShapeThresholds shape;
 
-  /// Calls visit("concern.name", number) for every one; numbers are double or std::size_t.
+  /// Calls visit("concern.name", number) for every threshold. Numbers are double or std::size_t.
   template <class Visit>
   void for_each(const Visit& visit) {
     evidence.for_each(visit);

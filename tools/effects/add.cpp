@@ -49,8 +49,9 @@ class Adder {
     }
   }
 
-  /// A term learned on accelerometer features gets a domain of validity: over its inputs and the feed, where
-  /// they stand in it, and over every thermometer of the machine, since warmth spoils such terms unseen.
+  /// A term that was learned on accelerometer features gets a domain of validity. The domain
+  /// covers its inputs and the feed, if they are in the term, and every thermometer of the
+  /// machine. Temperature changes such terms without a visible sign.
   void find_domain() {
     const Choice& choice = candidate_.choice;
     bool learned = false;
@@ -95,8 +96,8 @@ class Adder {
   std::string lines_of_statics() const {
     std::string lines;
     for (const CandidateUnknown& unknown : candidate_.unknowns)
-      // A time constant or a period has no meaning at 0: its nominal is the start (the term is 0 all the
-      // same, for its coefficient is).
+      // A time constant or a period has no meaning at 0, so its nominal is its start value. The
+      // term is still 0, because its coefficient is 0.
       lines += fmt::format("      <{} value=\"{}\" nominal=\"{}\" unit=\"{}\" note=\"{}\"/>\n", unknown.name,
                            text::number_text(unknown.start),
                            unknown.kind == UnknownKind::kLinear ? "0" : text::number_text(unknown.start),
@@ -119,7 +120,7 @@ class Adder {
     return lines;
   }
 
-  /// Into the sections that are there; those that are not are made, together.
+  /// Inserts into the sections that exist. Missing sections are created together.
   void insert_variables() {
     const std::string statics = lines_of_statics(), inputs = lines_of_inputs();
     std::string sections;
@@ -154,9 +155,9 @@ class Adder {
     return {};
   }
 
-  /// The row of the file at a place that is no stand-in.
+  /// Returns the row of the file for a location that with_base_row did not add.
   pugi::xml_node node_of(const DofPlace& place) const {
-    // By position: `n` may be left out.
+    // By position, because `n` may be absent.
     std::size_t index = !place.workpiece && is_stand_in(machine_, {false, 0, 0}) ? 1 : 0;
     for (const pugi::xml_node node : chain_of(place.workpiece).children())
       if (node.type() == pugi::node_element && index++ == place.transform) return node;
@@ -164,7 +165,8 @@ class Adder {
         fmt::format("{}: transform {} was not found again", machine_.file, transform_at(machine_, place).n));
   }
 
-  /// Writes the row that stands in at the base: first of the tool branch, last of the workpiece branch.
+  /// Writes the row that with_base_row added: first of the tool branch, last of the workpiece
+  /// branch.
   void insert_base_row() {
     const DofPlace place = candidate_.terms[0].place;
     const std::string row = fmt::format("<sixdof n=\"{}\"{}/>", transform_at(machine_, place).n, base_row_);
@@ -175,12 +177,12 @@ class Adder {
     edits_.push_back({first, 0, row + (alone ? "\n" + text_.substr(line, first - line) : "")});
   }
 
-  /// Comparisons bind loosest: beside something else they need parentheses.
+  /// Comparisons have the lowest precedence. Next to another operand they need parentheses.
   static bool is_comparison(const model::Expr& expr) {
     return expr.op == model::Op::kEqual || expr.op == model::Op::kLess || expr.op == model::Op::kGreater;
   }
 
-  /// The term as it stands in an attribute, beside others or alone.
+  /// Returns the term as an attribute contains it, next to other terms or alone.
   std::string value_of(const CandidateTerm& term) const {
     const std::string text = in_domain(term.text);
     const bool open = is_comparison(*model::parse_expression(text));

@@ -13,7 +13,8 @@
 namespace vernier::effects {
 namespace {
 
-/// A value as it stands in an add string: the characters that the string itself uses are written %XX.
+/// Returns a value as an add string writes it. The characters that the string itself uses become
+/// %XX.
 std::string quote(const std::string& value) {
   std::string text;
   for (const char c : value) {
@@ -47,7 +48,7 @@ bool has_range(const EffectForm& form) {
          form.asks_for("span");
 }
 
-/// input, input2, input3 ...
+/// Returns the numbered key: input, input2, input3 ...
 std::string numbered(const std::string& key, std::size_t i) {
   return i == 0 ? key : key + std::to_string(i + 1);
 }
@@ -89,7 +90,7 @@ class AddReader {
     id_ = text_.substr(0, colon);
     std::string rest = colon == std::string::npos ? std::string() : text_.substr(colon + 1);
     while (!rest.empty()) {
-      if (rest.rfind("term=", 0) == 0) {  // an expression may hold commas: it is the last one
+      if (rest.rfind("term=", 0) == 0) {  // an expression may contain commas, so it is the last value
         values_["term"] = rest.substr(5);
         break;
       }
@@ -98,7 +99,7 @@ class AddReader {
       const auto equals = item.find('=');
       if (equals == std::string::npos || equals == 0) fail(item, "expected KEY=VALUE");
       const std::string key = item.substr(0, equals), value = item.substr(equals + 1);
-      // Labels of runs are quoted one by one, for what stands between them is a character that they may hold.
+      // Labels of runs are quoted one by one, because a label may contain the separator.
       if (!values_.emplace(key, key == "runs" ? value : unquote(value)).second)
         fail(item.substr(0, equals), "this key stands twice");
       rest = comma == std::string::npos ? std::string() : rest.substr(comma + 1);
@@ -157,7 +158,8 @@ class AddReader {
     }
   }
 
-  /// The transform that branch and transform name; nullopt where the string does not name it.
+  /// Returns the transform that branch and transform name. Returns nullopt if the string does not
+  /// name it.
   std::optional<DofPlace> named_transform() {
     const auto branch = take("branch"), number = take("transform");
     if (branch && *branch != "tool" && *branch != "workpiece") fail(*branch, "expected tool or workpiece");
@@ -194,7 +196,7 @@ class AddReader {
     default_axis_ = driver;
   }
 
-  /// Does a form go with what has been said?
+  /// Is a form consistent with the values that the string gives?
   bool fits(const EffectForm& form) const {
     const std::size_t inputs = form.asks_for("S") ? 2 : form.asks_for_input() ? 1 : 0;
     if (inputs != choice_.inputs.size()) return false;
@@ -202,7 +204,8 @@ class AddReader {
     if ((form.place == PlaceRule::kPair) != choice_.axis2.has_value()) return false;
     if (form.asks_for("across") != choice_.toward.has_value()) return false;
     if (form.asks_for("moment") != choice_.mass.has_value()) return false;
-    // Once a turn means nothing on a slide: 360 mm would be a period that nobody has asked for.
+    // A term of one period per revolution has no meaning on a linear axis. 360 mm would be a
+    // period that nobody asked for.
     if (axis && !machine_.axes[*axis].rotary && form.term.find("sin({q})") != std::string::npos) return false;
     if (!choice_.place) return true;
     if (!acts_at_one(form)) return false;
@@ -229,7 +232,8 @@ class AddReader {
     }
   }
 
-  /// Which way a bar points, and where a mass sits: what gravity's functions are worked out for.
+  /// Reads the direction of a bar and the location of a mass. The gravity functions are computed
+  /// for them.
   void read_pull() {
     if (const auto toward = take("toward")) {
       const std::size_t found = std::string("XYZ").find(*toward);
@@ -279,7 +283,8 @@ class AddReader {
     if (!choice_.place) fail(id_, "needs branch, transform and dof: where does it act?");
   }
 
-  /// Gravity moves no slide, and has no moment about a joint that it points along at every pose.
+  /// Throws if gravity has no effect: on a linear axis, and on a joint whose axis is parallel to
+  /// gravity at every pose.
   void require_moment() const {
     if (!choice_.place) return;
     if (!is_angle(machine_, *choice_.place)) fail(id_, "acts at a rotary joint, and this axis is none");

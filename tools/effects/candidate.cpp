@@ -22,7 +22,7 @@ void replace_all(std::string& text, std::string_view what, const std::string& wi
     text.replace(at, what.size(), with);
 }
 
-/// A name made of letters that names may have.
+/// Returns the text without the characters that a name may not have.
 std::string plain(std::string_view text) {
   std::string name;
   for (const char c : text)
@@ -53,8 +53,8 @@ model::ExprPtr negative(const model::ExprPtr& expr) {
                                          : with_first_negated(expr);
 }
 
-/// Works one choice out into terms and unknowns: every placeholder and every unknown of the form's tree is
-/// replaced by what the choice and the machine put there.
+/// Computes terms and unknowns of one choice. Every placeholder and every unknown of the form's
+/// tree is replaced by its value from the choice and the machine.
 class Maker {
  public:
   Maker(const model::Machine& machine, const AxisPlaces& axes, const Choice& choice)
@@ -81,13 +81,12 @@ class Maker {
   }
 
  private:
-  /// A form's tree and where it goes.
+  /// A form's tree and its location.
   struct TermAt {
     DofPlace place;
     model::ExprPtr tree;
     std::optional<std::size_t> axis;
-    bool negated =
-        false;  // terms that share a coefficient count in the same sense along the machine's motion
+    bool negated = false;  // terms that share a coefficient have the same sign along the machine's motion
     const char* normal = nullptr;  // {n}
   };
 
@@ -97,7 +96,8 @@ class Maker {
 
   bool is_custom() const { return choice_.effect == &custom_effect(); }
 
-  /// The reference that a term subtracts is the one that the input is declared with: the term is 0 there.
+  /// The reference that a term subtracts is the declared reference of the input. The term is 0
+  /// there.
   void settle_reference() {
     if (choice_.reference || choice_.inputs.empty() || !choice_.form->asks_for("ref")) return;
     choice_.reference = standard_reference(choice_.units.empty() ? "" : choice_.units[0]);
@@ -134,7 +134,8 @@ class Maker {
         break;
       case PlaceRule::kNormal: {
         const std::vector<DofPlace> base = base_places(machine_);
-        // The workpiece branch enters inverted: what moves it forward moves the point back.
+        // The workpiece branch is inverted in the chain: a forward motion of it moves the point
+        // back.
         for (std::size_t i = 0; i < base.size(); ++i)
           terms.push_back(
               {base[i], form[0], std::nullopt, base[i].workpiece, format::columns::kNormal.at(i)});
@@ -167,7 +168,7 @@ class Maker {
       }
       if (name.front() == '{' && marks.size() == 1 && name.size() == marks[0].size() + 2)
         return value_of(marks[0], term);
-      // dir{q}, v{q}, lag of an input: a name with another name in it.
+      // dir{q}, v{q}, lag of an input: a name that contains another name.
       std::string whole = name;
       for (const std::string& mark : marks)
         whole.replace(whole.find('{'), mark.size() + 2, model::to_text(*value_of(mark, term)));
@@ -176,7 +177,7 @@ class Maker {
     });
   }
 
-  /// What stands in the place of a placeholder.
+  /// Returns the expression that replaces a placeholder.
   model::ExprPtr value_of(const std::string& mark, const TermAt& term) const {
     if (mark == "q") return model::make_symbol(axis_of(term));
     if (mark == "T" || mark == "L" || mark == "F" || mark == "V") return model::make_symbol(input(0));
@@ -198,7 +199,8 @@ class Maker {
     return hats(axis_of(term));
   }
 
-  /// What gravity does there, as a function of the axes; null for a mark that does not ask for it.
+  /// Returns the gravity function at the location, as a function of the axes. Returns null for a
+  /// placeholder that is not a gravity function.
   model::ExprPtr gravity_of(const std::string& mark, const DofPlace& place) const {
     if (mark != "moment" && mark != "along" && mark.rfind("across", 0) != 0) return nullptr;
     if (!gravity_) gravity_.emplace(machine_);
@@ -216,7 +218,7 @@ class Maker {
       wave = gravity_->across(place, mark == "across" ? *choice_.toward : (own + next) % 3);
     }
     if (!wave) missing("a chain of turns in proportion to axes, from the base to there,");
-    // A tube that gravity bends one way only is a tube.
+    // A constant bend by gravity cannot be distinguished from the shape of the part.
     if (wave->is_constant() && choice_.form->place != PlaceRule::kBend)
       missing("a place where an axis changes what gravity does (here it is the same at every pose),");
     return wave->expression(machine_);
@@ -232,7 +234,7 @@ class Maker {
     return choice_.inputs[index];
   }
 
-  /// h1·hat1 + h2·hat2 …: triangles over the range.
+  /// Returns h1·hat1 + h2·hat2 …: a piecewise linear basis over the range.
   model::ExprPtr hats(const std::string& axis) const {
     const std::size_t count = choice_.form->hats;
     if (!(choice_.to > choice_.from)) missing("from or to (the range of the axis)");
@@ -252,7 +254,7 @@ class Maker {
     return sum_of(parts);
   }
 
-  /// h1·run("a") + h2·run("b") …
+  /// Returns h1·run("a") + h2·run("b") …
   model::ExprPtr steps() const {
     std::vector<model::ExprPtr> parts;
     const std::vector<std::string> names = names_of_steps();
@@ -270,7 +272,8 @@ class Maker {
     return names;
   }
 
-  /// The unknowns of the form's terms, by their names there, in the order of the expression.
+  /// Returns the unknowns of the form's terms by their names in the form, in the order of the
+  /// expression.
   std::vector<std::string> unknowns_in(const std::vector<TermAt>& terms) const {
     std::vector<std::string> found;
     const auto take = [&](const std::string& name) {
@@ -288,7 +291,7 @@ class Maker {
     return found;
   }
 
-  /// Every other name of a term is one of the machine's or an input that comes with it.
+  /// Every other name of a term is a name of the machine or an input that is added with it.
   void check_name(const std::string& name) const {
     const auto& inputs = choice_.inputs;
     if (model::resolve_name(machine_, name).kind == model::SymbolKind::kUnresolved &&
@@ -333,7 +336,8 @@ class Maker {
     return item;
   }
 
-  /// What a person must say who adds by hand: a fit finds no period from nothing.
+  /// Returns why a manual addition needs a start value: a fit cannot find a period without a start
+  /// value.
   static std::string why_a_start(const CandidateUnknown& item) {
     const std::string unit = item.unit.empty() ? "" : " in " + item.unit;
     const std::string say = "; add start." + item.rule + "=VALUE";
@@ -391,7 +395,7 @@ class Maker {
   Candidate result_;
   std::set<std::string> taken_;
   std::map<std::string, std::string> final_name_;  // of an unknown, by its name in the form
-  mutable std::optional<GravityChain> gravity_;    // worked out once asked for
+  mutable std::optional<GravityChain> gravity_;    // computed at its first use
 };
 
 }  // namespace

@@ -25,7 +25,7 @@ constexpr std::array<const char*, 14> kPlaceNames = {"own",  "cross",    "turn",
 /// N of "hats N".
 std::optional<std::size_t> hats_of(const std::string& mark) {
   constexpr std::string_view kHats = "hats ";
-  // A table of more stations is no effect to be searched for.
+  // Largest N of {hats N}. A table of more stations is not a searchable effect.
   constexpr double kMostHats = 100;
   if (mark.rfind(kHats, 0) != 0) return std::nullopt;
   const auto count = text::parse_number(mark.substr(kHats.size()));
@@ -227,7 +227,8 @@ class CatalogueReader {
       if (!used.contains(rule.name)) fail_at(first_line_, rule.name, "no form uses this unknown");
   }
 
-  /// The unknowns that a form uses; errors where its term holds what a term may not.
+  /// Returns the unknowns that a form uses. Throws if its term contains something that a term may
+  /// not contain.
   std::set<std::string> unknowns_of(const Effect& effect, const EffectForm& form, std::size_t line) const {
     if ((form.trees.size() == 2) != (form.place == PlaceRule::kPair))
       fail_at(line, form.term, "a pair has two terms with | between them, other places have one");
@@ -253,7 +254,7 @@ class CatalogueReader {
   }
 
   std::string file_;
-  std::size_t line_ = 0, first_line_ = 0;  // now, and where the entry begins
+  std::size_t line_ = 0, first_line_ = 0;  // current line, and first line of the entry
   std::vector<std::size_t> form_line_;     // of the entry's forms
   std::vector<Effect> effects_;
 };
@@ -268,7 +269,7 @@ std::vector<std::string> marks_in(const std::string& name) {
 }
 
 void read_term(EffectForm& form) {
-  // No label of a run stands in a catalogue: a bar is one of a pair.
+  // No label of a run is in a catalogue, so a bar separates the terms of a pair.
   const auto bar = form.term.find('|');
   form.trees = {model::parse_template(form.term.substr(0, bar))};
   if (bar != std::string::npos) form.trees.push_back(model::parse_template(form.term.substr(bar + 1)));

@@ -19,23 +19,23 @@ enum class PlaceRule : std::uint8_t {
   kTurn,      // the other angles of q's transform
   kLength,    // every length of the chain
   kAngle,     // every angle of the chain
-  kBase,      // lengths of the transform that carries everything
-  kBaseTurn,  // its angles
+  kBase,      // lengths of the transform that carries the whole branch
+  kBaseTurn,  // angles of that transform
   kSag,       // angles about a horizontal axis and lengths along gravity, of any transform
   kJoint,     // the angle that a rotary axis moves, where gravity has a moment about it
   kLink,      // an angle or a length of a link that several axes turn against gravity
-  kBend,      // together at the two angles of such a link across one of its local axes
-  kEachAxis,  // together at the own degree of freedom of every axis, one coefficient
-  kPair,      // together at the own degrees of freedom of two linear axes
-  kNormal,    // together at the three lengths of the measuring frame, along nx ny nz
+  kBend,      // both angles of such a link across one of its local axes, together
+  kEachAxis,  // own degrees of freedom of all axes, together, with one coefficient
+  kPair,      // own degrees of freedom of two linear axes, together
+  kNormal,    // the three lengths of the measuring frame, together, along nx ny nz
 };
 
-/// How the unknowns of a form are found.
+/// How the values of a form's unknowns are found.
 enum class UnknownKind : std::uint8_t {
   kLinear,  // the term is linear in it
   kTime,    // a time constant: scanned from the spacing of the rows to a few times their duration, s
   kTravel,  // a decay length: scanned from the spacing to the range of q
-  kPeriod,  // a period of q: scanned from 1/100 of the range (a plain wave: 1/1000) to most of it
+  kPeriod,  // a period of q: scanned from 1/100 of the range (a plain sine: 1/1000) to most of it
   kGrid,    // scanned over the values that the catalogue names
 };
 
@@ -47,25 +47,26 @@ struct UnknownRule {
   std::size_t count = 0;     // kGrid, logarithmic
 };
 
-/// One way to write an effect. The term is an expression with placeholders: {q} the driving axis, {T} {S}
-/// inputs that are temperatures, {L} a load, {F} an accelerometer feature, {V} any other logged quantity,
-/// {ref} the reference of {T}, {mid} {from} {to} {span} of the range of {q}, {hats N} a sum of N hat
-/// functions over that range, {runs} a sum of one step a run, {sum} the sum of parallel joints up to {q} and
-/// beyond, {n} nx, ny or nz. Worked out from the chain (gravity.h), 1 at most: {across} the moment of gravity
-/// about the angle of a bar that points along a local axis, {across1} {across2} of both such axes, {along}
-/// gravity along the length, {moment} the moment of a mass farther out.
+/// One form of an effect. The term is an expression with placeholders: {q} the driving axis, {T}
+/// {S} inputs that are temperatures, {L} a load, {F} an accelerometer feature, {V} any other
+/// logged quantity, {ref} the reference of {T}, {mid} {from} {to} {span} of the range of {q},
+/// {hats N} a piecewise linear basis of N functions over that range, {runs} a sum of one step per
+/// run, {sum} the sum of parallel joints up to {q} and beyond, {n} nx, ny or nz. The following are
+/// computed from the chain (gravity.h), with magnitude at most 1: {across} the moment of gravity
+/// about the angle of a bar that points along a local axis, {across1} {across2} of both such axes,
+/// {along} gravity along the length, {moment} the moment of a mass farther out.
 struct EffectForm {
   std::string label;
   PlaceRule place = PlaceRule::kOwn;
   std::string term;
-  bool rare = false;                  // met more seldom than the effect's other forms
-  std::vector<model::ExprPtr> trees;  // the term, read: one, of a pair two
+  bool rare = false;                  // less frequent than the effect's other forms
+  std::vector<model::ExprPtr> trees;  // the parsed term: one tree, two for a pair
   std::set<std::string> marks;        // of its placeholders: q, T, hats ...
   std::size_t hats = 0;               // N of {hats N}
 
   bool asks_for(const std::string& mark) const { return marks.contains(mark); }
   bool asks_for_input() const { return asks_for("T") || asks_for("L") || asks_for("F") || asks_for("V"); }
-  /// Does any node of the term answer?
+  /// Is the condition true for any node of the term?
   template <class Is>
   bool any(const Is& is) const {
     return std::any_of(trees.begin(), trees.end(),
@@ -73,45 +74,48 @@ struct EffectForm {
   }
 };
 
-/// Reads form.term into the rest. Throws ExpressionError. tool.
+/// Parses form.term and fills the other members from it. Throws ExpressionError. tool.
 void read_term(EffectForm& form);
-/// The placeholders in a name of a term: dir{q} has q, {hats 5} has "hats 5".
+/// Returns the placeholders in a name of a term: dir{q} has q, {hats 5} has "hats 5".
 std::vector<std::string> marks_in(const std::string& name);
 
-/// The number that describes an effect to a person: the factor times one unknown, or times the root of the
-/// sum of the squares of several (the amplitude of a sine and a cosine).
+/// The number that describes an effect to a person. It is the factor times one unknown, or times
+/// the root of the sum of the squares of several unknowns (the amplitude of a sine and a cosine).
 struct EffectSize {
   double factor = 1;
   std::vector<std::string> unknowns;  // by their names in the catalogue
 };
 
-/// An entry of the catalogue: what a user may be told is missing.
+/// An entry of the catalogue: an effect that a report may name as missing.
 struct Effect {
   std::string id, title, formula, signature, exposed_by;
-  std::string short_name;          // behind the part of the machine: "Z carriage: lag"
-  std::optional<EffectSize> size;  // absent: no single number says it
+  std::string short_name;          // follows the part of the machine: "Z carriage: lag"
+  std::optional<EffectSize> size;  // absent: no single number describes it
   std::vector<std::string> impostors;
-  bool rare = false;           // met seldom: wants more evidence than its rivals
-  bool needs_touches = false;  // only readings along a surface's normal tell of it
-  std::string of_instrument;  // the instrument's doing and no error of the machine: the verdict in a sentence
-  std::string cause;          // effects of one cause, axis and input differ in place or shape: no rivals
+  bool rare = false;           // rare: needs more evidence than its alternatives
+  bool needs_touches = false;  // only readings along a surface's normal can show it
+  std::string
+      of_instrument;  // caused by the instrument, not an error of the machine: the verdict in a sentence
+  std::string
+      cause;  // effects of one cause, axis and input differ in location or shape: they are no alternatives
   std::vector<EffectForm> forms;
   std::vector<UnknownRule> unknowns;
 
   const UnknownRule* find_unknown(std::string_view name) const;
 };
 
-/// Effects as a text in the format of tools/docs/effects.md. `file` is for messages. Throws InputError with
-/// file, line and word. tool.
+/// Parses effects from a text in the format of tools/docs/effects.md. `file` is for messages.
+/// Throws InputError with file, line and word. tool.
 std::vector<Effect> parse_effects(const std::string& text, const std::string& file);
 
-/// The catalogue that comes with the program.
+/// Returns the catalogue that comes with the program.
 const std::vector<Effect>& built_in_effects();
 
-/// The catalogue, with the entries of users' files in addition (an entry with a known id replaces it).
+/// Returns the catalogue with the entries of users' files added. An entry with a known id replaces
+/// the old entry.
 std::vector<Effect> effect_catalogue(const std::vector<std::string>& files);
 
-/// The name of a place rule as the catalogue writes it.
+/// Returns the name of a place rule as the catalogue writes it.
 const char* place_name(PlaceRule rule);
 
 }  // namespace vernier::effects

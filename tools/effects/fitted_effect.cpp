@@ -21,7 +21,8 @@ void start_at(model::Machine& machine, const Candidate& effect, const std::vecto
     static_of(machine, unknown).value = *value++;
 }
 
-/// Holds what the fit drove out of where it was looked for. True where there was one.
+/// Holds the unknowns that the fit moved out of the range of their search. Returns true if there
+/// was such an unknown.
 bool hold_runaways(model::Machine& machine, const std::vector<EffectToFit>& effects, FittedEffects& result) {
   bool any = false;
   for (std::size_t i = 0; i < effects.size(); ++i) {

@@ -14,8 +14,8 @@
 namespace vernier::effects {
 namespace {
 
-constexpr double kRounding = 1e-9;     // of directions and of counts of an axis in a sum
-constexpr double kLeastOfTerm = 1e-6;  // below it a term of a wave is what rounding left
+constexpr double kRounding = 1e-9;     // rounding error of directions and of factors of an axis in a sum
+constexpr double kLeastOfTerm = 1e-6;  // a smaller term of a wave is a rounding error
 
 bool is_zero(const std::vector<double>& by) {
   return std::all_of(by.begin(), by.end(), [](double one) { return one == 0; });
@@ -30,7 +30,7 @@ std::vector<double> sum_of(const std::vector<double>& a, const std::vector<doubl
   return sum;
 }
 
-/// sin and cos of -x are said by those of x: the first axis counts forwards.
+/// Writes sin and cos of -x with those of x. The factor of the first axis becomes positive.
 double make_forward(std::vector<double>& by) {
   const auto first = std::find_if(by.begin(), by.end(), [](double one) { return one != 0; });
   if (first == by.end() || *first > 0) return 1;
@@ -50,10 +50,11 @@ std::string text_of(const std::vector<double>& by, const model::Machine& machine
   return text;
 }
 
-/// Where an axis stands when all stand somewhere.
+/// Returns a position of an axis that is on no special value.
 double somewhere(std::size_t axis) { return 17.3 + 3.7 * static_cast<double>(axis); }
 
-/// Values of an expression with all axes at zero, each in turn at 1, and all somewhere.
+/// Returns values of an expression with all axes at zero, with each axis in turn at 1, and with
+/// all axes at arbitrary positions.
 Eigen::VectorXd samples(const model::Machine& nominal, const model::Expr& expr) {
   const std::size_t axes = nominal.axes.size();
   model::States states = model::make_states(axes + 2, nominal);
@@ -65,7 +66,7 @@ Eigen::VectorXd samples(const model::Machine& nominal, const model::Expr& expr) 
   return model::evaluate(nominal, expr, states).matrix();
 }
 
-/// The degrees of freedom of a transform in the order in which they act.
+/// Returns the degrees of freedom of a transform in the order of action.
 std::vector<std::size_t> order_of(const model::Transform& transform) {
   if (transform.kind == model::TransformKind::kSixDof) return {0, 1, 2, 3, 4, 5};
   return {1, 0, 2, 3};  // Tz(d) Rz(theta) Tx(a) Rx(alpha)
@@ -95,7 +96,7 @@ Wave Wave::times(const Factor& factor) const {
     std::vector<Factor> all = factors;
     const auto same = std::find(all.begin(), all.end(), factor);
     if (same != all.end() && factor.kind == Factor::Kind::kSine) {
-      // sin^2 = 1 - cos^2: one way to write it.
+      // sin^2 = 1 - cos^2 makes the representation unique.
       all.erase(same);
       product.terms_[all] += value;
       const Factor cosine{Factor::Kind::kCosine, factor.by};
@@ -308,7 +309,7 @@ std::optional<Wave> GravityChain::moment(const DofPlace& joint, std::size_t tran
     if (piece->place.workpiece != joint.workpiece || piece->place.transform > transform) break;
     if (!piece->known) return std::nullopt;
     if (piece->is_angle) continue;
-    // The piece as seen in its own frame: both the joint's axis and gravity are turned back there.
+    // The term in its own frame: both the joint's axis and gravity are rotated back into it.
     const std::array<Wave, 3> a = turned_back(fixed(axis), piece->turns, at->turns.size());
     const std::array<Wave, 3> g = turned_back(fixed(gravity_), piece->turns, 0);
     const Eigen::Vector3d l = piece->home * piece->local;

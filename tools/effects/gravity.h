@@ -12,13 +12,14 @@
 
 namespace vernier::effects {
 
-/// A sum of products of sines and cosines of sums of axis positions, and of positions of linear axes.
+/// A sum of products. The factors are sines and cosines of sums of axis positions, and positions
+/// of linear axes.
 class Wave {
  public:
   /// A factor: sine or cosine of a sum of positions, or the position of an axis itself.
   struct Factor {
     enum class Kind : std::uint8_t { kSine, kCosine, kPosition } kind = Kind::kSine;
-    std::vector<double> by;  // how much each axis counts in it
+    std::vector<double> by;  // factor of each axis in the sum
     auto operator<=>(const Factor&) const = default;
   };
 
@@ -27,60 +28,64 @@ class Wave {
   Wave times(const Factor& factor) const;
   Wave times(const Wave& other) const;
 
-  /// Without what rounding left: terms below 1e-6 of `scale`.
+  /// Returns the sum without rounding errors: terms below 1e-6 of `scale` are removed.
   Wave cleaned(double scale) const;
-  /// Does no axis change it?
+  /// Is the sum the same at all positions of all axes?
   bool is_constant() const;
-  /// The sums of positions that it depends on; two of them make it a function that no single axis drives.
+  /// Returns the sums of positions on which it depends. If it has two of them, no single axis
+  /// drives it.
   std::set<std::vector<double>> phases() const;
   std::size_t terms() const { return terms_.size(); }
-  /// As an expression with the names of the machine's axes, six digits a number. tool.
+  /// Returns it as an expression with the names of the machine's axes. Numbers have six digits.
+  /// tool.
   model::ExprPtr expression(const model::Machine& machine) const;
 
  private:
   std::map<std::vector<Factor>, double> terms_;
 };
 
-/// What gravity does along the nominal chain: its direction in every frame, and the moment of a mass about a
-/// joint. The chain is a product of turns about fixed directions (Brockett's product of exponentials); turns
-/// about one direction that follow one another are one turn by the sum of their angles. Both branches stand
-/// on the same base. Transforms whose degrees of freedom are no sums of axis positions end what is known.
-/// tool.
+/// Gravity along the nominal chain: its direction in every frame, and the moment of a mass about a
+/// joint. The chain is a product of turns about fixed directions (Brockett's product of
+/// exponentials). Successive turns about one direction are combined into one turn by the sum of
+/// their angles. Both branches start at the same base. A transform whose degrees of freedom are
+/// not sums of axis positions makes all later frames unknown. tool.
 class GravityChain {
  public:
   explicit GravityChain(const model::Machine& machine);
 
-  /// Direction of gravity in the frame in which a degree of freedom acts, an angle's own turn done.
+  /// Direction of gravity in the frame in which a degree of freedom acts. For an angle the frame
+  /// is the one after its own turn.
   std::optional<std::array<Wave, 3>> direction(const DofPlace& place) const;
   /// Moment about an angle of a bar that points along local axis `toward` (0 to 2, not the angle's own), per
   /// length and weight: (toward x gravity) . axis.
   std::optional<Wave> across(const DofPlace& angle, std::size_t toward) const;
-  /// May gravity have a moment about an angle? Not where it points along it at every pose.
+  /// May gravity have a moment about an angle? False if gravity points along its axis at every
+  /// pose.
   bool may_turn(const DofPlace& angle) const;
-  /// Does no axis and no constant turn anything within this transform? Its angles then share one frame.
+  /// Is this transform without a turn by an axis or a constant? Its angles then share one frame.
   bool is_rigid(const DofPlace& transform) const;
-  /// Gravity along a length.
+  /// Component of gravity along a length.
   std::optional<Wave> along(const DofPlace& length) const;
-  /// Moment about a joint of a mass where a transform of its branch ends, behind it; 1 is that mass at the
-  /// full length of the links between, level.
+  /// Moment about a joint of a mass at the end of a transform of its branch, behind the joint. 1
+  /// is the moment of that mass if the links between are level and at full length.
   std::optional<Wave> moment(const DofPlace& joint, std::size_t transform) const;
 
  private:
-  /// One turn by the sum of positions, about a direction of the base at the position zero of all axes.
+  /// One turn by the sum of positions, about a direction of the base with all axes at zero.
   struct Turn {
     Eigen::Vector3d axis;
     std::vector<double> by;
   };
-  /// A degree of freedom, in the order in which they act.
+  /// A degree of freedom, in the order of action.
   struct Motion {
     DofPlace place;
     Eigen::Vector3d local;  // unit vector along or about which it acts
     bool is_angle = false;
     double constant = 0;      // its value with all axes at zero
-    std::vector<double> by;   // and per unit of each axis
-    std::vector<Turn> turns;  // up to and with it
+    std::vector<double> by;   // its change per unit of each axis
+    std::vector<Turn> turns;  // up to and including this motion
     Eigen::Matrix3d home;     // its frame with all axes at zero
-    bool known = true;        // it and all before it are sums of positions
+    bool known = true;        // this motion and all before it are sums of positions
   };
 
   void build(const model::Machine& nominal, bool workpiece);
@@ -93,7 +98,7 @@ class GravityChain {
   std::vector<Motion> motions_;
 };
 
-/// Local axis of a degree of freedom: 0 to 2 for x to z. tool.
+/// Returns the local axis of a degree of freedom: 0 to 2 for x to z. tool.
 std::size_t local_axis(const model::Machine& machine, const DofPlace& place);
 
 }  // namespace vernier::effects

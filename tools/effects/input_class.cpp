@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<std::string_view, 8> kSetpoints = {"target", "set",     "setpoint", "sp",
                                                         "cmd",    "command", "demand",   "goal"};
 
-/// Does a name end like that of a set-point: T_bed_target, nozzle_set?
+/// Does a name end like the name of a set-point: T_bed_target, nozzle_set?
 bool is_setpoint(const std::string& name) {
   const auto last = name.find_last_of("_-. ");
   if (last == std::string::npos) return false;

@@ -7,18 +7,18 @@
 
 namespace vernier::effects {
 
-/// What a logged column is: what the machine file says, else by its unit (by its name where it has none).
-/// kSetpoint: what a controller asked for, no reading: it explains nothing that the reading beside it does
-/// not.
+/// Class of a logged column: as the machine file states it, else by its unit (by its name if it
+/// has no unit). kSetpoint: the value that a controller asked for, not a reading. A set-point
+/// explains nothing beyond the reading of the same quantity.
 enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kSetpoint, kOther };
 InputClass class_of_input(const model::Input& input);
 
-/// Where the terms of an input are 0, unless the machine file says it: the standard temperature, or the mean
-/// of what was read, to two digits. tool.
+/// Returns the value at which the terms of an input are 0, unless the machine file states it. It
+/// is the standard temperature, or the mean of the readings to two digits. tool.
 double usual_reference(const model::Input& input, double mean);
 
-/// The temperature at which dimensions are specified (ISO 1), in a unit of temperature: 20 degC or 293.15 K.
-/// tool.
+/// Returns the temperature at which dimensions are specified (ISO 1), in a unit of temperature: 20
+/// degC or 293.15 K. tool.
 double standard_reference(std::string_view unit);
 
 }  // namespace vernier::effects

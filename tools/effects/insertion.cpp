@@ -7,7 +7,8 @@
 namespace vernier::effects {
 namespace {
 
-/// Where `tag` ("</static") ends an element, from `at` on: not in a remark, nor of a longer name.
+/// Returns the offset where `tag` ("</static") ends an element, from `at` on. Comments and longer
+/// names are skipped.
 std::size_t closing_tag(const std::string& text, std::size_t at, const std::string& tag) {
   for (at = text.find('<', at); at != std::string::npos; at = text.find('<', at + 1)) {
     if (text.compare(at, 4, "<!--") == 0)

@@ -7,11 +7,11 @@
 
 namespace vernier::effects {
 
-/// Where the name of an element stands in the text that it was read from.
+/// Returns the offset of an element's name in the text from which the element was read.
 std::size_t offset_of(const pugi::xml_node& node);
 
-/// Puts `lines` at the end of an element's content, before the line of its closing tag where that has a
-/// line of its own; an empty element is opened. tool.
+/// Inserts `lines` at the end of an element's content. If the closing tag has a line of its own,
+/// they are inserted before that line. An empty element is opened. tool.
 text::TextEdit at_end_of(const std::string& text, const pugi::xml_node& node, const std::string& lines);
 
 }  // namespace vernier::effects

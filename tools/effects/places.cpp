@@ -12,7 +12,8 @@ const std::vector<model::Transform>& branch_of(const model::Machine& machine, bo
   return workpiece ? machine.workpiece : machine.tool;
 }
 
-/// Value of a degree of freedom of the nominal chain, with one axis at `position` and the others at rest.
+/// Returns the value of a degree of freedom of the nominal chain, with one axis at `position` and
+/// the others at rest.
 double value_at(const model::Machine& nominal, const model::Expr& expr, std::size_t axis, double position) {
   model::States one = model::make_states(1, nominal);
   for (std::size_t i = 0; i < nominal.axes.size(); ++i) {
@@ -32,7 +33,7 @@ bool names_axis(const model::Expr& expr, std::size_t axis) {
   return found;
 }
 
-/// Change of a degree of freedom per unit of an axis in the nominal chain.
+/// Returns the change of a degree of freedom per unit of an axis in the nominal chain.
 double slope(const model::Machine& nominal, const model::Expr& expr, std::size_t axis) {
   if (!names_axis(expr, axis)) return 0;
   const model::Axis& item = nominal.axes[axis];
@@ -117,7 +118,7 @@ model::Machine with_base_row(model::Machine machine) {
   std::vector<model::Transform>& branch = workpiece ? machine.workpiece : machine.tool;
   if (branch.empty() || !base_places(machine).empty()) return machine;
   model::Transform row;
-  row.line = 0;  // of no file
+  row.line = 0;  // not in the file
   row.n = workpiece ? branch.back().n + 1 : branch.front().n - 1;
   for (std::size_t d = 0; d < row.dof_count(); ++d) {
     row.text[d] = "0";
@@ -134,7 +135,8 @@ std::vector<DofPlace> base_places(const model::Machine& machine) {
   const std::size_t at = workpiece ? branch.size() - 1 : 0;
   if (branch[at].kind != model::TransformKind::kSixDof) return {};
   if (workpiece) {
-    // The lengths act before the angles of the same transform: with a turning table they are no base shift.
+    // The lengths act before the angles of the same transform. With a rotary table they are no
+    // base shift.
     const model::Machine nominal = model::nominal_machine(machine);
     for (std::size_t d = 3; d < 6; ++d) {
       const model::Expr& expr = *nominal.workpiece[at].dof[d];

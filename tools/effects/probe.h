@@ -5,7 +5,7 @@
 
 namespace vernier::effects {
 
-/// Adds to a degree of freedom a new static of value 0, under a name that no expression can write. Returns
+/// Adds to a degree of freedom a new static of value 0. No expression can write its name. Returns
 /// its index in `machine.statics`. tool.
 std::size_t add_probe(model::Machine& machine, const DofPlace& place);
 

@@ -8,23 +8,23 @@
 
 namespace vernier::effects {
 
-/// What a user says of a logged column: `T_stamp=ignore`, `coolant=temperature`.
+/// The role that a user gives to a logged column: `T_stamp=ignore`, `coolant=temperature`.
 struct ColumnRole {
   std::string column;
-  bool ignored = false;  // as if it were not there
+  bool ignored = false;  // handled as if it were absent
   model::InputRole role = model::InputRole::kGuessed;
 };
 
-/// Throws InputError for what has no `=` or an unknown role.
+/// Throws InputError for a text without `=` or with an unknown role.
 ColumnRole parse_column_role(const std::string& statement);
 
-/// The machine file with these columns of `rows` declared as inputs of their roles; those that are ignored
-/// are not. Throws InputError for a column that `rows` has not, or one that the machine file declares
-/// already. tool.
+/// Returns the machine file with these columns of `rows` declared as inputs of their roles.
+/// Ignored columns are not declared. Throws InputError for a column that is not in `rows`, or that
+/// the machine file declares already. tool.
 std::string with_declared_columns(const std::string& text, const model::Machine& machine,
                                   const model::Measurement& rows, const std::vector<ColumnRole>& roles);
 
-/// Takes the ignored columns out of the candidates.
+/// Removes the ignored columns from the candidates.
 void leave_out(model::Measurement& rows, const std::vector<ColumnRole>& roles);
 
 }  // namespace vernier::effects

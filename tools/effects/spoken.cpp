@@ -13,7 +13,7 @@
 namespace vernier::effects {
 namespace {
 
-/// A unit of the machine file in the one that a shop says it in.
+/// A unit of the machine file and the corresponding unit of the shop.
 struct ShopUnit {
   const char *unit, *said;
   double factor;
@@ -35,8 +35,8 @@ constexpr std::array<ShopUnit, 13> kShopUnits = {{
     {"1", "ppm", kUmPerM},
 }};
 
-/// Value and uncertainty, both to the last digit that the latter leaves: one, two where it begins with 1 (GUM
-/// 7.2.6).
+/// Returns value and uncertainty. Both end at the last significant digit of the uncertainty: it
+/// has one digit, two if it begins with 1 (GUM 7.2.6).
 std::string with_std(double value, double std) {
   if (!(std > 0) || !std::isfinite(std)) return fmt::format("{:.3g}", value);
   const double power = std::floor(std::log10(std));
@@ -59,8 +59,8 @@ bool turns(const model::Machine& machine, const AxisPlaces& axes, std::size_t ax
   return own ? is_angle(machine, *own) : machine.axes[axis].rotary;
 }
 
-/// " along Y", " about Z", " in a": which degree of freedom of its part an effect has; empty for the motion's
-/// own.
+/// Returns the degree of freedom of its part that an effect has: " along Y", " about Z", " in a".
+/// Empty for the motion's own degree of freedom.
 std::string direction(const model::Machine& machine, const AxisPlaces& axes, const DofPlace& place) {
   const auto axis = axes.axis_of(place);
   if (axis && axes.is_own(*axis, place)) return {};
@@ -112,7 +112,8 @@ std::string spoken_name(const model::Machine& machine, const AxisPlaces& axes, c
                        what, with);
   if (candidate.terms.size() != 1) return what + with;
   const DofPlace& place = candidate.terms.front().place;
-  // What another axis than that of the part drives is said: the sag of X by Y.
+  // If another axis than that of the part drives the effect, the name states that axis: the sag of
+  // X by Y.
   if (choice.axis && axes.axis_of(place) != choice.axis && with.empty())
     with = ", by " + machine.axes[*choice.axis].name;
   return fmt::format("{}: {}{}{}", part_name(machine, axes, place), what, direction(machine, axes, place),

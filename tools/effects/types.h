@@ -11,31 +11,32 @@
 
 namespace vernier::effects {
 
-/// What has to be said to put a form of an effect into a machine: the content of an `add` string.
+/// All data that are needed to add a form of an effect to a machine: the content of an `add`
+/// string.
 struct Choice {
   const Effect* effect = nullptr;
   const EffectForm* form = nullptr;
-  std::optional<std::size_t> axis, axis2;  // {q}, and the second one of a pair
+  std::optional<std::size_t> axis, axis2;  // {q}, and the second axis of a pair
   std::vector<std::string> inputs;         // {T} or {L} or {F}, then {S}
   std::vector<std::string> units;          // of the inputs
   std::optional<DofPlace> place;
   std::string sum;                    // {sum}
   std::optional<std::size_t> toward;  // {across}: local axis of the bar, 0 to 2
-  std::optional<std::size_t> mass;    // {moment}: the transform of its branch behind which the mass sits
-  std::optional<double> reference;    // {ref}; none: the declared one, 20 for one not declared
+  std::optional<std::size_t> mass;    // {moment}: the transform of its branch behind which the mass is
+  std::optional<double> reference;    // {ref}; no value: the declared reference, 20 if none is declared
   double from = 0, to = 0;            // {from} {to} {mid} {hats N}
   std::vector<std::string> runs;      // {runs}
   std::map<std::string, double> start;
   std::string term;  // of a found expression (effect `custom`)
 };
 
-/// A term that an effect adds to one degree of freedom; names are the final ones.
+/// A term that an effect adds to one degree of freedom. The names are final.
 struct CandidateTerm {
   DofPlace place;
   std::string text;
 };
 
-/// A static that an effect brings along.
+/// A static that an effect adds.
 struct CandidateUnknown {
   std::string name, unit;
   std::string rule;  // name in the catalogue: k, p, tau ...
@@ -44,23 +45,24 @@ struct CandidateUnknown {
   double limit = 0;  // linear: largest plausible size of the term, mm or deg; 0: none
 };
 
-/// An effect at a place of a machine, ready to be evaluated or written.
+/// An effect at a location of a machine. It can be evaluated or written.
 struct Candidate {
   Choice choice;
   std::vector<CandidateTerm> terms;
   std::vector<CandidateUnknown> unknowns;
-  std::string label;   // where it stands: "backlash of X in X of transform 2"
+  std::string label;   // its location: "backlash of X in X of transform 2"
   std::string spoken;  // for people: "X carriage: backlash" (spoken.h)
 };
 
-/// The unknowns that are coefficients, in their order: what the term is linear in.
+/// Returns the unknowns that are coefficients, in their order. The term is linear in them.
 inline std::vector<CandidateUnknown> linear_unknowns(const Candidate& candidate) {
   std::vector<CandidateUnknown> unknowns;
   for (const CandidateUnknown& unknown : candidate.unknowns)
     if (unknown.kind == UnknownKind::kLinear) unknowns.push_back(unknown);
   return unknowns;
 }
-/// The others: periods, time constants, decay lengths. Lists of their values are in this order.
+/// Returns the other unknowns: periods, time constants, decay lengths. Lists of their values are
+/// in this order.
 inline std::vector<CandidateUnknown> scanned_unknowns(const Candidate& candidate) {
   std::vector<CandidateUnknown> unknowns;
   for (const CandidateUnknown& unknown : candidate.unknowns)

@@ -18,19 +18,20 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rise of chi square at which an explanation is worse: three standard deviations.
+/// Increase of chi square at which an explanation is worse: three standard deviations.
 constexpr double kWorse = 9;
-/// What moves the tool by less is nobody's concern, mm.
+/// A smaller motion of the tool is negligible, mm.
 constexpr double kNothing_mm = 5e-5;
-/// Spectral window of the positions from which a wave has an alias: 1 on a grid, 1/sqrt(N) at random.
+/// Value of the spectral window of the positions above which a periodic term has an alias: 1 on a
+/// grid, 1/sqrt(N) for random positions.
 constexpr double kAliased = 0.7;
-/// Steps of the frequency a period over the whole range; far enough from the model's own wave, in these
-/// periods.
+/// Frequency steps per period over the whole range. Minimum distance from the model's own
+/// frequency, in these units.
 constexpr double kFrequencySteps = 8, kOtherWave = 0.75;
 /// A length of tool that distinguishes a turn from a shift, mm.
 constexpr double kOtherTool_mm = 100;
 
-/// machine: const or not, as the transform is wanted.
+/// machine: const or not, as the returned transform.
 template <class Machine>
 auto* transform_at(Machine& machine, const Alternative& place) {
   auto& branch = place.workpiece ? machine.workpiece : machine.tool;
@@ -40,7 +41,7 @@ auto* transform_at(Machine& machine, const Alternative& place) {
   return found == branch.end() ? nullptr : &*found;
 }
 
-/// What one unit (mm, deg) of a degree of freedom moves the tool point by: 3 N.
+/// Returns the motion of the tool point by one unit (mm, deg) of a degree of freedom: 3 N.
 VectorXd response(const model::Machine& machine, const Alternative& place, std::size_t dof,
                   const model::States& states) {
   constexpr double kProbe = 1e-3;  // mm or deg: linear, and far above rounding
@@ -52,7 +53,8 @@ VectorXd response(const model::Machine& machine, const Alternative& place, std::
   return off.reshaped();
 }
 
-/// The part of a degree of freedom that its free statics make: its value less that with them at nominal.
+/// Returns the part of a degree of freedom that its free statics cause: its value minus its value
+/// with them at nominal.
 VectorXd term(const model::Machine& machine, const Alternative& place, const model::States& states) {
   model::Machine nominal = machine;
   for (model::Static& item : nominal.statics)
@@ -108,9 +110,9 @@ class Finder {
     if (place.dof >= 3 && !readings_.rotations()) look_for_shift(place, own);
   }
 
-  /// Of the term along the axis, from its sign changes; 1/unit.
+  /// Returns the frequency of the term along the axis, from its sign changes; 1/unit.
   double frequency(const Alternative& place, std::size_t axis, double low, double range) const {
-    constexpr Index kPoints = 4096;  // over the range: waves of 500 of its parts
+    constexpr Index kPoints = 4096;  // over the range: periods down to 1/500 of it
     model::States line = model::select_states(readings_.states(), std::vector<std::size_t>(kPoints, 0));
     line.axis[axis] = Eigen::ArrayXd::LinSpaced(kPoints, low, low + range);
     VectorXd value = term(bare_, place, line);
@@ -141,7 +143,8 @@ class Finder {
       }
     }
     if (waves.empty()) return;
-    // Of several the slowest is the one that nobody would call a wave between the targets.
+    // If there are several, the longest period is used. It cannot be mistaken for a motion between
+    // the targets.
     const double slowest = std::min_element(waves.begin(), waves.end(), [](const Wave& a, const Wave& b) {
                              return a.frequency < b.frequency;
                            })->frequency;
@@ -171,7 +174,7 @@ class Finder {
   void look_for_shift(Alternative place, const VectorXd& own) {
     const VectorXd turned =
         readings_.of(times_rows(response(bare_, place, place.dof, readings_.states()), own));
-    if (turned.squaredNorm() < kWorse) return;  // not seen: the covariance says so
+    if (turned.squaredNorm() < kWorse) return;  // not seen: the covariance shows that
     const VectorXd data = readings_.left() + turned;
     MatrixXd shifts(data.size(), 3);
     for (Index d = 0; d < 3; ++d)
@@ -180,7 +183,7 @@ class Finder {
     const VectorXd size = maths::least_norm(shifts, data);
     if ((data - shifts * size).squaredNorm() >= readings_.left().squaredNorm() + kWorse) return;
     place.size = {size[0], size[1], size[2]};
-    // The same with every tool: nothing to distinguish.
+    // If the effect is the same with every tool, there is nothing to distinguish.
     for (const std::array<double, 3>& tool :
          {std::array{kOtherTool_mm, 0.0, 0.0}, {0.0, 0.0, kOtherTool_mm}}) {
       const model::Machine other = model::with_tool(bare_, tool);

@@ -10,16 +10,18 @@
 
 namespace vernier::fit {
 
-/// Other terms that explain the fit rows as well as terms of the fitted model, to within three standard
-/// deviations in all, beside a free set-up. Two kinds are looked for:
-/// - a wave along an axis (a sine or cosine of it with a free static): a slower wave in the same degree of
-///   freedom, where the positions measured are those of a grid or nearly so (spectral window above 0.7);
-/// - a turn (an angle with a free static): a shift in the three lengths of the same transform, where the rows
-///   read no rotation. With one tool and no axis behind it both are the same. tool.
+/// Finds other terms that explain the fit rows as well as terms of the fitted model, beside a free
+/// set-up. "As well" means within three standard deviations in all. Two kinds are searched:
+/// - for a cyclic error along an axis (a sine or cosine of it with a free static): one with a
+/// longer period in the same degree of freedom, if the measured positions are on a grid or nearly
+/// so (spectral window above 0.7);
+/// - for a rotation (an angle with a free static): a shift in the three lengths of the same
+/// transform, if the rows read no rotation. With one tool and no axis behind the transform both
+/// are the same. tool.
 std::vector<model::FitRecord::Alternative> find_alternatives(const ReadingsBesideSetUp& readings);
 
-/// The model's term less its alternative at each state, as what it moves the tool point by: 3 N, mm; zero
-/// where the machine has no such transform. machine: without BaseShifts. tool.
+/// Returns the model's term minus its alternative at each state, as a motion of the tool point: 3
+/// N, mm. Zero if the machine has no such transform. machine: without BaseShifts. tool.
 Eigen::VectorXd alternative_column(const model::Machine& machine,
                                    const model::FitRecord::Alternative& alternative,
                                    const model::States& states);

@@ -12,7 +12,7 @@
 namespace vernier::fit {
 namespace {
 
-/// Evaluates all rows once per point; the residual blocks read their line of the result.
+/// Evaluates all rows once per point. The residual blocks read their line of the result.
 class WholeEvaluation : public ceres::EvaluationCallback {
  public:
   WholeEvaluation(const FitProblem& problem, const Eigen::VectorXd& values)
@@ -146,7 +146,8 @@ CeresOutcome solve_once(const FitProblem& problem, const Eigen::VectorXd& start,
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   solver.initial_trust_region_radius = 1e8;
   solver.max_num_iterations = options.max_iterations;
-  // A reading far off makes a cost of which the others' last digits are a millionth and less.
+  // An outlier dominates the cost. The last digits of the others are then a millionth of it and
+  // less.
   solver.function_tolerance = options.loss == Loss::kSquared ? 1e-14 : 1e-11;
   solver.parameter_tolerance = 1e-14;
   solver.gradient_tolerance = 1e-16;
@@ -174,8 +175,8 @@ CeresOutcome solve_with_ceres(const FitProblem& problem, const Eigen::VectorXd& 
                               const FitOptions& options) {
   if (options.loss == Loss::kSquared) return solve_once(problem, start, options, 1);
   if (has_uncertainty(problem.measurement())) return solve_once(problem, start, options, options.loss_scale);
-  // Without u the residual's own spread is the yardstick; it needs a fit first, and one more look after the
-  // second.
+  // Without u the scale is the residual's own standard deviation. It needs a first fit. A second
+  // fit improves it.
   FitOptions plain = options;
   plain.loss = Loss::kSquared;
   CeresOutcome outcome = solve_once(problem, start, plain, 1);

@@ -11,16 +11,17 @@ struct CeresOutcome {
   Eigen::VectorXd point;
   int iterations = 0;
   bool converged = false;
-  double scale = 1;  // weighted residual beyond which the loss lets go
+  double scale = 1;  // weighted residual beyond which the loss reduces the weight
 };
 
-/// Shares by which a loss counts readings with these weighted residuals (1 within its scale): a reading far
-/// off then adds the square of the scale to the sum of squares, as its influence on a robust fit is (Huber
-/// 1981, 6.7). tool.
+/// Returns the factors by which a loss weights readings with these weighted residuals (1 within
+/// its scale). An outlier then adds the square of the scale to the sum of squares, as its
+/// influence on a robust fit (Huber 1981, 6.7). tool.
 Eigen::VectorXd robust_shares(const Eigen::VectorXd& residual, Loss loss, double scale);
 
-/// The same problem through Ceres: the path for robust losses, and the cross-check of the solver above. One
-/// residual block an observation, analytic derivatives evaluated for all of them at once. tool.
+/// Solves the same problem with Ceres, for robust losses and as a cross-check of the solver above.
+/// One residual block per observation. The analytic derivatives of all observations are evaluated
+/// in one step. tool.
 CeresOutcome solve_with_ceres(const FitProblem& problem, const Eigen::VectorXd& start,
                               const FitOptions& options);
 

@@ -21,17 +21,18 @@
 namespace vernier::fit {
 namespace {
 
-/// A single error three times what all of them together left is implausible already.
+/// A single error of three times the total residual is already implausible.
 constexpr double kTimesMisfit = 3;
-/// The least misfit that scales are made from, mm: a tenth of the finest resolution of any instrument here.
+/// The smallest misfit for scales, mm: a tenth of the finest resolution of any instrument here.
 constexpr double kLeastMisfit_mm = 1e-5;
-/// Set-ups: anywhere in a hall, turned any way.
+/// Set-ups: any position in a hall, any orientation.
 constexpr double kAnywhere_mm = 1e5, kAnyTurn_deg = 360;
 
-/// Kinds beside those of the tables (1 to 4).
+/// Kinds in addition to those of the tables (1 to 4).
 constexpr int kLengthStatics = Convention::kFirstOfStatics, kAngleStatics = 6, kOtherStatics = 7;
 
-/// Statics that shape a term rather than scale it: in a divisor, an exponent, or a time constant.
+/// Collects statics that change the shape of a term and not its size: in a divisor, an exponent,
+/// or a time constant.
 void collect_shapes(const model::Expr& expr, bool inside, std::set<std::size_t>& shapes) {
   if (expr.op == model::Op::kSymbol && expr.symbol.kind == model::SymbolKind::kStatic && inside)
     shapes.insert(expr.symbol.index);
@@ -52,7 +53,8 @@ std::set<std::size_t> shape_statics(const model::Machine& machine) {
   return shapes;
 }
 
-/// Where parameters stay: statics at nominal (or where they are), tables 0, set-ups as fitted.
+/// Values at which parameters stay: statics at nominal (or at their value), tables 0, set-ups as
+/// fitted.
 model::Machine centre_of(const model::Machine& machine) {
   model::Machine centre = machine;
   const model::ParameterSet parameters(machine, {});  // no runs: without set-ups
@@ -92,8 +94,8 @@ Misfit misfit_of(const model::Machine& machine, const model::Measurement& m) {
   return misfit;
 }
 
-/// A static's scale by what it does: the value that moves the degrees of freedom in which it stands by a
-/// length or an angle of that size, rms over the rows; infinite where it moves none.
+/// Scale of a static by its effect: the value that moves its degrees of freedom by a length or an
+/// angle of that size, rms over the rows. Infinite if it moves none.
 Eigen::VectorXd scales_by_place(const model::Machine& machine, const model::Measurement& m, double length_mm,
                                 double angle_deg) {
   std::vector<char> active(machine.statics.size(), 0);
@@ -115,8 +117,8 @@ Eigen::VectorXd scales_by_place(const model::Machine& machine, const model::Meas
   return scale;
 }
 
-/// Statics that lean a travel: what they do to a length is in proportion to the position of one linear axis
-/// that has a table.
+/// Finds statics that tilt a travel. Their effect on a length is proportional to the position of
+/// one linear axis that has a table.
 void find_slopes(const model::Machine& machine, const model::Measurement& m,
                  const model::ParameterSet& parameters, Convention& convention) {
   convention.slope_of.assign(parameters.size(), -1);
@@ -149,7 +151,7 @@ void find_slopes(const model::Machine& machine, const model::Measurement& m,
             take(found->second, slope.column(m.states.count));
 }
 
-/// A static's scale by its unit: as a length or an angle; nothing for any other.
+/// Scale of a static by its unit, as a length or an angle; nullopt for any other unit.
 double scale_by_unit(const std::string& unit, double length_mm, double reach_mm) {
   if (unit == "urad") return length_mm / reach_mm * 1e6;
   if (unit == "mrad") return length_mm / reach_mm * 1e3;
@@ -161,14 +163,15 @@ double scale_by_unit(const std::string& unit, double length_mm, double reach_mm)
   return 0;
 }
 
-/// Share of a station's variance that it has for itself: a rack's joint, a ringing axis. Without it a table
-/// of 360 stations could not follow the repeating error of a real circle (18 instead of 7 um, the repaired
-/// ball-bar record).
+/// Share of a station's variance that is independent of its neighbours: a joint of a rack, a
+/// ringing axis. Without it a table of 360 stations could not follow the repeating error of a real
+/// circle (18 instead of 7 um, the repaired ball-bar record).
 constexpr double kRough = 0.2;
 
-/// Errors of a guideway are smooth, their largest part is a level, a slope, a bow: what stands at one station
-/// says something of the next. With less than two travels of correlation the level of an angle that only the
-/// tool's length shows was underrated (coverage 0.89 to 0.94 where 0.95 was said, `reach_check`).
+/// Errors of a guideway are smooth. Their largest part is an offset, a slope or a bow, so a
+/// station gives information about the next. With less than two travels of correlation, the offset
+/// of an angle that only the tool's length shows was underestimated (coverage 0.89 to 0.94 instead
+/// of 0.95, `reach_check`).
 double expected_correlation(const model::Table& table, std::size_t a, std::size_t b) {
   const double span = table.stations.back().loc - table.stations.front().loc;
   double distance = std::abs(table.stations[a].loc - table.stations[b].loc);
@@ -204,7 +207,7 @@ void correlate(const model::Machine& machine, const model::ParameterSet& paramet
         const int row = static_cast<int>(members[static_cast<std::size_t>(a)]);
         const int at = static_cast<int>(members[static_cast<std::size_t>(b)]);
         together.emplace_back(row, at, k(a, b));
-        // Beyond the neighbours of a line it is 0 but for rounding.
+        // Beyond the neighbours of a line it is 0 except for rounding.
         if (std::abs(inverse(a, b)) > 1e-12 * inverse.diagonal().maxCoeff())
           apart.emplace_back(row, at, 0.5 * (inverse(a, b) + inverse(b, a)));
       }
@@ -248,8 +251,8 @@ Convention convention_of(const model::Machine& machine, const model::Measurement
     const model::Parameter& p = parameters[i];
     double& scale = result.scale[static_cast<Eigen::Index>(i)];
     if (p.kind == model::ParameterKind::kBaseShift) {
-      // An instrument that sees one line is aligned to it; how well shows in nothing but its own cosine
-      // error.
+      // An instrument that measures one line is aligned to that line. Only its own cosine error
+      // shows the quality of the alignment.
       scale = p.column < 3 ? kAnywhere_mm : unseen[i] ? angle_deg : kAnyTurn_deg;
       continue;
     }

@@ -10,13 +10,14 @@
 
 namespace vernier::fit {
 
-/// precision for these scales: (scale_i scale_j)^-1 precision_ij.
+/// Returns the precision for these scales: (scale_i scale_j)^-1 precision_ij.
 Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const Eigen::VectorXd& scale);
 
-/// Scales by kind: lengths 3 x misfit, angles as much over the reach, set-ups free (rigid motion is theirs),
-/// periods and time constants (what stands in a divisor, an exponent or a lag) their own nominal value,
-/// coefficients of any other unit what moves their degree of freedom by as much. `scale` of the machine file
-/// takes the place of any. Evaluated at the nominal machine: the same whatever the start. tool.
+/// Computes scales by kind. Lengths: 3 x misfit. Angles: 3 x misfit divided by the reach. Set-ups:
+/// free, because they contain the rigid motion. Periods and time constants (in a divisor, an
+/// exponent or a lag): their own nominal value. Coefficients of any other unit: the value that
+/// moves their degree of freedom by 3 x misfit. A `scale` of the machine file replaces any of
+/// these. They are evaluated at the nominal machine, so they do not depend on the start. tool.
 Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
                          const model::ParameterSet& parameters);
 

@@ -19,8 +19,8 @@ std::string column_of(const FitResult& result, std::size_t i) {
          model::kSixDofNames[p.column];
 }
 
-/// One standard uncertainty of a parameter at the edge of the measured box. A coefficient of no known unit
-/// counts by its scale, which is what three times the misfit would be.
+/// Returns one standard uncertainty of a parameter at the edge of the measured box. A coefficient
+/// of unknown unit counts by its scale, which corresponds to three times the misfit.
 double reach_um(const FitResult& result, std::size_t i) {
   const ParameterEstimate& e = result.estimates[i];
   if (e.unit == "mm") return maths::kUmPerMm * e.std;
@@ -32,11 +32,11 @@ double reach_um(const FitResult& result, std::size_t i) {
 struct DecisionGroup {
   std::vector<std::string> names;
   double reach_um = 0;
-  std::size_t open = 0, unseen = 0;  // parameters settled by convention, and of which nothing was read
+  std::size_t open = 0, unseen = 0;  // parameters set by convention, and parameters without readings
 };
 
 std::string first_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 6;  // names a person reads in a line
+  constexpr std::size_t kMost = 6;  // names in a line that a person can read
   std::string text;
   for (std::size_t i = 0; i < names.size() && i < kMost; ++i) text += (i > 0 ? ", " : "") + names[i];
   return names.size() > kMost ? text + fmt::format(" and {} more", names.size() - kMost) : text;
@@ -55,7 +55,8 @@ Decision decision_of(const DecisionGroup& group) {
 }  // namespace
 
 std::vector<Decision> decisions_of(const FitResult& result, std::size_t most) {
-  // Combinations join the columns that take part in them; a column that is open by itself stays by itself.
+  // Combinations join the columns that take part in them. A column that is open by itself is
+  // listed alone.
   std::map<std::string, std::string> head;
   const auto root = [&](std::string name) {
     while (head.contains(name) && head[name] != name) name = head[name];

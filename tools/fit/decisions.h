@@ -7,16 +7,16 @@
 
 namespace vernier::fit {
 
-/// Something that the readings left open and the convention settled.
+/// A parameter that the readings do not determine and that the convention sets.
 struct Decision {
-  std::vector<std::string> parameters;  // a table's column by one name: `table.Z.rX`
+  std::vector<std::string> parameters;  // a table's column has one name: `table.Z.rX`
   double reach_um =
-      0;  // how far it may move the tool at the edge of the measured box, one standard uncertainty
+      0;  // possible motion of the tool at the edge of the measured box, one standard uncertainty
   std::string sentence;
 };
 
-/// What the convention decided, largest reach first, at most `most`. Set-ups are left out: where the
-/// measuring frame stands is nobody's error. tool.
+/// Returns the decisions of the convention, largest reach first, at most `most`. Set-ups are
+/// excluded, because the position of the measuring frame is not an error of the machine. tool.
 std::vector<Decision> decisions_of(const FitResult& result, std::size_t most = 10);
 
 }  // namespace vernier::fit

@@ -15,8 +15,8 @@
 namespace vernier::fit {
 namespace {
 
-constexpr double kOpen = 1e9;       // stands for a bound that there is none of
-constexpr double kFadeShare = 0.1;  // of a measured range, over which a term fades beyond it
+constexpr double kOpen = 1e9;       // value that means "no bound"
+constexpr double kFadeShare = 0.1;  // of a measured range; a term fades over it outside the range
 
 model::Column values_of(const model::Machine& machine, const DomainRange& range,
                         const model::States& states) {
@@ -49,7 +49,7 @@ void edit(const pugi::xml_node& parent, const std::string& text, const std::vect
   for (const pugi::xml_node node : parent.children()) edit(node, text, settings, edits);
 }
 
-/// Statics of a range, and the range of an input that has none.
+/// Closes the statics of a range, and the range of an input that has none.
 void close(const model::Machine& machine, const DomainRange& range, double low, double high,
            std::vector<Setting>& settings) {
   double width = high > low ? high - low : std::fabs(high);
@@ -64,7 +64,8 @@ void close(const model::Machine& machine, const DomainRange& range, double low, 
   const auto is_set = [&](const Setting& one) {
     return one.section == "inputs" && one.element == range.quantity;
   };
-  if (std::any_of(settings.begin(), settings.end(), is_set)) return;  // by another domain over the same rows
+  if (std::any_of(settings.begin(), settings.end(), is_set))
+    return;  // another domain over the same rows has set it
   if (!machine.inputs[*input].min) settings.push_back({"inputs", range.quantity, "min", low - 2 * fade});
   if (!machine.inputs[*input].max) settings.push_back({"inputs", range.quantity, "max", high + 2 * fade});
 }

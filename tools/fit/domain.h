@@ -9,15 +9,18 @@
 
 namespace vernier::fit {
 
-/// Domains of validity of learned terms. A term that was learned on features is worth nothing where it was
-/// not trained; it is written `weight*term`, an ordinary expression over ordinary hidden statics, so that
-/// model, fit, compile and board need nothing special:
-///   weight = product over the domain's quantities Q of max(0,1-max(0,max(D_Q_low-Q,Q-D_Q_high))/D_Q_fade)
-/// 1 within the range of training, 0 beyond it by the fade, D the domain's name.
+/// Domains of validity of learned terms. A term that was learned on features is not valid outside
+/// its training data.
+/// It is written `weight*term`, an ordinary expression with ordinary hidden statics. Model, fit,
+/// compile and board therefore need nothing special:
+/// weight = product over the domain's quantities Q of
+/// max(0,1-max(0,max(D_Q_low-Q,Q-D_Q_high))/D_Q_fade)
+/// The weight is 1 within the range of training and decreases to 0 over the fade. D is the
+/// domain's name.
 std::string domain_weight(const std::string& domain, const std::vector<std::string>& quantities);
 
-/// Name, value and unit of the hidden statics that a new domain brings: open (+-1e9), until a fit closes
-/// them.
+/// Name, value and unit of the hidden statics of a new domain. They are open (+-1e9) until a fit
+/// closes them.
 struct DomainStatic {
   std::string name, unit;
   double value = 0;
@@ -25,7 +28,7 @@ struct DomainStatic {
 std::vector<DomainStatic> open_domain(
     const std::string& domain, const std::vector<std::pair<std::string, std::string>>& quantity_and_unit);
 
-/// One quantity of one domain of a machine: the hidden statics are found by their names.
+/// One quantity of one domain of a machine. The hidden statics are found by their names.
 struct DomainRange {
   std::string domain, quantity;
   model::Symbol symbol;
@@ -34,13 +37,13 @@ struct DomainRange {
 };
 std::vector<DomainRange> domain_ranges(const model::Machine& machine);
 
-/// The text with every open range closed around the fit rows of a measurement: lowest and highest value of
-/// the quantity, fade a tenth of their distance (of the value, where it did not vary). Ranges that are closed
-/// stay. tool.
+/// Returns the text with every open range closed around the fit rows of a measurement. The limits
+/// are the lowest and highest value of the quantity. The fade is a tenth of their distance (of the
+/// value, if it did not vary). Closed ranges are not changed. tool.
 std::string close_domains(const std::string& text, const model::Machine& machine,
                           const model::Measurement& measurement);
 
-/// How rows stand to a domain. tool.
+/// Position of rows relative to a domain. tool.
 struct DomainUse {
   DomainRange range;
   double least = 0, most = 0;       // of the quantity over all rows

@@ -18,19 +18,19 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-/// Chance at most for a residual that is only noise.
+/// Largest probability of such a residual by noise alone.
 constexpr double kChanceOfSurvey = 0.001;
-/// A residual counts for so many spreads at most: one bad reading is no property of the machine.
+/// Limit of a residual in standard deviations. One bad reading is not a property of the machine.
 constexpr double kMostSpreads = 5;
 
-/// Squares of one direction's residuals, and of what noise explains.
+/// Squares of one direction's residuals, and of the noise in them.
 struct Squares {
-  double residual = 0, noise = 0;  // mm^2; the noise as much of it as the fit leaves
-  double chi = 0, freedom = 0;     // residual over u, and what it is by noise alone
+  double residual = 0, noise = 0;  // mm^2; the noise as far as the fit does not absorb it
+  double chi = 0, freedom = 0;     // residual over u, and its expected value by noise alone
   std::size_t count = 0;
 };
 
-/// Of one role; the last of the four: readings of no single direction.
+/// Squares of one role. The last of the four is for readings of no single direction.
 std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurement& m, bool check) {
   std::array<Squares, 4> all;
   std::array<std::vector<double>, 4> sizes;
@@ -55,8 +55,8 @@ std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurem
     if (!(u > 0)) return;
     const double predicted =
         result.prediction_variance.size() > 0 ? result.prediction_variance[static_cast<Index>(i)] : 0;
-    // A fit takes its own prediction's share of the noise out of the rows that it has; in check rows what the
-    // fit does not know is added to the noise.
+    // In fit rows, the fit absorbs the share of the noise that its own prediction has. In check
+    // rows, the uncertainty of the fit is added to the noise.
     const double taken = std::min(1.0, predicted / (u * u * std::max(1.0, result.variance_factor)));
     const double unit = check ? u * u + predicted : u * u, left = check ? 1 : 1 - taken;
     const double most = kMostSpreads * std::max(u, spread[along]);
@@ -70,13 +70,13 @@ std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurem
   return all;
 }
 
-/// Variance beyond the noise; 0 where chance explains it.
+/// Returns the variance beyond the noise; 0 if chance explains it.
 double excess(const Squares& one) {
   if (one.freedom < 1 || maths::chi_square_tail(one.chi, one.freedom) > kChanceOfSurvey / 3) return 0;
   return std::max(0.0, (one.residual - one.noise) / one.freedom);
 }
 
-/// Share of the check rows whose commanded pose is that of a fit row.
+/// Returns the share of the check rows whose commanded pose is that of a fit row.
 double repeated_poses(const model::Measurement& m) {
   std::vector<model::Column> axes;
   for (std::size_t a = 0; a < m.states.axis.size(); ++a) axes.push_back(model::commanded(m, a));
@@ -98,7 +98,7 @@ double repeated_poses(const model::Measurement& m) {
   return checks > 0 ? static_cast<double>(repeats) / static_cast<double>(checks) : 0;
 }
 
-/// Root of chi square over its freedom, of the fit rows' lengths.
+/// Returns the root of chi square over its degrees of freedom, of the fit rows' lengths.
 double times_the_noise(const FitResult& result) {
   if (!result.after.rms_um || !result.noise_um || result.freedom <= 0) return 0;
   return *result.after.rms_um / *result.noise_um *
@@ -107,7 +107,7 @@ double times_the_noise(const FitResult& result) {
 
 std::string unvaried_text(const model::FitRecord& record) {
   std::string text;
-  constexpr std::size_t kMost = 3;  // that a sentence names
+  constexpr std::size_t kMost = 3;  // number of names in a sentence
   for (std::size_t i = 0; i < record.unvaried.size() && i < kMost; ++i) {
     const model::FitRecord::Unvaried& one = record.unvaried[i];
     text += fmt::format("{}{} was determined ", i > 0 ? "; " : "", one.coefficient);
@@ -143,7 +143,7 @@ Vector3d model_discrepancy(const FitResult& result, const model::Measurement& m)
     sum += variance[static_cast<Index>(k)];
     ++seen;
   }
-  // Readings of no single direction (ball bar, distances) tell of all directions alike.
+  // Readings of no single direction (ball bar, distances) count for all directions alike.
   const double any = std::max(excess(fitted[3]), excess(checked[3]));
   for (std::size_t k = 0; k < 3; ++k) {
     double& own = variance[static_cast<Index>(k)];
@@ -161,7 +161,7 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);
   if (lack_um.maxCoeff() > 0) {
-    constexpr double kPlainly = 1.1;  // times the noise: what two digits show
+    constexpr double kPlainly = 1.1;  // times the noise: visible with two digits
     const double times = times_the_noise(result);
     const std::string what = times > kPlainly
                                  ? fmt::format("The residual is {:.2g} times the noise", times)

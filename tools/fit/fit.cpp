@@ -30,7 +30,8 @@
 namespace vernier::fit {
 namespace {
 
-/// The rows that the fit needs: its own, or all where lag makes a row depend on those before it.
+/// Returns the rows that the fit needs: the fit rows, or all rows if lag makes a row depend on
+/// those before it.
 model::Measurement rows_for_fit(const model::Machine& machine, const model::Measurement& all) {
   if (model::uses_lag(machine)) return all;
   std::vector<std::size_t> keep;
@@ -39,9 +40,9 @@ model::Measurement rows_for_fit(const model::Machine& machine, const model::Meas
   return keep.size() == all.rows() ? all : model::select_rows(all, keep);
 }
 
-/// An estimate rests on data where the convention may have moved it by less than this share of its standard
-/// uncertainty (three times it, one time in 400, is still 1 %); on the prior where it is known no better than
-/// that.
+/// An estimate comes from data if the convention may move it by less than this share of its
+/// standard uncertainty (three times this share, one time in 400, is still 1 %). It comes from the
+/// prior if its uncertainty is not smaller than this share of the prior.
 constexpr double kMovedByConvention = 0.003, kFromPrior = 0.95;
 
 Origin origin_of(const FitResult& result, std::size_t i, double std, const Settled& end) {
@@ -73,7 +74,8 @@ void estimate(FitResult& result, const Settled& end) {
   }
 }
 
-/// 1 / std^2 of each parameter that a prior names, 0 for the others. A prior that names nothing is a mistake.
+/// Returns 1 / std^2 of each parameter that a prior names, 0 for the others. A prior that matches
+/// nothing is an error.
 StatedPriors stated_priors(FitResult& result, const FitOptions& options, const Convention& convention) {
   StatedPriors stated{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(result.parameters.size())),
                       convention.centre};
@@ -90,7 +92,7 @@ StatedPriors stated_priors(FitResult& result, const FitOptions& options, const C
   return stated;
 }
 
-/// A model in which nothing is free: only how well it fits.
+/// A model without free parameters: only its residual is computed.
 Settled nothing_free(const FitProblem& problem, std::size_t observations, bool with_u) {
   Settled end;
   end.point.resize(0);
@@ -103,7 +105,8 @@ Settled nothing_free(const FitProblem& problem, std::size_t observations, bool w
 }
 
 std::vector<Correlation> strong_correlations(const Observability& seen) {
-  // Correlation from which on two std together say more than each: 1 - r^2 is below a fifth.
+  // Correlation above which two standard uncertainties must be reported together: 1 - r^2 is below
+  // a fifth.
   constexpr double kStrong = 0.9;
   std::vector<Correlation> list;
   const Eigen::VectorXd std = seen.covariance.diagonal().cwiseMax(0).cwiseSqrt();
@@ -119,7 +122,7 @@ std::vector<Correlation> strong_correlations(const Observability& seen) {
   return list;
 }
 
-/// What the fit left, mm; rotations at the reach.
+/// Returns the residual of the fit, mm; rotations at the reach.
 double left_mm(const FitResult& result) {
   const double turns_mm = result.after.rms_urad.value_or(0) * 1e-6 * result.reach_mm;
   return std::max(result.after.rms_um.value_or(0) * 1e-3, turns_mm);
@@ -129,7 +132,7 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
   result.worst = worst_reading(measurement, result.residual, false);
   result.worst_check = worst_reading(measurement, result.residual, true);
   const bool misses = left_mm(result) > kAbsurdResidual * result.reach_mm;
-  // Free tables can follow two swapped columns: the nominal machine, which cannot, is asked too.
+  // Free tables can follow two swapped columns. The nominal machine cannot, so it is tested too.
   const bool far_off = result.misfit_mm > kFarOff * result.reach_mm;
   if (result.converged && !misses && !far_off) return;
   const LikelyMistake likely = likely_mistake(machine, measurement, result.worst);
@@ -145,8 +148,8 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
   if (!mistake.empty()) result.absurd += ": " + mistake;
 }
 
-/// What moved during the survey that is none of the machine's: the largest step or drift of the instrument,
-/// or a rest far above its noise, over what the nominal machine leaves.
+/// Finds what moved during the survey outside the machine: the largest step or drift of the
+/// instrument, or a residual far above its noise, divided by the residual of the nominal machine.
 void find_disturbance(const FitResult& result, const model::Measurement& rows, const Convention& convention,
                       bool robust, model::FitRecord& record) {
   const auto offer = [&](double mm, std::string words) {
@@ -169,8 +172,8 @@ void find_disturbance(const FitResult& result, const model::Measurement& rows, c
   if (!robust && result.noise_um && 1e3 * left_mm(result) > kFarAbove * *result.noise_um)
     offer(left_mm(result), fmt::format("{:.3g} um are left of the readings, whose noise is {:.3g} um",
                                        1e3 * left_mm(result), *result.noise_um));
-  // A shift that the pose turns about is no step of any reading, and what it does to the nominal machine
-  // would hide it in a share of that.
+  // A shift whose direction rotates with the pose is not a step of any reading. Its influence on
+  // the nominal machine would hide it in a share of that residual.
   constexpr double kAbove = 2;  // times the noise
   if (robust || result.parameters.size() == 0 ||
       (result.noise_um && 1e3 * left_mm(result) < kAbove * *result.noise_um))
@@ -184,7 +187,8 @@ void find_disturbance(const FitResult& result, const model::Measurement& rows, c
   record.disturbance = move->words;
 }
 
-/// The noise that later checks of the machine are judged by; steps of the instrument were of that day.
+/// Returns the noise for later checks of the machine. Steps of the instrument apply only to that
+/// day.
 std::optional<model::FitRecord::Noise> kept_noise(const NoiseModel& noise, const model::Measurement& rows) {
   std::vector<std::size_t> fitted;
   bool of_u = false;
@@ -200,7 +204,7 @@ std::optional<model::FitRecord::Noise> kept_noise(const NoiseModel& noise, const
       noise.in_time, of_u};
 }
 
-/// Measured ranges of axes and inputs.
+/// Returns the measured ranges of axes and inputs.
 std::vector<model::FitRecord::Range> measured_ranges(const model::Machine& machine,
                                                      const model::Measurement& rows) {
   std::vector<std::size_t> fitted;
@@ -219,14 +223,14 @@ std::vector<model::FitRecord::Range> measured_ranges(const model::Machine& machi
   return list;
 }
 
-/// What the machine file keeps of the fit; all: check rows too.
+/// Fills the record that the machine file keeps of the fit. all: including check rows.
 void remember(FitResult& result, const model::Measurement& rows, const model::Measurement& all,
               const Convention& convention, bool robust) {
   auto record = std::make_shared<model::FitRecord>();
   record->converged = result.converged;
   record->rms_mm = left_mm(result);
   record->reach_mm = result.reach_mm;
-  record->worst = robust ? 0 : result.worst.ratio;  // a robust loss lets it go
+  record->worst = robust ? 0 : result.worst.ratio;  // a robust loss reduces its weight
   record->worst_reading = result.worst.reading;
   record->culprit = result.absurd;
   record->check_ratio = result.check_ratio.value_or(0);
@@ -253,7 +257,7 @@ void remember(FitResult& result, const model::Measurement& rows, const model::Me
   record->findings = findings_of(result, *record, all);
 }
 
-/// rms of a machine's check rows in the set-up that suits them best, um.
+/// Returns the rms of a machine's check rows in the best set-up for them, um.
 std::optional<double> check_rms_set_up_anew(const model::Machine& machine, const model::Measurement& m) {
   std::vector<std::size_t> keep;
   for (std::size_t row = 0; row < m.rows(); ++row)
@@ -263,14 +267,15 @@ std::optional<double> check_rms_set_up_anew(const model::Machine& machine, const
   return role_statistics(rows, residuals(set_up(machine, rows), rows), false).rms_um;
 }
 
-/// The fitted machine against the nominal one on rows that the fit has not seen: both as the fit rows set
-/// them up
-/// (`centre` has the nominal one), and where there are enough check rows both set up anew on these, whichever
-/// says more against the fit. A set-up that suits a wrong machine is no measure of the nominal one.
+/// Compares the fitted machine with the nominal machine on held-out rows. Both use the set-up of
+/// the fit rows (`centre` has the nominal one). If there are enough check rows, both are also set
+/// up anew on these rows. The ratio that is worse for the fit is used. A set-up that compensates
+/// errors of a wrong machine is not suitable for the nominal one.
 std::optional<double> check_ratio(const FitResult& result, const Eigen::VectorXd& centre,
                                   const model::Measurement& m) {
-  constexpr std::size_t kEnough = 12;  // readings: the ratio of two spreads of twelve stays below 1.25 or so
-  constexpr std::size_t kEnoughForSetUp = 24;  // readings: four times the numbers of a set-up
+  constexpr std::size_t kEnough =
+      12;  // readings: the ratio of two standard deviations of twelve stays below about 1.25
+  constexpr std::size_t kEnoughForSetUp = 24;  // readings: four times the number of set-up parameters
   if (result.check.count < kEnough || !result.check.rms_um) return std::nullopt;
   model::Machine nominal = result.machine;
   result.parameters.set(nominal, centre);
@@ -284,9 +289,9 @@ std::optional<double> check_ratio(const FitResult& result, const Eigen::VectorXd
   return std::max(as_fitted, *fitted / *anew);
 }
 
-/// Standard uncertainty of the mean of numbers that may be correlated: from the means of stretches.
+/// Standard uncertainty of the mean of numbers that may be correlated, from the means of blocks.
 double std_of_mean(const std::vector<double>& numbers) {
-  constexpr std::size_t kStretches = 12, kLeast = 3;  // readings of a stretch
+  constexpr std::size_t kStretches = 12, kLeast = 3;  // number of blocks, and readings per block
   if (numbers.size() < kStretches * kLeast) return std::numeric_limits<double>::infinity();
   std::array<double, kStretches> mean{};
   double whole = 0, spread = 0;
@@ -299,7 +304,7 @@ double std_of_mean(const std::vector<double>& numbers) {
   return std::sqrt(spread / (kStretches - 1) / kStretches);
 }
 
-/// g C g^T of each reading, C the covariance of the parameters.
+/// Returns g C g^T of each reading, C the covariance of the parameters.
 Eigen::VectorXd prediction_variance(const FitResult& result, const model::Measurement& m) {
   if (result.freedom < 0.5) return {};
   const model::Linearisation linear = model::linearise(result.machine, m, result.parameters);
@@ -311,7 +316,8 @@ Eigen::VectorXd prediction_variance(const FitResult& result, const model::Measur
   return variance;
 }
 
-/// residual / sqrt(u^2 + g C g^T) over the check rows; u is the reading's own, without it the fit's spread.
+/// Returns residual / sqrt(u^2 + g C g^T) over the check rows. u is the reading's own. Without u
+/// it is the standard deviation of the fit.
 std::optional<NormalisedError> normalised_error(const FitResult& result, const model::Measurement& m) {
   if (result.check.count == 0 || result.prediction_variance.size() == 0) return std::nullopt;
   NormalisedError error;
@@ -344,8 +350,8 @@ const char* origin_name(Origin origin) {
 
 namespace {
 
-/// The nominal chain of the fitted machine is that of the given one: where a free static has no `nominal`,
-/// its start value is it, in memory as in the file that is written.
+/// The nominal chain of the fitted machine is that of the given machine. If a free static has no
+/// `nominal`, its start value becomes the nominal value, in memory and in the written file.
 void keep_start_as_nominal(model::Machine& machine) {
   for (model::Static& item : machine.statics)
     if (!item.hidden && !item.nominal) item.nominal = item.value;

@@ -15,13 +15,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Relative fall of the cost below which a step brings nothing more.
+/// Relative decrease of the cost below which a step is negligible.
 constexpr double kCostTolerance = 1e-14;
 constexpr double kFirstDamping = 1e-6, kLeastDamping = 1e-8, kMostDamping = 1e12;
 constexpr double kMostBend = 0.75;
-/// A step that did what the linear model promised, nearly: its factor serves once more.
+/// Ratio of actual to predicted decrease above which the factor is used again.
 constexpr double kTrue = 0.9;
-/// A chord step that leaves more than this share of what the last one had to gain: time for a new factor.
+/// A new factor is computed if a chord step leaves more than this share of the previous possible
+/// decrease.
 constexpr double kSlowChord = 0.1;
 class Minimiser {
  public:
@@ -59,8 +60,8 @@ class Minimiser {
   std::optional<maths::PivotedCholesky> factor_;
   MatrixXd unseen_;  // orthonormal; scaled
   double damping_ = 0, growth_ = 2, promised_ = 0;
-  bool troubled_ = false;  // the last step fell short of its promise
-  int quiet_ = 0;          // steps in a row that changed nothing
+  bool troubled_ = false;  // the last step decreased the cost less than predicted
+  int quiet_ = 0;          // successive steps without a change
 };
 
 /// The normal equations at the current point, scaled.
@@ -73,8 +74,8 @@ void Minimiser::prepare() {
   gradient_ = shrink_.cwiseProduct(now.gradient);
 }
 
-/// Which directions are left alone is decided once, at the start, and what is less seen further on joins
-/// them.
+/// The unseen directions are selected once, at the start. Directions that are less visible later
+/// are added.
 void Minimiser::factorise() {
   MatrixXd damped = scaled_;
   damped.diagonal().array() += damping_;
@@ -83,7 +84,7 @@ void Minimiser::factorise() {
   unseen_ = factor_->null_basis();
 }
 
-/// The shortest of the steps that the kept rows cannot tell apart.
+/// Returns the shortest of the steps that the kept rows cannot distinguish.
 VectorXd Minimiser::solve(const VectorXd& gradient) const {
   VectorXd step = factor_->solve(gradient);
   if (unseen_.cols() > 0) step -= unseen_ * (unseen_.transpose() * step);
@@ -94,7 +95,7 @@ VectorXd Minimiser::bent(const VectorXd& straight) const {
   if (!options_.bend || !troubled_) return straight;
   const VectorXd bend = options_.bend(result_.point, shrink_.cwiseProduct(straight));
   const VectorXd acceleration = -solve(shrink_.cwiseProduct(bend));
-  // Beyond this the valley bends too sharply for two terms of its series.
+  // Beyond this limit the valley bends too sharply for two terms of its series.
   if (2 * acceleration.norm() > kMostBend * straight.norm()) return straight;
   return straight + 0.5 * acceleration;
 }
@@ -113,7 +114,7 @@ void Minimiser::accept(const VectorXd& point, const Slope& slope) {
   if (options_.progress) options_.progress(result_.iterations, result_.cost);
 }
 
-/// One step with a fresh factor, damped until it lowers the cost.
+/// Makes one step with a new factor, damped until it lowers the cost.
 Minimiser::Step Minimiser::step() {
   while (damping_ < kMostDamping) {
     factorise();
@@ -140,7 +141,7 @@ Minimiser::Step Minimiser::step() {
   return Step::kFailed;
 }
 
-/// A step with the factor of an earlier point and the gradient of this one.
+/// Makes a step with the factor of an earlier point and the gradient of this point.
 Minimiser::Step Minimiser::chord() {
   const VectorXd straight = solve(gradient_);
   const double before = promised_;

@@ -20,16 +20,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Rows that are tried at first; then as many between the neighbours of the best one, and once more.
+/// Number of rows that are tried first. The same number is then tried between the neighbours of
+/// the best row, and once more.
 constexpr std::size_t kSplits = 16;
 constexpr int kNarrowings = 3;
-/// Readings times parameters squared: of more rows every k-th is asked.
+/// Limit of readings times parameters squared. Of more rows, every k-th is used.
 constexpr double kMostProducts = 4e8;
-/// Rows on either side of a split, so that nine shifts are seen.
+/// Minimum number of rows on either side of a split, so that nine shifts are determined.
 constexpr std::size_t kLeastApart = 8;
-/// Share of the rest that a move must take away, and logarithm of the chance that it does so by luck.
+/// Share of the residual that a move must remove, and logarithm of the probability that it does so
+/// by chance.
 constexpr double kMostOfTheRest = 0.5, kLogChance = -20;
-/// Share of what both together take away that one alone must reach to be blamed.
+/// Share of the common decrease that a single cause must reach to be reported.
 constexpr double kAlone = 0.9;
 constexpr Index kToolShifts = 3, kSetUpShifts = 6;
 
@@ -51,7 +53,8 @@ void append_probe(model::Machine& machine, std::vector<model::Transform>& branch
   branch.push_back(transform);
 }
 
-/// What the tool point's shift and the workpiece's shift and turn do to each reading.
+/// Returns the influence of the tool point's shift and of the workpiece's shift and rotation on
+/// each reading.
 MatrixXd motion_columns(const model::Machine& fitted, const model::Measurement& rows) {
   model::Machine probed = fitted;
   for (model::Freedom& one : model::freedoms_of(probed)) one.set_free(false);
@@ -110,7 +113,8 @@ class MoveSearch {
     double gain = 0;
   };
 
-  /// Readings and, below them, what holds each parameter near its centre, as one least-squares problem.
+  /// Writes readings and, below them, the terms that hold each parameter near its centre, as one
+  /// least-squares problem.
   void make_basis(const MatrixXd& jacobian, const VectorXd& off, const VectorXd& scale,
                   const VectorXd& rest) {
     const Index n = jacobian.rows(), p = jacobian.cols();
@@ -144,7 +148,7 @@ class MoveSearch {
   void try_between(std::size_t low, std::size_t high) {
     for (std::size_t k = 1; k < kSplits; ++k) {
       std::size_t at = low + (high - low) * k / kSplits;
-      while (at > 0 && row_at(at - 1) == row_at(at)) --at;  // a row is not cut
+      while (at > 0 && row_at(at - 1) == row_at(at)) --at;  // a row is not divided
       if (at == 0 || row_at(at) < kLeastApart + row_at(0) ||
           row_at(kept_.size() - 1) < kLeastApart + row_at(at))
         continue;
@@ -162,7 +166,7 @@ class MoveSearch {
     if (best_.gain < kMostOfTheRest * all) return std::nullopt;
     if (maths::log_f_tail((best_.gain / kShifts) / (left / freedom), kShifts, freedom) > kLogChance)
       return std::nullopt;
-    // Of the nominal machine: what is left beside the move and the set-up of all rows.
+    // For the nominal machine: the residual beside the move and the set-up of all rows.
     const MatrixXd moved = maths::orthonormal(beside_set_up(), 1e-9, nullptr);
     const MatrixXd still = maths::orthonormal(MatrixXd(motion_.rightCols(kSetUpShifts)), 1e-9, nullptr);
     const double with = (nominal_ - moved * (moved.transpose() * nominal_)).squaredNorm();

@@ -10,17 +10,19 @@
 
 namespace vernier::fit {
 
-/// Tool or set-up that moved in the middle of a survey.
+/// Tool or set-up that moved during a survey.
 struct Move {
-  double share = 0;  // of what it makes the nominal machine miss, over what that misses without it: rms
+  double share = 0;  // rms of its influence on the residual of the nominal machine, divided by that residual
+                     // without the move
   std::string words;
 };
 
-/// Do readings from some row on see another tool point or another set-up than those before? Asked where a
-/// fit leaves more than its noise: at each of some rows the nine shifts and turns of both are fitted beside
-/// the model (linearised at `fitted`; scale: of its parameters, which hold them near `centre`), and they are
-/// believed where they take most of the rest away and chance does not. nominal: what the nominal machine, set
-/// up, leaves of the readings. Nothing: no such row. tool.
+/// Tests whether readings from some row on belong to another tool point or another set-up than
+/// those before. Used if the residual of a fit exceeds its noise. At each of several rows, the
+/// nine shifts and rotations of both are fitted beside the model (linearised at `fitted`; scale:
+/// of its parameters, which hold them near `centre`). The move is accepted if it removes most of
+/// the excess residual and chance does not explain that. nominal: residual of the nominal machine
+/// after its set-up. Returns nullopt if there is no such row. tool.
 std::optional<Move> find_move(const model::Machine& fitted, const model::Measurement& rows,
                               const model::ParameterSet& parameters, const Eigen::VectorXd& centre,
                               const Eigen::VectorXd& scale, const Eigen::VectorXd& nominal);

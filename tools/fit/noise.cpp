@@ -26,7 +26,7 @@ double NoiseModel::shared() const { return std::sqrt(pose * pose + run * run + d
 
 double NoiseModel::price(double of_place) const {
   double parameters = (pose > 0 ? 1 : 0) + (run > 0 ? 1 : 0) + (drift > 0 ? 2 : 0);
-  std::set<std::size_t> places;  // of a set-up the row matters
+  std::set<std::size_t> places;  // for a set-up the row is relevant
   for (const NoiseStep& step : steps)
     parameters += step.of_set_up() || !places.insert(step.row).second ? 1 : 1 + of_place;
   return parameters;
@@ -58,7 +58,7 @@ std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout) {
           steps.push_back({series.kind, series.row[i], 0, 0, component});
   }
   constexpr std::size_t kOneSetUp =
-      3;  // components of a single set-up, which is not distinguished from another one
+      3;  // components of a single set-up, which cannot be distinguished from another one
   return steps.size() > kOneSetUp ? steps : std::vector<NoiseStep>();
 }
 
@@ -80,7 +80,7 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
   Eigen::MatrixXd y = model.own * model.own * x;
   for (const NoiseSeries& series : layout.series) {
     const std::size_t n = series.reading.size();
-    // Sums over stretches of one set-up and one pose, each given back to all its readings.
+    // Sums over blocks of one set-up and one pose. Each sum is added to all its readings.
     const auto share = [&](double variance, const std::function<bool(std::size_t)>& begins) {
       if (variance <= 0) return;
       for (std::size_t first = 0; first < n;) {
@@ -98,7 +98,7 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
     share(model.pose * model.pose,
           [&](std::size_t i) { return new_setup(i) || series.pose[i] != series.pose[i - 1]; });
     if (model.drift <= 0) continue;
-    // exp(-|t - t'| / tau): what came before, then what comes after, each by one recursion.
+    // exp(-|t - t'| / tau): earlier readings, then later ones, each by one recursion.
     const auto rho = [&](std::size_t i) {
       return new_clock(i) ? 0 : std::exp(-passed(series, i, model.in_time) / model.time_constant);
     };

@@ -15,7 +15,8 @@
 namespace vernier::fit {
 namespace {
 
-/// -2 log of the restricted likelihood as a function of the ratios, the own part at its best.
+/// -2 log of the restricted likelihood as a function of the ratios, with the independent part at
+/// its best value.
 class Likelihood {
  public:
   Likelihood(const NoiseLayout& layout, const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted,
@@ -52,12 +53,12 @@ class Likelihood {
 
  private:
   const NoiseLayout& layout_;
-  bool own_from_u_;  // it is not below 1
+  bool own_from_u_;  // it is at least 1
   double freedom_;
   Eigen::MatrixXd readings_;
 };
 
-/// Which of the components are in, and the logarithms of their ratios and of the time constant.
+/// The active components, and the logarithms of their ratios and of the time constant.
 struct NoiseParts {
   bool pose = false, run = false, drift = false, in_time = false;
   std::array<double, 4> log = {0, 0, 0, 0};
@@ -68,10 +69,11 @@ struct NoiseParts {
   }
 };
 
-/// Of variances: a part that is 3e5 times another is all there is.
+/// Limit for variances: a component that is 3e5 times another dominates completely.
 constexpr double kMostLogRatio = 25;
 
-/// Downhill along each coordinate in turn with shrinking steps: few parameters, a smooth valley.
+/// Minimises along each coordinate in turn with decreasing steps. There are few parameters and the
+/// function is smooth.
 double descend(const Likelihood& likelihood, NoiseParts& parts, double best, double least_log_time,
                double most_log_time) {
   const std::array<bool, 4> free = {parts.pose, parts.run, parts.drift, parts.drift};
@@ -96,19 +98,19 @@ double descend(const Likelihood& likelihood, NoiseParts& parts, double best, dou
   return best;
 }
 
-/// A step of the instrument at one row, in the kinds of reading that it shows in.
+/// A step of the instrument at one row, in the kinds of reading that show it.
 struct StepsAtRow {
   std::vector<NoiseStep> steps;
-  double net = 0;  // fall of the sum of squares beyond what the steps cost
+  double net = 0;  // decrease of the sum of squares minus the penalty of the steps
 };
 
-/// What a step at each row of a series would take off the sum of squares, but for the first and last few rows
-/// of a run.
+/// Returns the decrease of the sum of squares by a step at each row of a series, except the first
+/// and last rows of a run.
 std::vector<std::pair<NoiseStep, double>> steps_of(const NoiseSeries& series, const Eigen::VectorXd& residual,
                                                    const Eigen::MatrixXd& fitted,
                                                    const NoiseThresholds& limits) {
   const std::size_t least_rows = limits.rows_beside_step;
-  // A step where a run begins is a set-up, which machine files have a name for.
+  // A step at the start of a run is a set-up. Machine files have a name for it.
   std::vector<char> near_set_up(series.reading.size(), 0);
   for (std::size_t i = 1; i < series.reading.size(); ++i)
     if (series.setup[i] != series.setup[i - 1])
@@ -129,8 +131,9 @@ std::vector<std::pair<NoiseStep, double>> steps_of(const NoiseSeries& series, co
   return list;
 }
 
-/// The row at which a step lowers the sum of squares most beyond its price: who moves an instrument moves it
-/// in all directions at once. `unit`: price of one number.
+/// Returns the row at which a step lowers the sum of squares most beyond its penalty. An
+/// instrument that is moved usually moves in all directions together. `unit`: penalty of one
+/// number.
 StepsAtRow best_steps(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                       const Eigen::MatrixXd& fitted, double unit, const NoiseThresholds& limits) {
   std::map<std::size_t, StepsAtRow> of_row;
@@ -149,7 +152,8 @@ StepsAtRow best_steps(const NoiseLayout& layout, const Eigen::VectorXd& residual
   return best;
 }
 
-/// A residual with its values held at so many robust spreads: one wild reading is no property of the noise.
+/// Returns a residual with its values limited to this number of robust standard deviations. A
+/// single outlier is not a property of the noise.
 Eigen::VectorXd held(const Eigen::VectorXd& residual, double spreads) {
   const double most = spreads * maths::robust_spread({residual.begin(), residual.end()});
   if (most <= 0) return residual;
@@ -171,7 +175,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
   const double white = likelihood(parts.ratios());
   double best = white;
   constexpr std::array<double, 5> kLogRatios = {-3, -1.5, 0, 1.5, 3};
-  // One component after the other, the one that helps most first.
+  // Adds one component after the other, the one with the largest decrease first.
   for (int round = 0; round < 3; ++round) {
     NoiseParts next = parts;
     double next_value = best, gain = 0;
@@ -230,7 +234,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
     best = next_value;
   }
   if (parts.drift && layout.in_time) {
-    // What goes from reading to reading, however long a move takes between them.
+    // A drift that depends on the number of readings, not on the time between them.
     NoiseParts by_rows = parts;
     by_rows.in_time = false;
     by_rows.log[3] = std::clamp(parts.log[3] - std::log(layout.step), 0.0, std::log(10 * layout.row_span));
@@ -253,7 +257,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
   return model;
 }
 
-/// Independent readings of the size that is left.
+/// Returns independent noise of the size of the residual.
 NoiseModel white_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                        const Eigen::MatrixXd& fitted, bool own_from_u, const NoiseThresholds& limits) {
   const Likelihood likelihood(layout, held(residual, limits.held), fitted, own_from_u);
@@ -263,19 +267,19 @@ NoiseModel white_noise(const NoiseLayout& layout, const Eigen::VectorXd& residua
   return model;
 }
 
-/// Nothing: next to nothing is a reading's own, what is left is what the model lacks. Where u is given it
-/// states the whole of a reading, what it shares with others too; where the readings are far better than it
-/// says, u counts as each reading's own.
+/// Returns nullopt if the independent noise is negligible. The residual is then model error. If u
+/// is given, u states the whole error of a reading, including its common components. If the
+/// readings are much better than stated, u counts as independent noise.
 std::optional<NoiseModel> estimate_beside(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                                           const Eigen::MatrixXd& fitted, bool with_u,
                                           const NoiseThresholds& limits) {
-  // Readings without noise: a likelihood would follow their rounding.
+  // Readings without noise: a likelihood would fit their rounding.
   const double scatter =
       residual.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(1, residual.size())));
   if (with_u && scatter < limits.far_below_u) return white_noise(layout, residual, fitted, true, limits);
   NoiseModel free = estimate_components(layout, residual, fitted, false, limits);
   if (!with_u) return free.own < limits.least_own_part * free.shared() ? std::nullopt : std::optional(free);
-  if (free.log_likelihood == 0) return free;  // too few readings, or nothing left of them
+  if (free.log_likelihood == 0) return free;  // too few readings, or no residual
   if (free.independent()) return white_noise(layout, residual, fitted, true, limits);
   if (free.total() < limits.near_u) return estimate_components(layout, residual, fitted, true, limits);
   const double scale = std::max(1.0, 1 / free.total());
@@ -290,8 +294,8 @@ NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& resi
   const std::optional<NoiseModel> alone = estimate_beside(layout, residual, fitted, with_u, limits);
   if (!alone) return white_noise(layout, residual, fitted, false, limits);
   const NoiseModel& without = *alone;
-  // Steps of the instrument, one after the other, each of which explains more than chance at so many places;
-  // they stand only where the whole is better than a drift without them.
+  // Adds steps of the instrument one after the other. Each must explain more than chance at that
+  // number of rows. They are accepted only if the whole is better than a drift without them.
   const auto n = static_cast<double>(residual.size());
   std::vector<NoiseStep> steps;
   Eigen::VectorXd left = residual;

@@ -7,14 +7,14 @@
 
 namespace vernier::fit {
 
-/// Readings times the square of what was fitted, beyond which a look at the likelihood takes what was fitted
-/// by its number alone.
+/// Number of readings times the square of the number of fitted columns. Above this limit, a
+/// likelihood evaluation uses only the number of fitted columns.
 inline constexpr double kMostNoiseProducts = 6e7;
 
-/// Restricted maximum likelihood (Patterson and Thompson 1971) of a residual beside what was fitted.
-/// residual: weighted, held at a few robust spreads first; fitted: orthonormal columns that were fitted to
-/// it. A component enters where the likelihood falls by more than chance would make it. `with_u`: all parts
-/// together are not below 1. tool.
+/// Restricted maximum likelihood (Patterson and Thompson 1971) of a residual beside the fitted
+/// columns. residual: weighted, first limited to a few robust standard deviations. fitted:
+/// orthonormal columns that were fitted to it. A component is included if the likelihood decreases
+/// by more than chance explains. `with_u`: all components together are not below 1. tool.
 NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                           const Eigen::MatrixXd& fitted, bool with_u, const NoiseThresholds& limits = {});
 

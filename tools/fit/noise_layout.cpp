@@ -11,7 +11,7 @@
 namespace vernier::fit {
 namespace {
 
-/// Largest share of its range that any axis moves from one row to the next.
+/// Returns the largest share of its range that any axis moves from one row to the next.
 std::vector<double> relative_steps(const model::Measurement& m, const std::vector<model::Column>& axes) {
   std::vector<double> steps(m.rows(), 1);
   std::vector<double> range;
@@ -29,8 +29,9 @@ std::vector<double> relative_steps(const model::Measurement& m, const std::vecto
   return steps;
 }
 
-/// Below it a step is none: where the sizes of steps have their widest gap, of a factor above `gap`, with
-/// at least so many below it; 0 where they have none. Steps below `least` count as that.
+/// Returns the tolerance below which a step is zero. It is at the widest gap in the sizes of
+/// steps, with a factor above `gap` and at least a given number of steps below it. 0 if there is
+/// no such gap. Steps below `least` count as `least`.
 double tolerance_of(const std::vector<double>& steps, double gap_asked, double least, std::size_t below,
                     const LayoutThresholds& limits) {
   std::vector<double> sorted = steps;
@@ -47,13 +48,13 @@ double tolerance_of(const std::vector<double>& steps, double gap_asked, double l
   return tolerance;
 }
 
-/// The value of each row on one axis, as the number of a group of values that are alike.
+/// Returns for each row the number of its group of equal values on one axis.
 std::vector<int> groups_along(const model::Column& axis, const LayoutThresholds& limits) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(axis.size()));
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return axis[a] < axis[b]; });
   std::vector<double> steps;
-  double least = 1;  // digits: a step of none is as good as one of the last
+  double least = 1;  // digits: a step of zero counts as one of the last digit
   const double range = order.empty() ? 1 : std::max(axis[order.back()] - axis[order.front()], 1e-12);
   for (std::size_t i = 1; i < order.size(); ++i) {
     steps.push_back((axis[order[i]] - axis[order[i - 1]]) / range);
@@ -98,7 +99,7 @@ NoiseLayout noise_layout(const model::Measurement& measurement, const std::vecto
   std::vector<int> pose(measurement.rows(), 0);
   for (std::size_t row = 1; row < pose.size(); ++row)
     pose[row] = pose[row - 1] + (steps[row] > tolerance ? 1 : 0);
-  // Time counts where it is recorded and never runs back within a clock.
+  // Time is used if it is recorded and never decreases within a clock.
   bool moves = false, falls = false;
   for (std::size_t row = 1; row < measurement.rows(); ++row) {
     if (states.of(states.clock, row) != states.of(states.clock, row - 1)) continue;

@@ -4,24 +4,25 @@
 
 namespace vernier::fit {
 
-// Every number by which the noise of readings is judged: unit, meaning, source. "Experiment" is the sweep of
+// All thresholds for the noise of readings: unit, meaning, source. "Experiment" is the sweep of
 // tools/docs/thresholds.md: halved and doubled over surveys of known truth.
 
-/// Which rows are one pose read again.
+/// Which rows are repeated readings of one pose.
 struct LayoutThresholds {
-  /// Steps between rows below this share of an axis' range may be the same pose. Stands for the repeatability
-  /// of a drive beside its travel.
+  /// Steps between rows below this share of an axis' range may be at the same pose. The value
+  /// represents the repeatability of a drive relative to its travel.
   double small_step = 1e-2;
-  /// Factor between the largest step that is none and the least real one. Experiment: poses read to 2 um.
+  /// Factor between the largest false step and the smallest real step. Experiment: poses read to 2
+  /// um.
   double pose_gap = 20;
   /// Share of a range below which a step is rounding.
   double no_step = 1e-9;
 
-  /// Share of the rows that has to come back to a place before distances of neighbours are divided into
-  /// small and large ones: of positions at random a few are close by chance.
+  /// Share of the rows that must return to a position before distances of neighbours are divided
+  /// into small and large ones. Some random positions are near each other by chance.
   double least_revisits = 0.1;
-  /// Factor between the two. Of positions at random neighbours in the order of distances, but for those few,
-  /// are within 1.5 of each other.
+  /// Factor between the two. For random positions, neighbours in the order of distances, except
+  /// for those few, are within 1.5 of each other.
   double revisit_gap = 3;
 
   template <class Visit>
@@ -34,33 +35,36 @@ struct LayoutThresholds {
   }
 };
 
-/// The evidence that it takes to call errors of readings correlated.
+/// Evidence that is required to report correlated errors of readings.
 struct NoiseThresholds {
-  /// Fall of -2 log likelihood at which a component of one parameter on its boundary is no chance: a tail of
-  /// chi^2 of 1e-3. Self and Liang 1987.
+  /// Decrease of -2 log likelihood at which a component of one parameter on its boundary is not
+  /// chance: a tail of chi^2 of 1e-3. Self and Liang 1987.
   double one_component = 9.5;
-  /// The same for a drift, which has two.
+  /// The same for a drift, which has two parameters.
   double drift_component = 13;
-  /// Price of a step's place among all rows, in units of the logarithm of the readings, beside 1 for its
-  /// height in each kind of reading. Experiment: quiet surveys.
+  /// Penalty for the row of a step, in units of the logarithm of the number of readings. In
+  /// addition, its height counts 1 in each kind of reading. Experiment: surveys with low noise.
   double price_of_place = 2;
-  /// Share of the rest below which, without u, a reading's own part is next to nothing: what is left is
-  /// smooth and no noise.
+  /// Without u: share of the residual below which the independent noise is negligible. Such a
+  /// residual is smooth and not noise.
   double least_own_part = 0.02;
-  /// Readings beyond the parameters below which noise counts as independent: of fewer a variance is known to
-  /// no better than a quarter (sqrt(2/30)).
+  /// Number of readings beyond the parameters below which noise counts as independent. With fewer
+  /// readings the uncertainty of a variance exceeds a quarter (sqrt(2/30)).
   std::size_t least_freedom = 30;
-  /// Rows on either side of a step of the instrument: fewer show none beside their own noise.
+  /// Minimum number of rows on either side of a step of the instrument. With fewer rows a step
+  /// cannot be distinguished from their own noise.
   std::size_t rows_beside_step = 10;
-  /// Share of a step's rows that the model may not be able to take over.
+  /// Share of a step's rows that the model must not be able to absorb.
   double own_of_step = 0.02;
-  /// Robust spreads at which a reading is held: one wild reading is no property of the noise.
+  /// Limit of a reading in robust standard deviations. A single outlier is not a property of the
+  /// noise.
   double held = 4;
-  /// Readings that scatter by less than this share of u are far better than it says: u counts as their own.
+  /// Readings that scatter by less than this share of u are much better than stated. Then u counts
+  /// as independent noise.
   double near_u = 0.7;
-  /// Readings that scatter by less than this share of u have no noise to speak of: simulated ones.
+  /// Readings that scatter by less than this share of u have negligible noise: they are simulated.
   double far_below_u = 0.01;
-  /// Steps of the instrument that are looked for. More of them are a drift.
+  /// Largest number of instrument steps that are searched. More steps are a drift.
   std::size_t most_steps = 4;
 
   template <class Visit>

@@ -11,15 +11,16 @@
 namespace vernier::fit {
 namespace {
 
-/// A part smaller than this share of a combination's largest is rounding or a detail nobody should read.
+/// A part smaller than this share of a combination's largest part is rounding or a negligible
+/// detail.
 constexpr double kNamedShare = 0.02;
 constexpr double kDeterminedShare = 1e-3;
-/// Of a weak combination only what carries it is named.
+/// For a weak combination, only the main parameters are named.
 constexpr double kWeakShare = 0.3;
 constexpr Eigen::Index kWeakest = 3;
 
-/// Reduces the rows of `basis` (k directions x n parameters) so that each is as short as elimination can make
-/// it.
+/// Reduces the rows of `basis` (k directions x n parameters), so that elimination makes each as
+/// short as possible.
 void eliminate(Eigen::MatrixXd& basis) {
   std::vector<char> used(static_cast<std::size_t>(basis.cols()), 0);
   for (Eigen::Index row = 0; row < basis.rows(); ++row) {
@@ -40,7 +41,7 @@ void eliminate(Eigen::MatrixXd& basis) {
   }
 }
 
-/// Parameters whose part is at least `share` of the largest, largest first.
+/// Returns the parameters whose part is at least `share` of the largest, largest first.
 std::vector<std::size_t> parts_of(const Eigen::VectorXd& combination, double share) {
   const double largest = combination.cwiseAbs().maxCoeff();
   std::vector<std::size_t> parts;
@@ -61,14 +62,16 @@ std::vector<std::vector<std::size_t>> name_parts(Eigen::MatrixXd basis) {
   return groups;
 }
 
-/// Columns scaled to unit length; one that nothing sees stays zero and becomes a direction of its own.
+/// Scales columns to unit length. A column without any reading stays zero and becomes a direction
+/// of its own.
 Eigen::VectorXd unit_scale(const Eigen::MatrixXd& normal) {
   const Eigen::VectorXd length = normal.diagonal().cwiseSqrt();
   const double tiny = 1e-14 * std::max(length.maxCoeff(), 1e-300);
   return length.unaryExpr([tiny](double s) { return s > tiny ? 1 / s : 0.0; });
 }
 
-/// The scaled normal matrix taken apart: what observe() reports, before it is scaled back.
+/// The decomposition of the scaled normal matrix: the result of observe() before it is scaled
+/// back.
 struct Parts {
   Eigen::Index rank = 0;
   Eigen::VectorXd weak_squares;  // of the identified directions, smallest first, at most kWeakest
@@ -96,7 +99,8 @@ Parts by_eigenvectors(const Eigen::MatrixXd& scaled, double limit_share) {
   return parts;
 }
 
-/// a - v v^T a - a v v^T + v v^T a v v^T for a symmetric a: without its part along the orthonormal v.
+/// a - v v^T a - a v v^T + v v^T a v v^T for a symmetric a: without its part along the orthonormal
+/// v.
 Eigen::MatrixXd without(const Eigen::MatrixXd& a, const Eigen::MatrixXd& v) {
   if (v.cols() == 0) return a;
   const Eigen::MatrixXd along = a * v;
@@ -107,7 +111,7 @@ Eigen::MatrixXd without(const Eigen::MatrixXd& a, const Eigen::MatrixXd& v) {
 double largest_eigenvalue(const Eigen::MatrixXd& matrix) {
   Eigen::VectorXd v = Eigen::VectorXd::Ones(matrix.rows()).normalized();
   double value = 0;
-  for (int i = 0; i < 30; ++i) {  // to a percent or two: it is a yardstick
+  for (int i = 0; i < 30; ++i) {  // to a percent or two, sufficient for a scale
     v = matrix * v;
     value = v.norm();
     if (value == 0) return 0;
@@ -116,7 +120,8 @@ double largest_eigenvalue(const Eigen::MatrixXd& matrix) {
   return value;
 }
 
-/// Smallest eigenvalues of the identified part by inverse iteration on a few vectors more than are wanted.
+/// Finds the smallest eigenvalues of the identified part by inverse iteration on a few more
+/// vectors than are needed.
 void find_weak(Parts& parts) {
   const Eigen::Index n = parts.inverse.rows(), wanted = std::min(kWeakest, parts.rank),
                      width = std::min(parts.rank, 3 * kWeakest);
@@ -130,13 +135,14 @@ void find_weak(Parts& parts) {
   parts.weak = v * ritz.eigenvectors().rightCols(wanted).rowwise().reverse();
 }
 
-/// Nothing where a direction is so near the limit that only the eigenvalues can tell.
+/// Returns nullopt if a direction is so near the limit that only the eigenvalues can decide.
 std::optional<Parts> by_pivots(const Eigen::MatrixXd& scaled, double limit_share) {
   const Eigen::Index n = scaled.rows();
   Parts parts;
   parts.largest = largest_eigenvalue(scaled);
   const double limit = limit_share * parts.largest;
-  // A remaining square bounds the smallest eigenvalue left from above, and n times it the largest.
+  // A remaining square is an upper bound of the smallest remaining eigenvalue. n times it is an
+  // upper bound of the largest.
   const maths::PivotedCholesky factor(scaled, limit / static_cast<double>(n));
   parts.rank = factor.rank();
   if (parts.rank == 0) return std::nullopt;

@@ -8,31 +8,36 @@
 
 namespace vernier::fit {
 
-/// What a weighted Jacobian says about its parameters. Computed on columns scaled to unit length.
+/// Information of a weighted Jacobian on its parameters. It is computed on columns scaled to unit
+/// length.
 struct Observability {
   Eigen::Index rank = 0;
   double condition = 0;  // of the scaled Jacobian, over the identified directions
   /// (J^T W^2 J)^+ over the identified directions, in parameter units; to be multiplied by the variance
   /// factor.
   Eigen::MatrixXd covariance;
-  std::vector<char> determined;  // per parameter: no part of it lies in an unidentified direction
-  /// The identified combinations that the data see least: singular value over the largest, and the parameters
-  /// that take part, largest part first. At most three, weakest first.
+  std::vector<char>
+      determined;  // per parameter: true if the parameter has no part in an unidentified direction
+  /// The identified combinations that the data determine least: singular value divided by the
+  /// largest, and the participating parameters, largest part first. At most three combinations,
+  /// weakest first.
   struct Weak {
     double ratio = 0;
     std::vector<std::size_t> parts;
   };
   std::vector<Weak> weakest;
-  /// Combinations that the data cannot see; indices of the parameters that take part, largest part first.
+  /// Combinations that the data do not determine; indices of the participating parameters, largest
+  /// part first.
   std::vector<std::vector<std::size_t>> unidentifiable;
 };
 
-/// Directions with a scaled singular value below this share of the largest count as unidentified: far above
-/// what rounding leaves of an exact dependence (1e-8) and below any direction that real data determine.
+/// Directions with a scaled singular value below this share of the largest count as unidentified.
+/// The limit is far above the rounding error of an exact dependence (1e-8) and below any direction
+/// that real data determine.
 inline constexpr double kUnseenShare = 1e-5;
 
-/// normal: J^T W^2 J, n x n. Above 200 parameters by pivoted Cholesky
-/// and inverse iteration, the whole eigen-decomposition only where the rank is not plain from that. tool.
+/// normal: J^T W^2 J, n x n. Above 200 parameters, pivoted Cholesky and inverse iteration are
+/// used. The full eigen-decomposition follows only if they do not give a clear rank. tool.
 Observability observe(const Eigen::MatrixXd& normal, double cutoff = kUnseenShare);
 
 }  // namespace vernier::fit

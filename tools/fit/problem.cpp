@@ -9,8 +9,8 @@ namespace vernier::fit {
 
 namespace {
 
-/// to += weight * from, a block of `rows` x `columns` of two column-major matrices. Six rows, a table's or a
-/// BaseShift's, are the usual case and worth unrolling.
+/// to += weight * from, a block of `rows` x `columns` of two column-major matrices. Six rows, a
+/// table's or a BaseShift's, are the usual case, so their loop is unrolled.
 void add_block(double* to, Eigen::Index to_stride, const double* from, Eigen::Index from_stride,
                Eigen::Index rows, Eigen::Index columns, double weight) {
   if (rows == 6) {
@@ -22,9 +22,9 @@ void add_block(double* to, Eigen::Index to_stride, const double* from, Eigen::In
     for (Eigen::Index i = 0; i < rows; ++i) to[i] += weight * from[i];
 }
 
-/// Adds one row's share: each pair of groups meets in one block of `inner`, which every pair of their
-/// stations takes with the product of their weights. Fills the lower triangle (and parts of the upper within
-/// a group).
+/// Adds one row's contribution. Each pair of groups has one block of `inner`. Every pair of their
+/// stations adds it with the product of their weights. Fills the lower triangle (and parts of the
+/// upper within a group).
 void scatter(const std::vector<model::ParameterGroup>& groups, const Eigen::MatrixXd& inner,
              const Eigen::VectorXd& answer, NormalEquations& sum) {
   const Eigen::Index n = sum.normal.rows(), slots = inner.rows();
@@ -43,8 +43,8 @@ void scatter(const std::vector<model::ParameterGroup>& groups, const Eigen::Matr
   }
 }
 
-/// inner = g * g^T and answer = g * r for slots x observations g: both triangles, since a table's block with
-/// itself is used whole.
+/// inner = g * g^T and answer = g * r for slots x observations g. Both triangles are filled,
+/// because a table's block with itself is used whole.
 void inner_products(const Eigen::MatrixXd& g, const Eigen::VectorXd& r, Eigen::MatrixXd& inner,
                     Eigen::VectorXd& answer) {
   const Eigen::Index slots = g.rows();
@@ -64,8 +64,9 @@ void inner_products(const Eigen::MatrixXd& g, const Eigen::VectorXd& r, Eigen::M
   }
 }
 
-/// A parameter that moves no reading by more than this (mm or deg per unit, rms) moves them by rounding only:
-/// positions of 1e4 mm carry 1e-12. Scaling such a column up would invent a parameter.
+/// A parameter that moves no reading by more than this (mm or deg per unit, rms) has only rounding
+/// effects: positions of 1e4 mm have a rounding error of 1e-12. Scaling up such a column would
+/// create a false parameter.
 constexpr double kRounding = 1e-11;
 
 void silence_rounding(NormalEquations& equations, double squared_weights) {
@@ -181,8 +182,8 @@ Slope FitProblem::slope(const Eigen::VectorXd& point) const {
 }
 
 Eigen::VectorXd FitProblem::bend(const Eigen::VectorXd& point, const Eigen::VectorXd& step) const {
-  // A tenth of the step: far enough for the difference to rise above rounding, near enough to be the second
-  // derivative.
+  // A tenth of the step: large enough that the difference exceeds rounding, small enough for the
+  // second derivative.
   constexpr double kPart = 0.1;
   Eigen::VectorXd result = Eigen::VectorXd::Zero(point.size());
   Eigen::VectorXd ahead;

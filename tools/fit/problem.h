@@ -19,27 +19,31 @@ class FitProblem {
   FitProblem(const model::Machine& machine, const model::Measurement& measurement,
              const model::ParameterSet& parameters);
 
-  /// Parameters held near `centre`: (value - centre)^T precision (value - centre) is added to the cost.
+  /// Holds parameters near `centre`: (value - centre)^T precision (value - centre) is added to the
+  /// cost.
   void set_priors(const Eigen::SparseMatrix<double>& precision, Eigen::VectorXd centre);
   void clear_priors() { prior_centre_.resize(0); }
 
-  /// Sum of squared weighted residuals and priors; infinity where the model is undefined at this point.
+  /// Returns the sum of squared weighted residuals and priors; infinity if the model is undefined
+  /// at this point.
   double cost(const Eigen::VectorXd& point) const;
-  /// Throws InputError where the model is undefined.
+  /// Throws InputError if the model is undefined.
   NormalEquations equations(const Eigen::VectorXd& point) const;
-  /// Cost and gradient without the normal matrix; the cost is infinity where the model is undefined.
+  /// Returns cost and gradient without the normal matrix. The cost is infinity if the model is
+  /// undefined.
   Slope slope(const Eigen::VectorXd& point) const;
-  /// J^T W^2 p'', p'' the second derivative of the predictions along `step`, by one more evaluation part of
-  /// the way. Zero where the model is undefined there.
+  /// Returns J^T W^2 p''. p'' is the second derivative of the predictions along `step`. It needs
+  /// one more evaluation at a part of the step. Zero if the model is undefined there.
   Eigen::VectorXd bend(const Eigen::VectorXd& point, const Eigen::VectorXd& step) const;
-  /// Weighted residuals (measured - predicted) / u and, if asked for, the weighted Jacobian of `predicted`.
+  /// Returns the weighted residuals (measured - predicted) / u and, if requested, the weighted
+  /// Jacobian of `predicted`.
   Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, model::SparseRows* jacobian) const;
 
   const Eigen::SparseMatrix<double>& prior_precision() const { return prior_precision_; }
   const Eigen::VectorXd& prior_centre() const { return prior_centre_; }  // empty: no priors
   const model::Measurement& measurement() const { return measurement_; }
   const Eigen::VectorXd& weights() const { return weights_; }  // of the readings
-  /// Every reading counts by so much less from now on.
+  /// Multiplies the weight of every reading by its share.
   void weigh(const Eigen::VectorXd& shares) { weights_ = weights_.cwiseProduct(shares); }
 
  private:

@@ -17,10 +17,11 @@
 namespace vernier::fit {
 namespace {
 
-/// A file keeps 17 digits: a value that differs by more was changed.
+/// A file keeps 17 digits. A value that differs by more was changed.
 bool changed(double now, double fitted) { return std::abs(now - fitted) > 1e-9 * std::abs(fitted); }
 
-/// Where a fit measured: its ranges, else what the file says of an axis, else where it stands.
+/// Returns the ranges in which a fit measured, else the range of an axis in the file, else its
+/// position.
 std::vector<std::array<double, 2>> measured_ranges(const model::Machine& machine) {
   std::vector<std::array<double, 2>> ranges;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
@@ -32,7 +33,8 @@ std::vector<std::array<double, 2>> measured_ranges(const model::Machine& machine
   return ranges;
 }
 
-/// The machine in workpiece coordinates alone, its scale factors free where the fit freed them.
+/// Returns the machine in workpiece coordinates alone. Its scale factors are free if the fit freed
+/// them.
 model::Machine without_set_up(const model::Machine& machine) {
   model::Machine bare = machine;
   bare.base_shifts.clear();
@@ -56,7 +58,7 @@ Reach::Reach(const model::Machine& machine)
   std::map<std::string, Eigen::Index> place;
   for (std::size_t i = 0; i < record.parameters.size(); ++i)
     place[record.parameters[i]] = static_cast<Eigen::Index>(i);
-  // What was added since then and does nothing yet needs no cover.
+  // A parameter that was added later and has no effect yet needs no uncertainty.
   const Eigen::VectorXd values = parameters_.get(machine_),
                         nominal = parameters_.get(model::nominal_machine(machine_));
   factor_ = Eigen::MatrixXd::Zero(values.size(), record.factor.cols());
@@ -74,7 +76,7 @@ Reach::Reach(const model::Machine& machine)
     stale_.push_back(parameters_[i].name);
     hand_set.emplace_back(at, moved);
   }
-  // What was set by hand is as uncertain as it was moved.
+  // A parameter that was set by hand has the size of its change as uncertainty.
   for (Eigen::MatrixXd* all : {&factor_, &open_}) {
     const Eigen::Index known = all->cols();
     all->conservativeResize(Eigen::NoChange, known + static_cast<Eigen::Index>(hand_set.size()));

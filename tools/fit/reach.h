@@ -13,62 +13,64 @@
 
 namespace vernier::fit {
 
-/// How well the last fit of a machine knows where its tool is: anywhere, with any tool and input, whether it
-/// was measured there or not. From the covariance that the machine file keeps (`<fitted>`), in which what the
-/// readings left open has the spread of its scale.
+/// Uncertainty of the tool position by the last fit of a machine: at any pose, with any tool and
+/// input, measured or not. It comes from the covariance in the machine file (`<fitted>`).
+/// Parameters that the readings do not determine have the uncertainty of their scale.
 class Reach {
  public:
-  /// A machine without a fit knows nothing: known() is false.
+  /// For a machine without a fit, known() is false.
   explicit Reach(const model::Machine& machine);
 
   bool known() const { return known_; }
-  /// Free parameters that are not as the fit left them: added or set by hand since. They count as uncertain
-  /// by as much as they were moved.
+  /// Returns the free parameters that differ from the fit: added or set by hand later. Their
+  /// uncertainty is the size of their change.
   const std::vector<std::string>& stale() const { return stale_; }
 
-  /// Covariance (mm^2) of the deviation at each state, in workpiece coordinates, as far as the model is
-  /// right: what the fit does not know, and what its readings could not show (tools/fit/unmeasured.h). But
-  /// for a rigid motion of the whole: the one that fits best over the measured ranges with the tool that this
-  /// machine has. Such a motion is set-up, no correction can take it away and nobody misses it. Throws
-  /// InputError where the chain is not finite.
+  /// Returns the covariance (mm^2) of the deviation at each state, in workpiece coordinates, if
+  /// the model is right. It contains the uncertainty of the fit, and the errors that its readings
+  /// could not show (tools/fit/unmeasured.h). A rigid motion of the whole is removed: the best fit
+  /// over the measured ranges with the present tool of the machine. Such a motion belongs to the
+  /// set-up, and no correction can remove it. Throws InputError if the chain is not finite.
   std::vector<Eigen::Matrix3d> covariance(const model::States& states) const;
 
   /// Root of the trace, um.
   Eigen::VectorXd std_um(const model::States& states) const;
-  /// The same with what the readings showed the model to lack (`<discrepancy>` of the record): how far the
-  /// real machine may be from the model.
+  /// The same with the discrepancy that the readings showed (`<discrepancy>` of the record): the
+  /// possible difference between the real machine and the model.
   std::vector<Eigen::Matrix3d> covariance_of_machine(const model::States& states) const;
   Eigen::VectorXd std_of_machine_um(const model::States& states) const;
-  /// Standard deviation of what the model lacks, along x, y, z of workpiece coordinates, mm.
+  /// Standard deviation of the discrepancy, along x, y, z of workpiece coordinates, mm.
   const Eigen::Vector3d& discrepancy_mm() const { return discrepancy_mm_; }
 
-  /// The machine in workpiece coordinates alone, and its free parameters: what the factors below go with.
+  /// Returns the machine in workpiece coordinates alone, and its free parameters. The factors
+  /// below refer to them.
   const model::Machine& machine() const { return machine_; }
   const model::ParameterSet& parameters() const { return parameters_; }
   /// n x k, covariance = F F^T of the parameters, in their units.
   const Eigen::MatrixXd& factor() const { return factor_; }
-  /// n x m, part O O^T of the covariance: what no reading bears on, and what was set by hand.
+  /// n x m, part O O^T of the covariance: parameters that no reading determines, and parameters
+  /// that were set by hand.
   const Eigen::MatrixXd& open() const { return open_; }
-  /// False where the file does not say what its readings left open.
+  /// False if the file does not state which parameters its readings leave open.
   bool open_known() const { return open_known_; }
 
-  /// What a change of the parameters by each column of `change` (n x k) moves the tool point by at each
-  /// state, but for the rigid motion of the whole as above: 3 N x k, mm. With `factor` its covariance is the
-  /// product with its own transpose.
+  /// Returns the motion of the tool point at each state due to each column of `change`, a change
+  /// of the parameters (n x k). The rigid motion of the whole is removed as above: 3 N x k, mm.
+  /// With `factor`, the product of the result with its own transpose is the covariance.
   Eigen::MatrixXd moved(const model::States& states, const Eigen::MatrixXd& change) const;
-  /// What claims that no reading supports may move the tool point by, one standard uncertainty a column, but
-  /// for the rigid motion of the whole: 3 N x e, mm.
+  /// Returns the possible motion of the tool point by claims that no reading supports, one
+  /// standard uncertainty per column. The rigid motion of the whole is removed: 3 N x e, mm.
   Eigen::MatrixXd moved_unmeasured(const model::States& states) const;
-  /// The same with the motion of the whole in it.
+  /// The same including the motion of the whole.
   Eigen::MatrixXd unmeasured(const model::States& states) const;
 
  private:
   using Columns = std::function<Eigen::MatrixXd(const model::States&)>;
-  /// Columns at each state less the motion of the whole that each is.
+  /// Returns the columns at each state minus their motion of the whole.
   Eigen::MatrixXd without_rigid_part(const model::States& states, const Columns& columns) const;
   Eigen::MatrixXd moved_at(const model::States& states, const Eigen::MatrixXd& change) const;
-  /// The motion of the whole that each column is (6 x k), with hidden axes (a choice of tool) as in `like` at
-  /// `row`, other inputs at their reference.
+  /// Returns the motion of the whole in each column (6 x k). Hidden axes (a choice of tool) are as
+  /// in `like` at `row`, other inputs are at their reference.
   Eigen::MatrixXd rigid_part(const model::States& like, Eigen::Index row, const Columns& columns) const;
 
   model::Machine machine_;

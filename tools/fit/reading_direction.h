@@ -7,8 +7,9 @@
 
 namespace vernier::fit {
 
-/// Direction that a reading of a length looks along, unit vector in workpiece coordinates: x, y, z through
-/// the row's set-up, d its own normal; zero for lengths to a centre or another row, which look along many.
+/// Returns the direction of a length reading, a unit vector in workpiece coordinates. For x, y, z
+/// it comes from the row's set-up, for d it is its own normal. Zero for lengths to a centre or
+/// another row, which have many directions.
 Eigen::Vector3d reading_direction(const model::Machine& machine, const model::Measurement& rows,
                                   const model::Observation& reading);
 

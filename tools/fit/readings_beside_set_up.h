@@ -9,8 +9,9 @@
 
 namespace vernier::fit {
 
-/// The fit rows' readings along one direction each (x, y, z, d), weighted, with what a free set-up of each
-/// instrument takes up projected out: what two explanations of them are compared by. tool.
+/// The fit rows' readings along one direction each (x, y, z, d), weighted. The part that a free
+/// set-up of each instrument absorbs is projected out. Two explanations of the readings are
+/// compared in this form. tool.
 class ReadingsBesideSetUp {
  public:
   /// residual: measured - model of each reading; variance: of a weighted reading.
@@ -20,15 +21,15 @@ class ReadingsBesideSetUp {
   bool empty() const { return row_.empty(); }
   /// The fitted machine without BaseShifts: workpiece coordinates.
   const model::Machine& bare() const { return bare_; }
-  /// Do the fit rows read rotations too?
+  /// Do the fit rows contain rotations too?
   bool rotations() const { return rotations_; }
-  /// All rows, check rows too.
+  /// All rows, including check rows.
   const model::States& states() const { return states_; }
-  /// Of each of these rows: is it a check row?
+  /// For each of these rows: is it a check row?
   const std::vector<char>& check() const { return check_; }
   /// The residual, 1.
   const Eigen::VectorXd& left() const { return left_; }
-  /// What the readings make of movements of the tool point in all rows (3 N, mm): 1.
+  /// Converts motions of the tool point in all rows (3 N, mm) to readings: 1.
   Eigen::VectorXd of(const Eigen::VectorXd& points) const;
 
  private:

@@ -35,7 +35,7 @@ void scale_rotations(model::Measurement& m, double factor) {
     if (model::is_rotation(o.kind)) o.value *= factor;
 }
 
-/// What a length was written in where mm were meant, and the factor that mends it.
+/// Unit of a length in which mm were expected, and the factor that corrects it.
 constexpr std::array<std::pair<const char*, double>, 6> kLengthUnits = {
     {{"in inches", 25.4},
      {"in centimetres", 10},
@@ -120,7 +120,8 @@ std::size_t positions_out_of_range(const model::Machine& machine, const model::M
   return count;
 }
 
-/// The first axis position that stands outside the axis' range by more than half of it; empty: none.
+/// Returns the first axis position that is outside the axis' range by more than half of the range.
+/// Empty: no such position.
 std::string cell_out_of_range(const model::Machine& machine, const model::Measurement& m) {
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     const model::Axis& axis = machine.axes[a];
@@ -157,7 +158,8 @@ WorstReading worst_reading(const model::Measurement& measurement, const Eigen::V
     worst.reading = reading_name(measurement, measurement.observations[i]);
   }
   if (sizes.empty() || largest <= 0) return worst;
-  // A spread below the stated uncertainty, or below what a file's digits hold, is none.
+  // A spread below the stated uncertainty, or below the resolution of the file's digits, is not
+  // evaluated.
   const double least = with_u ? 1 : 1e-4;
   worst.ratio = largest / std::max(maths::robust_spread(std::move(sizes)), least);
   worst.share = largest * largest / squares;
@@ -166,8 +168,8 @@ WorstReading worst_reading(const model::Measurement& measurement, const Eigen::V
 
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                              const WorstReading& worst) {
-  // Of chi^2 in one reading; what a mistake undone must leave at most; another that leaves so much is as
-  // likely.
+  // Share of chi^2 in one reading; largest remaining share after a mistake is undone; another
+  // mistake with so small a remainder is equally likely.
   constexpr double kMostOfAll = 0.5, kFivefold = 0.2, kAsGood = 1.5;
   if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return {cell, false};
   if (worst.share > kMostOfAll)
@@ -176,7 +178,7 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
   const double misfit_mm = convention_of(machine, rows, none).misfit_mm;
   struct Found {
     double left_mm = 0;
-    std::size_t outside = 0;  // axis positions beyond their range once it is undone
+    std::size_t outside = 0;  // axis positions outside their range after it is undone
     std::string sentence;
   };
   std::vector<Found> found;
@@ -188,7 +190,8 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
       found.push_back({left_mm, positions_out_of_range(machine, mended), mistake.sentence});
   }
   if (found.empty()) return {};
-  // A mirror has several names: all that do as well, but for those that put axes where they cannot stand.
+  // A mirrored frame can have several causes. All causes with the same remainder are reported,
+  // except those with axes outside their ranges.
   const auto less = [](const Found& a, const Found& b) { return a.left_mm < b.left_mm; };
   const double least_mm = std::min_element(found.begin(), found.end(), less)->left_mm;
   std::erase_if(found, [&](const Found& one) { return one.left_mm > kAsGood * least_mm; });

@@ -9,24 +9,25 @@
 
 namespace vernier::fit {
 
-/// A model that leaves more of the readings than this share of what it reaches has not been measured: they
-/// are of something else. Machines leave 1e-5, hand-made robots 1e-2.
+/// If the residual divided by the reach of the model exceeds this share, the readings are of
+/// something else. Machines have 1e-5, hand-made robots 1e-2.
 inline constexpr double kAbsurdResidual = 0.02;
 
-/// Beyond this share of the reach the nominal machine is asked whether a known mistake explains it.
+/// Beyond this share of the reach, known mistakes are tried on the nominal machine.
 inline constexpr double kFarOff = 0.05;
 
-/// `check`: of which role.
+/// `check`: the role of the rows.
 WorstReading worst_reading(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                            bool check);
 
 struct LikelyMistake {
-  std::string sentence;      // empty: nothing found
-  bool one_reading = false;  // a gross reading among good ones, no mistake of all rows
+  std::string sentence;      // empty: no mistake found
+  bool one_reading = false;  // a gross reading among good ones, not a mistake of all rows
 };
 
-/// Why readings are not those of this machine, in a sentence: one gross reading, two columns swapped, a unit,
-/// a sign. Each is tried; what lowers the misfit of the nominal machine fivefold is it. tool.
+/// Returns the reason why readings do not belong to this machine, in a sentence: one gross
+/// reading, two columns swapped, a unit, a sign. Each is tried. It is accepted if it reduces the
+/// misfit of the nominal machine fivefold. tool.
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                              const WorstReading& worst);
 

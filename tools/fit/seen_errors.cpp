@@ -6,15 +6,17 @@
 namespace vernier::fit {
 namespace {
 
-/// Scales follow the machine's own errors within this share of the convention's, and the whole of it.
+/// Scales follow the machine's own errors within the range from this share of the convention's
+/// scale to the whole of it.
 constexpr double kLeastShare = 1e-3;
-/// Entries that the data determine (in sum of shares) before their kind's scale follows them.
+/// Number of entries that the data determine (sum of shares) before the scale of their kind
+/// follows them.
 constexpr double kLeastDetermined = 4;
 
 /// Of the lengths of linear axes.
 constexpr int kLengths = 1;
 
-/// The convention's scale of that table's lengths, mm; 0 where it has none.
+/// Returns the convention's scale of that table's lengths, mm; 0 if it has no lengths.
 double length_scale_mm(const Convention& convention, int table) {
   for (std::size_t i = 0; i < convention.kind.size(); ++i)
     if (convention.kind[i] == kLengths && convention.table[i] == table)
@@ -75,19 +77,19 @@ bool SeenErrors::seen(int kind) const {
   return kind != 0 && found != kinds_.end() && found->second.determined >= kLeastDetermined;
 }
 
-/// What is seen of the table, and what the others let expect.
+/// Combines the errors that are seen in the table with those expected from the other tables.
 double SeenErrors::beside_others(int kind, int table) const {
-  constexpr double kWorth = 4;  // of the others' word, in determined entries
+  constexpr double kWorth = 4;  // weight of the others, in determined entries
   const Seen &all = kinds_.at(kind), &own = of(tables_, kind, table);
   const Seen others = all.without(own);
   const double expected = others.determined >= kLeastDetermined ? others.variance() : all.variance();
   return (own.squares + kWorth * expected) / (std::max(0.0, own.determined) + kWorth);
 }
 
-/// How much larger (squared) this table's entries of a kind are than those of the others; 1 where that is not
-/// seen.
+/// Returns the factor (squared) by which this table's entries of a kind exceed those of the
+/// others; 1 if that is not visible.
 double SeenErrors::times_larger(int kind, int table) const {
-  constexpr double kChance = 2, kLeast = 2;  // times that may be chance; determined entries
+  constexpr double kChance = 2, kLeast = 2;  // factor that chance may cause; determined entries
   const Seen& own = of(leaning_tables_, kind, table);
   const auto all = leaning_kinds_.find(kind);
   if (all == leaning_kinds_.end()) return 1;
@@ -101,7 +103,7 @@ double SeenErrors::variance(int kind, int table) const {
   if (table >= 0 && !of(tables_, kind, table).mostly()) {
     const Seen &own = of(tables_, kind, table), &other = of(leaning_tables_, other_of(kind), table);
     const double times = times_larger(other_of(kind), table);
-    // At this variance the unseen kind moves the readings as much as the seen one does at 1.
+    // At this variance, the unseen kind moves the readings as much as the seen kind does at 1.
     const double exchange = own.moved > 0 ? other.moved / own.moved : 0;
     if (times > 1) {
       variance = std::max(variance * times, other.variance() * exchange);

@@ -8,22 +8,25 @@
 
 namespace vernier::fit {
 
-/// How large a machine's errors are, as far as its readings show them: a kind as a whole (lengths or angles,
-/// of linear or rotary axes), and each table beside the others. All in units of the convention's scales.
+/// Size of a machine's errors, as far as its readings show it: of a kind as a whole (lengths or
+/// angles, of linear or rotary axes), and of each table relative to the others. All in units of
+/// the convention's scales.
 ///
-/// A table whose lengths, its squareness with them, are larger than the others' may have angles as much
-/// larger: a survey with one tool sees only their sum, and what is seen of the good axes is no evidence about
-/// a bad one's.
+/// If the lengths of a table, including its squareness, are larger than the others', its angles
+/// may be larger by the same factor. A survey with one tool shows only the sum of both. The errors
+/// of the good axes are no evidence about a bad axis.
 class SeenErrors {
  public:
-  /// squares: of each value as expected beside its neighbours; from_data: share of each that the readings
-  /// determine; moved: what each moves the readings by at the convention's scale, squared.
+  /// squares: expected square of each value relative to its neighbours; from_data: share of each
+  /// that the readings determine; moved: influence of each on the readings at the convention's
+  /// scale, squared.
   SeenErrors(const Convention& convention, const Eigen::VectorXd& squares, const Eigen::VectorXd& from_data,
              const Eigen::VectorXd& moved);
 
-  /// The kind's scale follows what is seen of it.
+  /// Does the kind's scale follow its observed errors?
   bool seen(int kind) const;
-  /// Expected square of an entry of this kind (in that table; -1: none), within what the convention allows.
+  /// Returns the expected square of an entry of this kind (in that table; -1: none), within the
+  /// limits of the convention.
   double variance(int kind, int table) const;
 
  private:
@@ -39,7 +42,7 @@ class SeenErrors {
 
   std::map<int, Seen> kinds_;
   std::map<std::pair<int, int>, Seen> tables_;
-  // The same with slopes that stand in statics (squareness): where an angle's may hide.
+  // The same including slopes in statics (squareness). An angle may be hidden there.
   std::map<int, Seen> leaning_kinds_;
   std::map<std::pair<int, int>, Seen> leaning_tables_;
 };

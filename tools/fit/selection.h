@@ -12,7 +12,7 @@ namespace vernier::fit {
 /// Does `name` match `pattern` (* any letters, ? one letter)?
 bool matches_pattern(std::string_view pattern, std::string_view name);
 
-/// The set-ups that have an observation with role fit.
+/// Returns the set-ups that have an observation with role fit.
 std::vector<std::string> setups_of_fit_rows(const model::Measurement& measurement);
 
 }  // namespace vernier::fit

@@ -17,9 +17,9 @@
 namespace vernier::fit {
 namespace {
 
-/// Reach where nothing moves, mm.
+/// Reach if nothing moves, mm.
 constexpr double kLeastReach_mm = 10;
-/// Of chi^2: a set-up that is given up for less would be given up for rounding.
+/// Of chi^2: a smaller decrease is rounding and does not replace a set-up.
 constexpr double kSetUpGain = 1e-3;
 
 struct SetUp {
@@ -64,7 +64,8 @@ Eigen::Vector3d angles_of(const Eigen::Matrix3d& r) {
                                              std::atan2(-r(0, 1), r(0, 0)));
 }
 
-/// Points of one BaseShift as the machine has them without it, and as they were read: rows with x, y and z.
+/// Points of one BaseShift as the machine has them without it, and as they were read. Only rows
+/// with x, y and z.
 struct PointPairs {
   std::vector<Eigen::Vector3d> from, to;
 };
@@ -87,7 +88,8 @@ std::map<std::size_t, PointPairs> points_of(const SetUpProblem& problem, const m
   return pairs;
 }
 
-/// Where the points themselves put each set-up (Umeyama 1991); 0 for one without three points.
+/// Returns each set-up as computed from the points (Umeyama 1991); 0 for a set-up with fewer than
+/// three points.
 Eigen::VectorXd aligned_start(const SetUpProblem& problem, const model::Measurement& rows) {
   Eigen::VectorXd start = problem.none;
   for (const auto& [shift, pairs] : points_of(problem, rows)) {
@@ -107,8 +109,8 @@ Eigen::VectorXd aligned_start(const SetUpProblem& problem, const model::Measurem
   return start;
 }
 
-/// All set-ups turned by the same quarters about two axes: the 24 ways in which an instrument's axes can lie
-/// along the machine's.
+/// Returns all set-ups rotated by the same quarter turns about two axes: the 24 orientations of an
+/// instrument's axes relative to the machine's.
 std::vector<Eigen::VectorXd> quarter_turns(const SetUpProblem& problem) {
   std::vector<Eigen::VectorXd> starts;
   const auto add = [&](const Eigen::Vector3d& angles) {
@@ -145,9 +147,9 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
   if (own.shifts.size() == 0) return machine;
   FitProblem problem(own.rigid, rows, own.shifts);
   const std::vector<bool> held = unseen_turns(own.at_zero, rows, own.shifts, reach_of(own.at_zero, rows));
-  // From the measuring frame itself, so that what no reading sees (the tilt of a flat bar's circle) is 0
-  // whatever the file says; from the file's where that ends plainly lower (a frame turned by more than a
-  // quarter).
+  // Starts from the measuring frame itself. Components that no reading determines (the tilt of a
+  // flat bar's circle) then are 0 for any file. Starts from the file's set-up if its result is
+  // clearly lower (a frame rotated by more than a quarter turn).
   hold_at(problem, held, own.none);
   SetUp plain = fitted_set_up(machine, own.shifts, problem, own.none);
   const Eigen::VectorXd file = own.shifts.get(own.rigid);
@@ -174,7 +176,7 @@ model::Machine set_up_anywhere(const model::Machine& machine, const model::Measu
     if (cost < (1 - kSetUpGain) * best.cost) best = {end.machine, cost};
   };
   attempt(aligned_start(own, rows));
-  // Readings that fit to ten times their uncertainty have found their set-up.
+  // If the readings fit to ten times their uncertainty, the set-up is found.
   constexpr double kFound = 100;
   if (best.cost > kFound * static_cast<double>(rows.observations.size()))
     for (const Eigen::VectorXd& start : quarter_turns(own)) attempt(start);

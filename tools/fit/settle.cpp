@@ -19,20 +19,22 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
-// Of scales and noise in turn, at most; fewer where each takes seconds.
+// Largest number of alternations of scales and noise; fewer if each needs seconds.
 constexpr int kRounds = 6, kRoundsOfMany = 2;
-constexpr Index kMany = 400;    // above it an inverse takes a tenth of a second and more
+constexpr Index kMany = 400;    // above it an inverse needs a tenth of a second and more
 constexpr int kMostSteps = 12;  // of Gauss and Newton, at most
-/// Times that the penalty is applied: iterated Tikhonov regularisation (Engl, Hanke, Neubauer, Regularization
-/// of inverse problems, 1996, section 5.1). A direction known to share r of its scale is moved by r^(2 n -
-/// 1).
+/// Number of times that the penalty is applied: iterated Tikhonov regularisation (Engl, Hanke,
+/// Neubauer, Regularization of inverse problems, 1996, section 5.1). A direction known to share r
+/// of its scale is moved by r^(2 n - 1).
 constexpr int kPasses = 3;
-/// A step below this share of every parameter's standard deviation is none (squared, in the cost's metric).
+/// A step below this share of every parameter's standard deviation is zero (squared, in the cost's
+/// metric).
 constexpr double kSettled = 1e-14;
-/// ... and below this one the answer counts as converged.
+/// Below this share the result counts as converged.
 constexpr double kConverged = 1e-6;
-/// Readings count as no finer than this share of what the nominal machine leaves of them: beyond it the
-/// convention would drown in rounding (readings written with six decimals, simulations without noise).
+/// Lower limit of the noise as a share of the residual of the nominal machine. Below it the
+/// convention would be lost in rounding (readings written with six decimals, simulations without
+/// noise).
 constexpr double kLeastNoise = 1e-3;
 
 /// Cholesky, and its form for matrices that rounding made indefinite.
@@ -85,7 +87,8 @@ class Settler {
     result_.variance = first_variance();
     const int rounds = start.size() > kMany ? kRoundsOfMany : kRounds;
     for (int round = 0; round < rounds; ++round) adapt();
-    // The quadratic model is good near its own minimum: scales and noise once more from there.
+    // The quadratic model is good near its own minimum. Scales and noise are computed once more
+    // from there.
     step_to(convention_.centre);
     for (int round = 0; round < rounds; ++round) adapt();
     descend(convention_.centre);
@@ -100,7 +103,7 @@ class Settler {
   }
   double stated_unit() const { return with_u_ ? 1 : std::max(result_.variance, floor_of_variance()); }
 
-  /// The readings' quadratic model here.
+  /// Computes the readings' quadratic model at this point.
   void linearise() {
     const NormalEquations now = problem_.equations(result_.point);
     result_.chi_square = now.cost;
@@ -109,7 +112,7 @@ class Settler {
     ++result_.iterations;
   }
 
-  /// In the cost's unit: squares of weighted readings.
+  /// In the unit of the cost: squares of weighted readings.
   double floor_of_variance() const {
     return std::pow(kLeastNoise * convention_.misfit_mm, 2) * mean_weight_ + 1e-300;
   }
@@ -119,7 +122,7 @@ class Settler {
     return std::max(result_.chi_square / observations_, 1e-300);
   }
 
-  /// Scales and noise that fit the quadratic model, one round.
+  /// Adapts scales and noise to the quadratic model, one round.
   void adapt() {
     const Sparse weak_now = weak();
     MatrixXd all = readings_ + weak_now;
@@ -153,9 +156,9 @@ class Settler {
     }
   }
 
-  /// Scale of a static that the readings put beyond the convention's by three standard deviations of both,
-  /// else 0: an error that set-ups hide nearly whole is larger than what the nominal machine leaves. `off`:
-  /// from the centre.
+  /// Returns the scale of a static if the readings give a value beyond the convention's scale by
+  /// three standard deviations of both, else 0. An error that set-ups hide almost completely is
+  /// larger than the residual of the nominal machine. `off`: from the centre.
   static double beyond(double scale, double off, double from_data) {
     constexpr double kTimes = 3, kUnseen = 1e-6;  // below that share `off` is rounding
     if (from_data < kUnseen) return 0;
@@ -180,8 +183,8 @@ class Settler {
            stated_unit() * stated_.weight.dot((result_.point - stated_.centre).cwiseAbs2());
   }
 
-  /// One Gauss-Newton step, shortened until it does not raise the cost; its size in standard deviations,
-  /// squared.
+  /// Makes one Gauss-Newton step, shortened until it does not raise the cost. Returns its size in
+  /// standard deviations, squared.
   double step_to(const VectorXd& centre) {
     const VectorXd gradient = gradient_with_priors(centre);
     VectorXd step = solution_of(normal_with_priors(), gradient);
@@ -193,9 +196,9 @@ class Settler {
       try {
         linearise();
       } catch (const text::InputError&) {
-        continue;  // the model has no value there
+        continue;  // the model is undefined there
       }
-      // A millionth of a reading's variance is rounding of a large sum.
+      // A millionth of a reading's variance is the rounding error of a large sum.
       if (cost(centre) <= before + 1e-6 * result_.variance + 1e-9 * before) return size;
     }
     result_.point = from;
@@ -220,7 +223,7 @@ class Settler {
     data.diagonal() += stated_unit() * stated_.weight;
     const Sparse weak_now = weak();
     const MatrixXd inverse = inverse_of(data + weak_now);
-    // What stays of a true value: (inverse * weak)^n, and what a reading adds.
+    // Remaining part of a true value: (inverse * weak)^n, and the contribution of a reading.
     const MatrixXd once = inverse * weak_now;
     MatrixXd left = once, gain = inverse;
     for (int pass = 1; pass < kPasses; ++pass) {
@@ -241,10 +244,12 @@ class Settler {
     result_.normal = std::move(data);
   }
 
-  /// J^T W cov(readings) W J: `variance` times the normal matrix where errors are independent; where they
-  /// are correlated, what they do to a fit that took them for independent (White 1980).
+  /// Returns J^T W cov(readings) W J. It is `variance` times the normal matrix if errors are
+  /// independent. If they are correlated, it is their influence on a fit that assumed independence
+  /// (White 1980).
   MatrixXd readings_covariance(const MatrixXd& data) {
-    constexpr double kMostNumbers = 5e7;  // 400 MB of them: beyond, rows are taken as independent
+    constexpr double kMostNumbers =
+        5e7;  // 400 MB of numbers: beyond this limit, rows are taken as independent
     const model::Measurement& rows = problem_.measurement();
     const VectorXd& weights = problem_.weights();
     std::vector<std::size_t> fitted;

@@ -10,38 +10,41 @@
 
 namespace vernier::fit {
 
-/// Priors that the user states (`--prior`): as if measured at `centre` with 1 / sqrt(weight).
+/// Priors that the user states (`--prior`). Each acts like a measurement at `centre` with 1 /
+/// sqrt(weight).
 struct StatedPriors {
-  Eigen::VectorXd weight, centre;  // 1 / std^2; 0: none
+  Eigen::VectorXd weight, centre;  // 1 / std^2; 0: no prior
 };
 
-/// The one answer that data, stated priors and the convention give, and how well it is known.
+/// The unique result of data, stated priors and the convention, with its uncertainty.
 struct Settled {
   Eigen::VectorXd point;
-  Eigen::VectorXd scale;       // as used: the convention's, lowered to what the machine's own errors are
-  Eigen::VectorXd bias;        // what the convention may have moved each parameter by, standard deviation
+  Eigen::VectorXd scale;       // as used: the convention's, lowered to the size of the machine's own errors
+  Eigen::VectorXd bias;        // possible influence of the convention on each parameter, standard deviation
   Eigen::MatrixXd covariance;  // of data, stated priors and convention, all parameters, times `variance`
-  Eigen::MatrixXd open;        // part of it: what no reading bears on, the spread of the scales
-  double variance = 1;         // of a weighted reading: chi^2 / freedom, not below 1 where u is given
+  Eigen::MatrixXd open;        // part of it: what no reading determines, the spread of the scales
+  double variance = 1;         // of a weighted reading: chi^2 / freedom, at least 1 if u is given
   double chi_square = 0;       // of the readings alone
-  double freedom = 0;          // readings less what was fitted: trace of F (2 - F), F the share from data
-  NoiseModel noise;            // how the errors of the readings are correlated: in the covariance
+  double freedom = 0;          // readings minus what was fitted: trace of F (2 - F), F the share from data
+  NoiseModel noise;            // correlation of the errors of the readings: included in the covariance
   Eigen::MatrixXd normal;      // J^T W^2 J of the readings and stated priors
   bool converged = false;
   int iterations = 0;
 };
 
-/// From `point`, near the minimum, to the answer that depends on nothing but data and convention:
-/// minimise chi^2 + variance * sum ((value - centre) / scale)^2, scales of tables lowered to what the
-/// determined entries of their kind are (evidence, MacKay 1992), once more from there (iterated Tikhonov, so
-/// that what data determine to a fifth of its scale is moved by less than 1 % of its standard deviation), to
-/// rounding. `with_u`: weights are 1 / u. noise: how the readings' errors are correlated, for the covariance
-/// (the point stays that of independent readings); nothing: estimated from the residual. tool.
+/// Moves from `point`, near the minimum, to the result that depends only on data and convention.
+/// It minimises chi^2 + variance * sum ((value - centre) / scale)^2. Scales of tables are lowered
+/// to the size of the determined entries of their kind (evidence, MacKay 1992). A second pass
+/// starts from the result (iterated Tikhonov). A value that data determine to a fifth of its scale
+/// then moves by less than 1 % of its standard deviation. The result converges to rounding.
+/// `with_u`: weights are 1 / u. noise: correlation of the readings' errors, for the covariance
+/// (the point is that of independent readings); nullopt: estimated from the residual. tool.
 Settled settle(FitProblem& problem, const Eigen::VectorXd& point, const Convention& convention,
                const StatedPriors& stated, std::size_t observations, bool with_u,
                const std::optional<NoiseModel>& noise);
 
-/// What settle() would say of a point that another solver found (robust losses): nothing is moved. tool.
+/// Returns the description that settle() gives, for a point that another solver found (robust
+/// losses). The point does not move. tool.
 Settled describe(FitProblem& problem, const Eigen::VectorXd& point, const Convention& convention,
                  const StatedPriors& stated, std::size_t observations, bool with_u,
                  const std::optional<NoiseModel>& noise);

@@ -18,12 +18,13 @@
 namespace vernier::fit {
 namespace {
 
-/// A step that lowers chi^2 by less than this share of one observation's variance moves no parameter by more
-/// than sqrt(this) = 3 % of its standard uncertainty; nor is it worth more when it lowers chi^2 by less than
-/// a millionth.
+/// A step that lowers chi^2 by less than this share of one observation's variance moves no
+/// parameter by more than sqrt(this) = 3 % of its standard uncertainty. A relative decrease of
+/// chi^2 of less than a millionth is negligible too.
 constexpr double kNegligible = 1e-3, kNegligibleShare = 1e-6;
 
-/// Before the readings' spread is known, without u: this share of what the nominal machine leaves of them.
+/// Noise before the readings' standard deviation is known, without u: this share of the residual
+/// of the nominal machine.
 constexpr double kFirstNoise = 0.1;
 
 std::vector<Eigen::Index> freed_in(const std::vector<std::string>& patterns,
@@ -52,7 +53,7 @@ LevenbergOptions own_options(const FitOptions& options, std::size_t observations
   return levenberg;
 }
 
-/// One run of the own solver over the parameters `freed`; the others stay.
+/// One run of the own solver over the parameters `freed`. The others are constant.
 LevenbergResult solve_stage(const FitProblem& problem, const Eigen::VectorXd& start,
                             const std::vector<Eigen::Index>& freed, const FitOptions& options,
                             std::size_t observations) {
@@ -89,7 +90,7 @@ LevenbergResult solve_all(const FitProblem& problem, const Eigen::VectorXd& star
       [&](const Eigen::VectorXd& x) { return problem.cost(x); }, levenberg);
 }
 
-/// Scales and stated priors in the problem's cost.
+/// Adds scales and stated priors to the problem's cost.
 void hold_near_centre(FitProblem& problem, const Convention& convention, const StatedPriors& stated) {
   const model::Measurement& m = problem.measurement();
   double variance = 1;
@@ -103,8 +104,9 @@ void hold_near_centre(FitProblem& problem, const Convention& convention, const S
   problem.set_priors(precision, convention.centre);
 }
 
-/// The machine's own values, its set-ups aligned, or the convention's centre: whichever is nearer. Set-ups
-/// always start where they fit best: what no reading sees of them stays at 0.
+/// Returns the machine's own values with aligned set-ups, or the convention's centre, whichever is
+/// nearer. Set-ups always start at their best fit. Components that no reading determines stay at
+/// 0.
 Eigen::VectorXd nearer_start(const FitProblem& problem, const model::Machine& machine,
                              const Convention& convention, const model::ParameterSet& parameters) {
   const Eigen::VectorXd given = parameters.get(set_up(machine, problem.measurement()));
@@ -150,8 +152,8 @@ Eigen::VectorXd solve(FitProblem& problem, const model::Machine& machine, const 
       problem.weigh(robust_shares(problem.weighted_residuals(point, nullptr), options.loss, outcome.scale));
   } else {
     LevenbergResult outcome = solve_all(problem, point, options, result.before.count);
-    // A period or a time constant has more than one valley: the file's own start is tried beside the nominal
-    // one.
+    // A period or a time constant has more than one minimum, so the file's own start is tried in
+    // addition to the nominal value.
     const Eigen::VectorXd given = with_shapes_of(result.parameters.get(machine), convention, point);
     if (given != point) {
       LevenbergResult other = solve_all(problem, given, options, result.before.count);

@@ -8,10 +8,11 @@
 
 namespace vernier::fit {
 
-/// From the machine's own values, or from nominal where that is nearer, through the stages to the minimum
-/// over all parameters, with the solver that `options` name; the convention's scales are in force from the
-/// start. Fills iterations, converged and stages of `result`; reads its parameters and its count of
-/// observations. Throws InputError for a stage that names nobody. tool.
+/// Moves from the machine's own values, or from nominal if that is nearer, through the stages to
+/// the minimum over all parameters. It uses the solver that `options` name. The convention's
+/// scales apply from the start. Fills iterations, converged and stages of `result`. Reads its
+/// parameters and its count of observations. Throws InputError for a stage that matches no
+/// parameter. tool.
 Eigen::VectorXd solve(FitProblem& problem, const model::Machine& machine, const Convention& convention,
                       const StatedPriors& stated, const FitOptions& options, FitResult& result);
 

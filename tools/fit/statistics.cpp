@@ -30,12 +30,12 @@ std::vector<double> row_conditions(const model::Measurement& m, std::size_t row)
 
 namespace {
 
-/// Fewer pooled degrees of freedom than this say too little about the noise (its own uncertainty would exceed
-/// 30 %).
+/// Fewer pooled degrees of freedom than this give too little information about the noise (its own
+/// uncertainty would exceed 30 %).
 constexpr std::size_t kLeastRepeatFreedom = 5;
 
-/// Readings at one pose are repeats where the corrections agree to this, mm or deg: they differ by less than
-/// any instrument here resolves.
+/// Readings at one pose are repeats if the corrections agree to this value, mm or deg. It is below
+/// the resolution of any instrument here.
 constexpr double kCorrectionStep = 1e-4;
 
 struct RepeatPool {
@@ -65,7 +65,7 @@ std::optional<double> repeat_noise_um(const model::Measurement& m) {
       key.push_back(std::round(correction[static_cast<Eigen::Index>(o.row)] / kCorrectionStep));
     PoseReadings& group = groups[{std::move(key), static_cast<int>(o.kind)}];
     const double value = o.value * maths::kUmPerMm;
-    // Deviations from the group's first value would do; a running mean keeps the digits.
+    // A running mean loses fewer digits than sums of squares about the group's first value.
     ++group.count;
     const double step = value - group.sum;
     group.sum += step / static_cast<double>(group.count);

@@ -17,16 +17,19 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Standard deviations, squared, by which two explanations must differ on the readings to be distinguished.
+/// Standard deviations, squared, by which two explanations must differ on the readings to be
+/// distinguished.
 constexpr double kDistinct = 9;
-/// The same for a coefficient to be looked at: five. What is seen less has its covariance.
+/// The same for a coefficient to be tested: five. A less visible coefficient is covered by its
+/// covariance.
 constexpr double kPlain = 25;
-/// A variable whose weighted standard deviation is above this share of its range has varied (an even spread
-/// has 0.29).
+/// A variable whose weighted standard deviation is above this share of its range has varied (a
+/// uniform distribution has 0.29).
 constexpr double kVaried = 0.15;
-/// An axis that moved by less than this share of its travel was not measured at all: rule `measured-range`.
+/// An axis that moved by less than this share of its travel was not measured: rule
+/// `measured-range`.
 constexpr double kMoved = 0.05;
-/// What moves the tool by less is nobody's concern, mm.
+/// A smaller motion of the tool is negligible, mm.
 constexpr double kNothing_mm = 5e-5;
 /// The axis or the input of a name.
 struct Variable {
@@ -40,7 +43,7 @@ struct Variable {
   }
 };
 
-/// Where a variable is held: at one value, or on a line along another variable.
+/// How a variable is held: at one value, or on a line along another variable.
 struct Line {
   double at = 0;
   std::optional<Variable> follows;
@@ -56,7 +59,8 @@ model::States held_on(const Line& line, const Variable& variable, const model::S
   return held;
 }
 
-/// The machine without one coefficient: at nominal, a table's column and a scale factor at 0.
+/// Returns the machine without one coefficient: at nominal; a table's column and a scale factor at
+/// 0.
 model::Machine without(const model::Machine& machine, const model::ParameterSet& parameters,
                        const Coefficient& coefficient) {
   model::Machine other = machine;
@@ -68,7 +72,7 @@ model::Machine without(const model::Machine& machine, const model::ParameterSet&
   return other;
 }
 
-/// What a coefficient does to the tool point at each state: 3 N, mm.
+/// Returns the influence of a coefficient on the tool point at each state: 3 N, mm.
 VectorXd effect(const model::Machine& machine, const model::Machine& other, const model::States& states) {
   const Eigen::Matrix3Xd off =
       model::forward(machine, states).position - model::forward(other, states).position;
@@ -147,8 +151,8 @@ class UnvariedFinder {
     std::string follows;  // name
   };
 
-  /// mass: weight of each state, sum 1. At its mean where it did not vary; else on the line along each other
-  /// variable from which it hardly departed.
+  /// mass: weight of each state, sum 1. A variable that did not vary is held at its mean.
+  /// Otherwise it is held on the line along each other variable from which it hardly departed.
   std::vector<Held> ways_to_hold(const Candidate& one, const VectorXd& mass) const {
     const model::Column& value = one.variable.of(readings_.states());
     const double mean = mass.dot(value.matrix());
@@ -170,14 +174,14 @@ class UnvariedFinder {
     return ways;
   }
 
-  /// A station table and its own axis: that is what a table is.
+  /// Is the variable the own axis of this station table? A table depends on it by definition.
   bool is_table_of(const Coefficient& coefficient, const Candidate& one) const {
     const model::Parameter& p = parameters_[coefficient.parameters.front()];
     return p.kind == model::ParameterKind::kStation && one.variable.is_axis &&
            machine_.tables[p.item].axis == one.variable.index;
   }
 
-  /// Does the coefficient turn the tool, where the rows read rotations?
+  /// Does the coefficient rotate the tool, and do the rows read rotations?
   bool turns_where_read(const model::Machine& other) const {
     if (!readings_.rotations()) return false;
     const model::Poses with = model::forward(machine_, readings_.states()),
@@ -188,7 +192,8 @@ class UnvariedFinder {
     return false;
   }
 
-  /// Over its working volume, with inputs where the effect was seen and at their references.
+  /// Over its working volume, with inputs at their values when the effect was seen and at their
+  /// references.
   bool moves_the_tool(const Candidate& one, const model::Machine& other, const Line& line,
                       const VectorXd& mass) const {
     std::vector<std::array<double, 2>> ranges;

@@ -14,7 +14,8 @@ namespace vernier::fit {
 
 std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measurement& rows,
                                const model::ParameterSet& parameters, double reach_mm) {
-  // Of the size of the machine: where other axes move by less, they tell no turn of the instrument.
+  // Share of the size of the machine. If other axes move by less, they do not show a rotation of
+  // the instrument.
   constexpr double kSeen = 1e-3;
   std::vector<bool> unseen(parameters.size(), false);
   std::map<std::size_t, std::array<Eigen::Index, 6>> shifts;
@@ -45,7 +46,7 @@ std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measu
 }
 
 void hold_at(FitProblem& problem, const std::vector<bool>& held, const Eigen::VectorXd& at) {
-  constexpr double kHeld_deg = 1e-6;  // how stiffly: 0.02 um at a metre, far below any reading
+  constexpr double kHeld_deg = 1e-6;  // stiffness of the hold: 0.02 um at a metre, far below any reading
   if (std::find(held.begin(), held.end(), true) == held.end()) return;
   Eigen::SparseMatrix<double> precision(at.size(), at.size());
   for (std::size_t i = 0; i < held.size(); ++i)

@@ -12,7 +12,7 @@
 namespace vernier::kinematics {
 namespace {
 
-/// The column of a state that a name means, or nullptr.
+/// Returns the column of a state for a name, or nullptr.
 model::Column* column_of(const model::Machine& machine, model::States& states, const std::string& name) {
   const model::Symbol symbol = model::resolve_name(machine, name);
   switch (symbol.kind) {

@@ -8,7 +8,7 @@
 namespace vernier::kinematics {
 namespace {
 
-/// Degree of an expression in the linear axes; anything above first is kNotAffine.
+/// Degree of an expression in the linear axes; anything above first degree is kNotAffine.
 constexpr int kNotAffine = 2;
 
 class DegreeOf {
@@ -67,7 +67,7 @@ std::optional<ClosedSolution> closed_solution(const model::Machine& machine, con
   if (result.axes.empty() || result.axes.size() > 3 || !is_affine(machine)) return std::nullopt;
   const std::size_t count = result.axes.size();
   model::States states = model::select_states(at, std::vector<std::size_t>(count + 1, 0));
-  constexpr double kSpan = 1024;  // mm; a power of two, so that dividing by it rounds nothing away
+  constexpr double kSpan = 1024;  // mm; a power of two, so that a division by it has no rounding
   for (std::size_t k = 0; k < count; ++k) {
     states.axis[result.axes[k]].setZero();
     states.axis[result.axes[k]][static_cast<Eigen::Index>(k + 1)] = kSpan;

@@ -31,7 +31,7 @@ CorrectionResult correct(const model::Machine& machine, const model::States& sta
   if (!options.with_rotary) solving.axes = linear_axes(machine);
   solving.tolerance_mm = options.tolerance_mm;
   solving.tolerance_deg = options.tolerance_deg;
-  solving.keep_ranges = false;  // a correction may reach a little beyond the travel that is declared
+  solving.keep_ranges = false;  // a correction may exceed the declared travel slightly
   solving.only_reachable = true;
   if (!options.with_rotary && solving.axes.empty())
     throw text::InputError({machine.file, 0}, "",

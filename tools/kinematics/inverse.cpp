@@ -19,7 +19,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Damping: where it begins, how it grows and shrinks, and where no step is left to try.
+/// Damping: start value, factors of increase and decrease, and limit beyond which no step is
+/// tried.
 constexpr double kFirstDamping = 1e-6, kGrow = 10, kShrink = 0.1, kMostDamping = 1e12, kLeastDamping = 1e-14;
 
 std::vector<std::size_t> axes_of(const model::Machine& machine, const InverseOptions& options) {
@@ -29,7 +30,7 @@ std::vector<std::size_t> axes_of(const model::Machine& machine, const InverseOpt
   return all;
 }
 
-/// One state on its way.
+/// One state during the iteration.
 struct Walker {
   VectorXd residual;  // target - pose; mm and lever * rad
   double damping = kFirstDamping;
@@ -50,7 +51,8 @@ class InverseSolver {
 
   InverseResult run() {
     iterate();
-    // A chain may know how often an axis has turned (a wound cable): after whole turns it is solved anew.
+    // A chain may depend on the number of turns of an axis (a wound cable), so it is solved again
+    // after whole turns.
     if (options_.keep_ranges && turn_into_ranges()) iterate();
     std::vector<Inverse> proofs = finish();
     return {std::move(states_), std::move(proofs)};
@@ -82,7 +84,7 @@ class InverseSolver {
     }
   }
 
-  /// One damped Newton step of every walker that still walks; false when none does.
+  /// Makes one damped Newton step of every active walker. Returns false if none is active.
   bool step() {
     if (std::all_of(walkers_.begin(), walkers_.end(), [](const Walker& w) { return w.done; })) return false;
     const std::vector<MatrixXd> jacobian =
@@ -160,7 +162,7 @@ class InverseSolver {
     return InverseFault::kNone;
   }
 
-  /// Turns rotary axes by whole turns into their ranges. False where none had to be turned.
+  /// Moves rotary axes by whole turns into their ranges. Returns false if no axis had to be moved.
   bool turn_into_ranges() {
     bool any = false;
     for (const std::size_t axis : axes_)
@@ -174,15 +176,16 @@ class InverseSolver {
 
   static bool is_inside(double value, const model::Axis& axis) {
     constexpr double kSlack = 1e-9;                 // of a target on the limit itself, mm or deg
-    if (axis.rollover && axis.rotary) return true;  // it has every position within a turn
+    if (axis.rollover && axis.rotary) return true;  // it reaches every position within one turn
     return (!axis.min || value >= *axis.min - kSlack) && (!axis.max || value <= *axis.max + kSlack);
   }
 
-  /// The position a whole number of turns away that is within the range; the same where there is none.
+  /// Returns the position in the range that differs by whole turns; the same position if there is
+  /// none.
   static double turned_into_range(double value, const model::Axis& axis) {
     if (!axis.rotary) return value;
     const double near = std::remainder(value, 360.0);
-    if (axis.rollover) return axis.min && near < *axis.min ? near + 360 : near;  // it knows no other turn
+    if (axis.rollover) return axis.min && near < *axis.min ? near + 360 : near;  // it has no other turn
     if (is_inside(value, axis)) return value;
     for (const double turn : {0.0, 360.0, -360.0, 720.0, -720.0})
       if (is_inside(near + turn, axis)) return near + turn;
@@ -198,7 +201,7 @@ class InverseSolver {
   std::vector<Inverse> proofs_;
 };
 
-/// Ordering of failures: the one that came nearest is worth showing.
+/// Ordering of failures: the nearest one is reported.
 bool better(const Inverse& a, const Inverse& b) {
   if (a.converged != b.converged) return a.converged;
   return a.residual_mm + a.residual_deg < b.residual_mm + b.residual_deg;

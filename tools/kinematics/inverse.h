@@ -12,21 +12,22 @@ namespace vernier::kinematics {
 
 const char* name_of(InverseFault fault);
 
-/// Newton iteration with damping (Levenberg-Marquardt, Marquardt 1963) on the forward solution, for all
-/// states at once. A rotary axis is turned by whole turns into its range; the proof is of what is returned.
-/// `target`: one pose a state, workpiece coordinates (rotation unused for kPosition).
-/// `start`: first guess, and motion, inputs, runs and time as they are. Jacobian by central differences, so
-/// that every expression of the chain counts. Throws InputError where the chain is not finite. tool.
+/// Newton iteration with damping (Levenberg-Marquardt, Marquardt 1963) on the forward kinematics,
+/// for all states together. A rotary axis is moved by whole turns into its range. The verification
+/// applies to the returned values. `target`: one pose per state, workpiece coordinates (rotation
+/// unused for kPosition). `start`: first guess, and unchanged motion, inputs, runs and time. The
+/// Jacobian is computed by central differences, so that it includes every expression of the chain.
+/// Throws InputError if the chain is not finite. tool.
 InverseResult solve(const model::Machine& machine, const model::Poses& target, const model::States& start,
                     const InverseOptions& options);
 
-/// The same for one pose from many places: `start` first, then up to `restarts` starts spread over the axis
-/// ranges (Halton sequence, the same every time). The first solution within the ranges, else the best
-/// failure. Axes without min and max keep their start. tool.
+/// The same for one pose from many starts: `start` first, then up to `restarts` starts distributed
+/// over the axis ranges (Halton sequence, the same in every call). Returns the first solution
+/// within the ranges, else the best failure. Axes without min and max keep their start. tool.
 InverseResult solve_anywhere(const model::Machine& machine, const model::Poses& target,
                              const model::States& start, const InverseOptions& options, int restarts);
 
-/// Axes of `machine` that are linear, in order.
+/// Returns the linear axes of `machine`, in order.
 std::vector<std::size_t> linear_axes(const model::Machine& machine);
 
 }  // namespace vernier::kinematics

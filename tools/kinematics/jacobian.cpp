@@ -18,8 +18,8 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-/// Half the distance of the central differences, mm or deg: third derivatives of a chain (about lever *
-/// rad^3) then cost 1e-12 of the slope, rounding 1e-9.
+/// Half the distance of the central differences, mm or deg. Third derivatives of a chain (about
+/// lever * rad^3) then cause an error of 1e-12 of the slope, rounding 1e-9.
 constexpr double kHalfStep = 2e-4;
 
 Index rows_of(Match match) { return match == Match::kPosition ? 3 : match == Match::kDirection ? 5 : 6; }
@@ -32,7 +32,8 @@ Eigen::Matrix<double, 3, 2> across(const Vector3d& direction) {
   return result;
 }
 
-/// The shortest rotation vector (rad) that turns one unit vector into another; half a turn where they oppose.
+/// Returns the shortest rotation vector (rad) from one unit vector to another; half a turn if they
+/// are opposite.
 Vector3d turn_from_to(const Vector3d& from, const Vector3d& to) {
   const Vector3d cross = from.cross(to);
   const double sine = cross.norm(), cosine = from.dot(to);

@@ -10,15 +10,16 @@
 
 namespace vernier::kinematics {
 
-/// What of a pose has to be met: the tool point; the point and the direction of the tool's z axis; all of it.
+/// Part of a pose that must be reached: the tool point; the point and the direction of the tool's
+/// z axis; the whole pose.
 enum class Match : std::uint8_t { kPosition, kDirection, kPose };
 
-/// Why a solution was not found.
+/// Reason why a solution was not found.
 enum class InverseFault : std::uint8_t {
   kNone,
-  kSingular,     // axes have lost a degree of freedom there: the axis values are not determined
-  kUnreachable,  // no step makes the residual smaller, yet the axes still move the tool every way
-  kBeyondRange,  // solved, but an axis would have to stand outside its min..max
+  kSingular,     // axes have lost a degree of freedom there, so their positions are not determined
+  kUnreachable,  // no step reduces the residual, although the axes still move the tool in all directions
+  kBeyondRange,  // solved, but an axis would be outside its min..max
 };
 
 struct InverseOptions {
@@ -31,23 +32,24 @@ struct InverseOptions {
   /// Beyond this condition number of the Jacobian a pose counts as singular.
   double most_condition = 1e6;
   bool keep_ranges = true;
-  /// Least squares in the directions that the axes can move; what they cannot reach stays as residual.
+  /// Least squares in the directions that the axes can move. The other components remain as
+  /// residual.
   bool only_reachable = false;
 };
 
-/// The proof of one solution: forward solution of the axes found, against the target.
+/// Verification of one solution: forward kinematics of the found axes, compared with the target.
 struct Inverse {
   bool converged = false;
   InverseFault fault = InverseFault::kNone;
   int iterations = 0;
-  double residual_mm = 0, residual_deg = 0;  // of what `match` asks for
-  double reducible_mm = 0;  // part of it that the axes could still take away (rotations * lever)
+  double residual_mm = 0, residual_deg = 0;  // of the part that `match` requires
+  double reducible_mm = 0;  // part of it that the axes could still remove (rotations * lever)
   double condition = std::numeric_limits<double>::infinity();  // of the scaled Jacobian there
-  std::size_t axis = 0;                                        // kBeyondRange: which
+  std::size_t axis = 0;                                        // kBeyondRange: the axis
 };
 
 struct InverseResult {
-  model::States states;  // the start states with the axes found
+  model::States states;  // the start states with the found axes
   std::vector<Inverse> each;
 };
 

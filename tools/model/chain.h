@@ -14,11 +14,13 @@ struct Poses {
   std::vector<Eigen::Matrix3d> rotation;  // workpiece <- tool
 };
 
-/// Forward solution of the chain: p = W^-1 * T * (0,0,0,1), FORMATS section 1. Exact, in double.
-/// Throws InputError where an expression is not finite, naming transform, degree of freedom and state. tool.
+/// Forward kinematics of the chain: p = W^-1 * T * (0,0,0,1), FORMATS section 1. Exact, in double
+/// precision. Throws InputError if an expression is not finite. The message names transform,
+/// degree of freedom and state. tool.
 Poses forward(const Machine& machine, const States& states);
 
-/// Deviation of each state: position of `machine` minus position of its nominal chain, mm.
+/// Returns the deviation of each state: position of `machine` minus position of its nominal chain,
+/// mm.
 Eigen::Matrix3Xd deviation(const Machine& machine, const States& states);
 
 }  // namespace vernier::model

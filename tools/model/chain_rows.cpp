@@ -37,7 +37,7 @@ Twist turn_about(const Vector3d& axis, const Vector3d& through, const Vector3d& 
 
 }  // namespace
 
-/// Sine and cosine of an angle in degrees; most angles of most machines are a plain zero.
+/// Sine and cosine of an angle in degrees. Most angles of most machines are exactly zero.
 struct TurnValues {
   explicit TurnValues(double angle_deg) {
     if (angle_deg == 0) return;
@@ -124,7 +124,8 @@ Frame ChainRows::pose(std::size_t i, std::vector<Twist>& twists) const {
   const Frame& work = below.back();
   const Matrix3d to_workpiece = work.rotation.transpose();
   twists.assign(keys_.size(), Twist{});
-  // Both branches move the tool point in the common base; what carries the workpiece moves it the other way.
+  // Both branches move the tool point in the common base. The workpiece branch moves it in the
+  // opposite direction.
   for (std::size_t k = 0; k < tool_.size(); ++k)
     add_twists(tool_[k], i, below[k], tool.origin, to_workpiece, 1, twists);
   for (std::size_t k = 0; k < workpiece_.size(); ++k)
@@ -138,7 +139,8 @@ void ChainRows::add_twists(const Link& link, std::size_t i, const Frame& below, 
   for (const Dof& dof : link.dof) any = any || !dof.by.empty();
   if (!any) return;
   const auto v = [&](std::size_t k) { return link.dof[k].value[i]; };
-  const Vector3d point = below.rotation.transpose() * (tip - below.origin);  // tip seen from below the link
+  const Vector3d point =
+      below.rotation.transpose() * (tip - below.origin);  // tip in the frame below the link
   std::array<Twist, 6> by_dof;
   if (link.kind == TransformKind::kSixDof) {
     by_dof = sixdof_twists({v(0), v(1), v(2), v(3), v(4), v(5)}, point);

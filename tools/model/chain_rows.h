@@ -9,37 +9,39 @@
 
 namespace vernier::model {
 
-/// A frame: rotation and origin in the frame below.
+/// A frame: rotation and origin, in the coordinates of the frame below.
 struct Frame {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // mm
 };
 
-/// How a rigid body moves per unit of something: velocity of the tool point (mm) and angular velocity (rad).
+/// Motion of a rigid body per unit of a parameter: velocity of the tool point (mm) and angular
+/// velocity (rad).
 struct Twist {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
 };
 
-/// Frame of a sixdof, T(X,Y,Z)*Rx(rX)*Ry(rY)*Rz(rZ); mm and deg.
+/// Returns the frame of a sixdof, T(X,Y,Z)*Rx(rX)*Ry(rY)*Rz(rZ); mm and deg.
 Frame sixdof_frame(const std::array<double, 6>& value);
 
-/// Twists of a point, in the frame that `value` is given in, per mm and per deg of the six degrees of
-/// freedom. `point`: the moved point in that frame.
+/// Returns the twists of a point per mm and per deg of the six degrees of freedom, in the frame of
+/// `value`. `point`: the moved point in that frame.
 std::array<Twist, 6> sixdof_twists(const std::array<double, 6>& value, const Eigen::Vector3d& point);
 
-/// The chain of a machine evaluated at states: degree-of-freedom columns once, then a pose per state.
+/// The chain of a machine, evaluated at states. The columns of the degrees of freedom are computed
+/// once. Then a pose is computed per state.
 class ChainRows {
  public:
-  /// `active` as for Evaluator: which derivatives twists() will report.
-  /// Throws InputError where an expression is not finite, naming transform, degree of freedom and row.
+  /// `active` as for Evaluator: the derivatives that twists() reports. Throws InputError if an
+  /// expression is not finite. The message names transform, degree of freedom and row.
   ChainRows(const Machine& machine, const States& states, std::vector<char> active = {});
 
-  /// Tool frame in workpiece coordinates at state i.
+  /// Returns the tool frame in workpiece coordinates at state i.
   Frame pose(std::size_t i) const;
 
-  /// The same, and the twist of the tool point in workpiece coordinates by each active key. `keys()` tells
-  /// which key belongs to which entry of `twists`.
+  /// Returns the same, and the twist of the tool point in workpiece coordinates by each active
+  /// key. `keys()` gives the key of each entry of `twists`.
   Frame pose(std::size_t i, std::vector<Twist>& twists) const;
   const std::vector<std::size_t>& keys() const { return keys_; }
 

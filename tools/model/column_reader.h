@@ -11,27 +11,29 @@
 
 namespace vernier::model {
 
-/// The columns of one measurement file as numbers in their base units; NaN for an empty cell. Every reader of
-/// measurement files takes its numbers from here. Keeps a reference to the file. Names that it is asked for
-/// are in the file, except by has(). tool.
+/// The columns of one measurement file as numbers in their base units. NaN: an empty cell. Every
+/// reader of measurement files uses this class for its numbers. It keeps a reference to the file.
+/// Except for has(), the requested names must be in the file. tool.
 class ColumnReader {
  public:
   explicit ColumnReader(const format::CsvFile& csv);
 
   bool has(const std::string& name) const { return index_.contains(name); }
-  /// Throws InputError where the file has no such column; `why` is the message.
+  /// Throws InputError if the file has no such column. `why` is the message.
   void require(const std::string& name, const std::string& why) const;
 
-  /// A column that must have this dimension; `filled`: an empty cell is an error. Throws InputError with
-  /// file, line and word.
+  /// Returns a column that must have this dimension. `filled`: an empty cell is an error. Throws
+  /// InputError with file, line and word.
   Column numbers(const std::string& name, format::Dimension dimension, bool filled);
-  /// A column as it is written, without conversion.
+  /// Returns a column as it is written, without conversion.
   Column raw(const std::string& name);
   std::vector<std::string> words(const std::string& name);
-  /// The same of a column that another reading uses.
+  /// Returns the same for a column that belongs to another reading. The column is not marked as
+  /// read.
   std::vector<std::string> peek(const std::string& name) const;
 
-  /// Does a column hold words in most of its filled cells? Fewer words are numbers with a mistake.
+  /// Does a column contain words in most of its filled cells? If it has fewer words, they are
+  /// errors in a column of numbers.
   bool is_text(const std::string& name) const;
   format::Dimension dimension(const std::string& name) const;
   const std::string& unit(const std::string& name) const { return column(name).unit; }
@@ -41,7 +43,7 @@ class ColumnReader {
   }
   std::size_t rows() const { return csv_.rows.size(); }
 
-  /// Columns that nobody has read yet.
+  /// Returns the columns that are not yet read.
   std::vector<format::CsvColumn> unused() const;
 
   text::Place header() const { return {csv_.file, csv_.header_line}; }

@@ -86,7 +86,7 @@ double by_second(Op op, double a, double b) {
   }
 }
 
-/// target += factor * source, derivative by derivative.
+/// target += factor * source, for value and every derivative.
 void accumulate(ValueAndSlopes& target, const ValueAndSlopes& source, const Value& factor,
                 std::size_t count) {
   for (const auto& [key, derivative] : source.by) {
@@ -101,8 +101,8 @@ void accumulate(ValueAndSlopes& target, const ValueAndSlopes& source, const Valu
   }
 }
 
-/// Weights of one step of a first-order lag under an input that is linear between two moments, and their
-/// derivatives by h = dt / tau: y1 = e*y0 + p*u0 + q*u1.
+/// Weights of one step of a first-order lag: y1 = e*y0 + p*u0 + q*u1. The input is linear between
+/// two moments. The derivatives are by h = dt / tau.
 struct LagStep {
   double e = 1, p = 0, q = 0, de = 0, dp = 0, dq = 0;
 };
@@ -222,13 +222,13 @@ ValueAndSlopes Evaluator::lag(const ValueAndSlopes& input, const ValueAndSlopes&
   Column y(n), by_tau(n);
   std::vector<Column> by_input(input.by.size(), Column(n));
   std::vector<std::size_t> last(states_.names(states_.clock).size(),
-                                states_.count);  // last row of each clock, count: none yet
+                                states_.count);  // last row of each clock; count: no row yet
   for (std::size_t i = 0; i < states_.count; ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const std::size_t clock = states_.of(states_.clock, i);
     std::size_t& before = last[clock];
     const auto from = static_cast<Eigen::Index>(before);
-    LagStep step{0, 0, 1, 0, 0, 0};  // first row of a clock, or no lag at all: y = u
+    LagStep step{0, 0, 1, 0, 0, 0};  // first row of a clock, or no lag: y = u
     double h_by_tau = 0;
     if (before < states_.count && tau.value[i] > 0) {
       const double dt = states_.time[at] - states_.time[from];

@@ -29,19 +29,20 @@ class Value {
   bool varies_ = false;
 };
 
-/// A value and its derivatives by the quantities that a fit may change. Keys: the index of a static, or
-/// statics.size() + axis * 6 + column of a table value (the station weights come later, they are the same for
-/// all), or statics.size() + 6 * axes.size() + axis of a scale factor.
+/// A value and its derivatives by the quantities that a fit may change. Keys: the index of a
+/// static, or statics.size() + axis * 6 + column of a table value (the station weights are applied
+/// later, they are the same for all columns), or statics.size() + 6 * axes.size() + axis of a
+/// scale factor.
 struct ValueAndSlopes {
   Value value;
   std::vector<std::pair<std::size_t, Value>> by;
 };
 
-/// Evaluates expressions of one machine at all states at once, with derivatives where asked for.
-/// Everything is column by column, so that lag (which needs the whole run) is nothing special. tool.
+/// Evaluates expressions of one machine at all states together, with derivatives if they are
+/// requested. The evaluation is column by column, because lag needs the whole run. tool.
 class Evaluator {
  public:
-  /// `active`: for each key whether its derivative is wanted; empty: none.
+  /// `active`: for each key whether its derivative is requested. Empty: no derivatives.
   Evaluator(const Machine& machine, const States& states, std::vector<char> active = {});
 
   ValueAndSlopes operator()(const Expr& expr);
@@ -64,10 +65,11 @@ class Evaluator {
   std::unordered_map<std::size_t, std::vector<Column>> table_columns_;  // axis -> six columns
 };
 
-/// Value of an expression of the machine at every state.
+/// Returns the value of an expression of the machine at every state.
 Column evaluate(const Machine& machine, const Expr& expr, const States& states);
 
-/// Does any expression of the machine use lag? Then rows must be evaluated together, in time order.
+/// Does any expression of the machine use lag? Then rows must be evaluated together, in time
+/// order.
 bool uses_lag(const Machine& machine);
 
 }  // namespace vernier::model

@@ -14,8 +14,8 @@ namespace {
 
 /// Nesting deeper than this is refused, so that no input can exhaust the stack.
 constexpr int kMaxDepth = 200;
-/// A sum of n terms is a tree of depth n, which evaluation and destruction walk down: nodes are counted too.
-/// The longest term that was ever learned or written has some hundreds.
+/// A sum of n terms is a tree of depth n. Evaluation and destruction descend it, so nodes are
+/// counted too. The longest term seen has some hundreds of nodes.
 constexpr int kMaxNodes = 4000;
 
 struct NamedFunction {
@@ -39,7 +39,7 @@ constexpr std::array<NamedFunction, 12> kFunctions = {{{"sin", Op::kSin, 1},
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Recursive descent, loosest first: comparison, sum, product, sign, power, primary.
+/// Recursive descent, lowest precedence first: comparison, sum, product, sign, power, primary.
 class Parser {
  public:
   explicit Parser(std::string_view text, bool placeholders = false)
@@ -149,7 +149,7 @@ class Parser {
     fail_at(start, name, "unknown function");
   }
 
-  /// At a placeholder, goes to its closing brace.
+  /// If the next character opens a placeholder, moves to its closing brace.
   bool skip_placeholder() {
     if (!placeholders_ || text_[at_] != '{') return false;
     const std::size_t end = text_.find('}', at_);
@@ -219,7 +219,7 @@ class Parser {
     if (!take(c)) fail(std::string("'") + c + "' is missing here");
   }
 
-  // Every node of the tree is made of a primary, or joins one to what is there.
+  // Every node of the tree is made of a primary, or joins a primary to the tree.
   void count_node() {
     if (++nodes_ > kMaxNodes) fail("too long an expression");
   }
@@ -230,7 +230,7 @@ class Parser {
       while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]) || text_[end] == '.'))
         ++end;
     } else if (end < text_.size()) {
-      // A letter of another alphabet is several bytes.
+      // A letter of another alphabet has several bytes.
       do ++end;
       while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0U) == 0x80U);
     }
@@ -257,7 +257,7 @@ class Parser {
   int depth_ = 0, nodes_ = 0;
 };
 
-/// Binding strength of what a node prints as; a child that binds more loosely is put in parentheses.
+/// Precedence of the printed form of a node. A child with lower precedence is put in parentheses.
 int strength(const Expr& expr) {
   switch (expr.op) {
     case Op::kEqual:

@@ -11,8 +11,8 @@
 
 namespace vernier::model {
 
-/// What a node of an expression does. Angles are degrees throughout (`sin cos tan` take them, `atan2` gives
-/// them).
+/// Operation of a node of an expression. Angles are degrees throughout (`sin cos tan` take
+/// degrees, `atan2` returns degrees).
 enum class Op : std::uint8_t {
   kNumber,
   kSymbol,
@@ -40,7 +40,7 @@ enum class Op : std::uint8_t {
   kLag,  // lag(u, tau): first-order lag over t, state starts at u's first value in each run
 };
 
-/// What a name in an expression stands for, once resolved against a machine.
+/// The quantity that a name in an expression refers to, after it is resolved against a machine.
 enum class SymbolKind : std::uint8_t {
   kUnresolved,
   kStatic,        // index: Machine::statics
@@ -76,7 +76,7 @@ struct Expr {
   std::vector<ExprPtr> args;  // operands in order
 };
 
-/// Where in the text of an expression it goes wrong, and the word it goes wrong at.
+/// An error in the text of an expression, with its position and the word at that position.
 class ExpressionError : public std::runtime_error {
  public:
   ExpressionError(std::size_t offset_, std::string word_, const std::string& what)
@@ -89,37 +89,38 @@ class ExpressionError : public std::runtime_error {
 /// tool.
 ExprPtr parse_expression(std::string_view text);
 
-/// The same for a term with placeholders: names may hold something in braces ({q}, dir{q}, {hats 5}), which
-/// stays a part of the name until substitute() puts something there. tool.
+/// The same for a term with placeholders. Names may contain text in braces ({q}, dir{q}, {hats
+/// 5}). The braces are a part of the name until substitute() replaces them. tool.
 ExprPtr parse_template(std::string_view text);
 
-/// The expression with some of its names replaced: `replace` is asked for every name and gives what stands
-/// there instead, or nothing to leave it.
+/// Returns the expression with some of its names replaced. `replace` is called for every name. It
+/// returns the replacement, or null to keep the name.
 ExprPtr substitute(const ExprPtr& expr, const std::function<ExprPtr(const std::string&)>& replace);
 
-/// Text that parses back to the same tree, with the fewest parentheses.
+/// Returns a text that parses back to the same tree, with the fewest parentheses.
 std::string to_text(const Expr& expr);
 
 ExprPtr make_number(double value);
-/// A name, unresolved.
+/// Returns a symbol with an unresolved name.
 ExprPtr make_symbol(std::string name);
-/// 1 in the rows of one run.
+/// Returns an expression that is 1 in the rows of one run.
 ExprPtr make_run(std::string label);
-/// left - value, written so that it reads well: "x", "x-3", "x+3".
+/// Returns left - value in its simplest form: "x", "x-3", "x+3".
 ExprPtr subtract_number(ExprPtr left, double value);
 ExprPtr make_node(Op op, std::vector<ExprPtr> args);
 
-/// True where the expression is a number after folding, and its value.
+/// Is the expression a number after folding? Then `value` is that number.
 bool is_constant(const Expr& expr, double& value);
 
-/// The function's name in expressions ("sin"), or nullptr for operators and leaves.
+/// Returns the function's name in expressions ("sin"), or nullptr for operators and leaves.
 const char* function_name(Op op);
-/// All of them: sin, cos …
+/// Returns the names of all functions: sin, cos …
 std::vector<std::string> function_names();
 /// Is `name` a function or a fixed quantity of the expression language (t, feed, run, sin ...)?
 bool is_reserved_word(std::string_view name);
 
-/// The value of one operation on plain numbers; comparisons give 1 or 0. Not for leaves and kLag.
+/// Returns the value of one operation on plain numbers. Comparisons give 1 or 0. Not for leaves
+/// and kLag.
 double apply(Op op, double a, double b);
 
 /// Calls visit(node) for every node, children first.
@@ -129,7 +130,7 @@ void walk(const Expr& expr, const Visit& visit) {
   visit(expr);
 }
 
-/// Does any node of the expression answer? `is(node)` says which do.
+/// Is `is(node)` true for any node of the expression?
 template <class Is>
 bool any_node(const Expr& expr, const Is& is) {
   bool found = false;

@@ -30,7 +30,7 @@ std::string to_base64(const std::vector<std::uint8_t>& bytes) {
   return text;
 }
 
-/// Empty where a letter does not belong there.
+/// Returns an empty vector if the text has an invalid letter.
 std::vector<std::uint8_t> from_base64(std::string_view text) {
   std::array<int, 256> value{};
   value.fill(-1);
@@ -50,7 +50,7 @@ std::vector<std::uint8_t> from_base64(std::string_view text) {
   return bytes;
 }
 
-// Little-endian, whatever the machine.
+// Little-endian on every host.
 template <class Word>
 void put(std::vector<std::uint8_t>& bytes, Word word) {
   for (std::size_t i = 0; i < sizeof(Word); ++i)
@@ -145,7 +145,8 @@ Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd std = covariance.diagonal().cwiseMax(0).cwiseSqrt();
   const Eigen::VectorXd shrink = std.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
   Eigen::MatrixXd scaled = shrink.asDiagonal() * covariance * shrink.asDiagonal();
-  // Rounding may leave the smallest of its eigenvalues below zero: raised until it factorises.
+  // Rounding may make the smallest of its eigenvalues negative. The diagonal is raised until the
+  // matrix factorises.
   for (double lift = 0; lift<1e-3; lift = lift> 0 ? 10 * lift : 1e-14) {
     scaled.diagonal().array() = 1 + lift;
     const Eigen::LLT<Eigen::MatrixXd> llt(scaled);
@@ -181,7 +182,8 @@ std::string fit_record_xml(const FitRecord& record) {
   if (!record.origins.empty()) text += "\" from=\"";
   for (std::size_t i = 0; i < record.origins.size(); ++i)
     text += (i > 0 ? "|" : "") + text::escape_attribute(record.origins[i]);
-  // Values whole, since they are compared; the factor as 4-byte numbers, 1e-7 of its largest part.
+  // Values have full precision, because they are compared. The factor has 4-byte numbers, 1e-7 of
+  // its largest part.
   std::vector<std::uint8_t> bytes;
   for (const double value : record.values) {
     std::uint64_t word = 0;

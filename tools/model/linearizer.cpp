@@ -91,7 +91,7 @@ bool Linearizer::Pass::next() {
 }
 
 void Linearizer::Pass::join_other_end(std::size_t row, std::size_t other) {
-  // By parameter: what the row's own pose does, then what the other end's does.
+  // By parameter: the influence of the row's own pose, then that of the other end's pose.
   std::map<Index, Eigen::VectorXd> by_parameter;
   const auto add = [&] {
     for (const ParameterGroup& group : row_.groups)
@@ -137,7 +137,8 @@ void Linearizer::Pass::fill(std::size_t row, std::size_t at, const Eigen::Vector
   for (std::size_t k = 0; k < count; ++k) {
     const auto o = static_cast<Index>(k);
     const Observation& observation = m.observations[first + k];
-    if (row != at && observation.kind != ObservationKind::kDistance) continue;  // of its own pose only
+    if (row != at && observation.kind != ObservationKind::kDistance)
+      continue;  // depends on its own pose only
     row_.predicted[o] = model.predicted(observation);
     const Twist g = model.gradient(observation);
     const Twist in_workpiece{model.base_rotation().transpose() * g.point,
@@ -157,7 +158,7 @@ void Linearizer::Pass::fill(std::size_t row, std::size_t at, const Eigen::Vector
         table.weights.begin() + static_cast<std::ptrdiff_t>(table.start[at]),
         table.weights.begin() + static_cast<std::ptrdiff_t>(table.start[at + 1]));
   }
-  // The BaseShift of this row's run, component by component where some are held.
+  // The BaseShift of this row's run, component by component if some are held.
   row_.groups.resize(statics + all_.tables_.size());
   if (shift == nullptr) return;
   const auto& parameter = all_.base_parameter_[static_cast<std::size_t>(shift - machine_.base_shifts.data())];

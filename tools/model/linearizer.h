@@ -13,7 +13,7 @@
 
 namespace vernier::model {
 
-/// Parameters that stand side by side and share their weights: the free columns of a table (a weight for each
+/// Adjacent parameters that share their weights: the free columns of a table (a weight for each
 /// station that takes part at a row), statics, or the components of a BaseShift (weight 1).
 struct ParameterGroup {
   Eigen::Index slot = 0, width = 0;                           // rows of RowLinear::gradient
@@ -29,15 +29,16 @@ struct RowLinear {
   std::vector<ParameterGroup> groups;  // by increasing parameter
 };
 
-/// Linearises the rows of a measurement one by one, in the form in which a station table is a few weights
-/// times six columns. What does not depend on the parameters' values (stations and weights of every row) is
-/// worked out once. Keeps a reference to `measurement`. tool.
+/// Linearises the rows of a measurement one by one. A station table is represented by a few
+/// weights times six columns. Data that do not depend on the parameters' values (stations and
+/// weights of every row) are computed once. Keeps a reference to `measurement`. tool.
 class Linearizer {
  public:
   Linearizer(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters);
 
-  /// Calls visit(const RowLinear&) for every row that has an observation. `machine` is the one of the
-  /// constructor with other parameter values. Throws InputError where an expression is not finite.
+  /// Calls visit(const RowLinear&) for every row that has an observation. `machine` is the machine
+  /// of the constructor with other parameter values. Throws InputError if an expression is not
+  /// finite.
   template <class Visit>
   void each_row(const Machine& machine, const Visit& visit) const {
     Pass pass(*this, machine);
@@ -58,12 +59,13 @@ class Linearizer {
     const RowLinear& row() const { return is_joined_ ? joined_ : row_; }
 
    private:
-    /// A row's observations as they answer to the pose of row `at`: its own, or of a distance the other
-    /// end's. `other_end`: where the end stands that is not looked at.
+    /// Fills a row's observations with their dependence on the pose of row `at`: the row itself,
+    /// or the row at the other end of a distance. `other_end`: position of the end that is not
+    /// evaluated.
     void fill(std::size_t row, std::size_t at, const Eigen::Vector3d& other_end);
     Eigen::Vector3d point_at(std::size_t row) const;
-    /// Adds what the pose at the other end of the row's distance does to it, and gives every parameter of
-    /// both rows a slot of its own.
+    /// Adds the influence of the pose at the other end of the row's distance. Gives every
+    /// parameter of both rows its own slot.
     void join_other_end(std::size_t row, std::size_t other);
     const BaseShift* shift_of(std::size_t row) const {
       const States& states = all_.measurement_.states;

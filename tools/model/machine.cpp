@@ -25,7 +25,7 @@ constexpr std::pair<AxisQuantity, SymbolKind> kAxisSymbols[] = {
     {AxisQuantity::kSense, SymbolKind::kDirection},
     {AxisQuantity::kSince, SymbolKind::kSince}};
 
-/// Names that the axes bring along: v a dir since, and the table values l..x to r..z.
+/// Names that the axes define: v a dir since, and the table values l..x to r..z.
 Symbol resolve_derived(const Machine& machine, std::string_view name) {
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
     const std::string& axis_name = machine.axes[axis].name;

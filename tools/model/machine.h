@@ -25,7 +25,7 @@ struct Static {
   std::optional<double> nominal;
   std::string unit, note;
   bool hidden = false;          // not free in a fit
-  std::optional<double> scale;  // how large value - nominal may plausibly be, own unit: the prior of a fit
+  std::optional<double> scale;  // plausible size of value - nominal, own unit: the prior of a fit
   std::size_t line = 0;
 };
 
@@ -36,7 +36,7 @@ struct Axis {
   std::optional<double> max_correction, max_slew;  // axis unit; axis unit per s
   bool rollover = false;
   double scale_factor = 0;
-  bool scale_free = false;  // the scale factor is a parameter of a fit (no attribute: a fit is asked to)
+  bool scale_free = false;  // the scale factor is a parameter of a fit (set by a caller, not by an attribute)
   std::size_t line = 0;
 };
 
@@ -45,7 +45,7 @@ struct Axis {
 enum class InputRole : std::uint8_t { kGuessed, kTemperature, kLoad, kVibration, kSetpoint, kOther };
 inline constexpr std::array<const char*, 6> kInputRoleNames = {"",          "temperature", "load",
                                                                "vibration", "set-point",   "other"};
-/// The role of that name; nothing for a word that is none. tool.
+/// Returns the role of that name, or nullopt for another word. tool.
 std::optional<InputRole> input_role_named(std::string_view name);
 
 struct Input {
@@ -70,28 +70,28 @@ struct Table {
   Interpolation interpolation = Interpolation::kLinear;
   bool periodic = false;                         // the axis has rollover: periodic over first..last station
   std::array<bool, 6> free{};                    // columns freed in a fit
-  std::array<std::optional<double>, 6> scale{};  // as a static's, of a column; mm or deg
+  std::array<std::optional<double>, 6> scale{};  // as of a static, one per column; mm or deg
   std::vector<Station> stations;                 // loc strictly increasing
   std::size_t line = 0;
 };
 
 struct BaseShift {
-  std::optional<std::string> run;  // label of the set-up that it stands for; none: the plain one
+  std::optional<std::string> run;  // label of its set-up; no value: the plain BaseShift
   bool of_setup = false;           // the file says setup=, not run=
   std::array<double, 6> value{};   // mm, deg
   bool hidden = false;
   std::size_t line = 0;
 };
 
-/// A tool by its name: where its point stands in the frame at the end of the tool branch. The tool of the
-/// file, at its origin, has no name.
+/// A tool with a name. `point` is its position in the frame at the end of the tool branch. The
+/// tool of the file is at the origin of that frame and has no name.
 struct Tool {
   std::string name;
   std::array<double, 3> point{};  // mm
   std::size_t line = 0;
 };
 
-/// The positions of an axis among which the machine works.
+/// The range of positions of an axis in which the machine works.
 struct WorkRange {
   std::size_t axis = 0;
   double min = 0, max = 0;  // mm or deg
@@ -113,7 +113,8 @@ struct Transform {
 
 struct FitRecord;
 
-/// A machine file: chain, statics, axes, inputs, tables. Value type; expressions are resolved against it.
+/// A machine file: chain, statics, axes, inputs, tables. It is a value type. Expressions are
+/// resolved against it.
 struct Machine {
   std::string name, file;
   std::array<double, 3> gravity{0, 0, -1};  // unit vector in the chain's base frame
@@ -123,11 +124,12 @@ struct Machine {
   std::vector<Table> tables;
   std::vector<BaseShift> base_shifts;
   std::vector<Transform> tool, workpiece;
-  std::vector<Tool> tools;                       // besides the tool of the file
+  std::vector<Tool> tools;                       // in addition to the tool of the file
   std::vector<WorkRange> volume;                 // of the axes that <volume> names
-  std::optional<ReadingUncertainty> instrument;  // of files that state no u
-  bool correct_orientation = false;         // correct="position orientation": the direction of the tool too
-  std::shared_ptr<const FitRecord> fitted;  // what its last fit knew of it; null: never fitted
+  std::optional<ReadingUncertainty> instrument;  // for files that state no u
+  bool correct_orientation =
+      false;  // correct="position orientation": the direction of the tool is corrected too
+  std::shared_ptr<const FitRecord> fitted;  // result of its last fit; null: never fitted
   std::vector<std::string> notes;           // what was read but ignored (`multiply` and the like)
 
   std::optional<std::size_t> find_static(std::string_view n) const;
@@ -136,23 +138,27 @@ struct Machine {
   const Table* table_of(std::size_t axis) const;
 };
 
-/// The machine with another tool: the tool branch ends in one more shift, by `point` (mm, its last frame).
+/// Returns the machine with another tool: the tool branch has one more shift at its end, by
+/// `point` (mm, its last frame).
 Machine with_tool(const Machine& machine, const std::array<double, 3>& point);
 
-/// Where an axis works: <volume>, else its min and max. Nothing where neither is given.
+/// Returns the range in which an axis works: <volume>, else its min and max. Returns nullopt if
+/// neither is given.
 std::optional<std::array<double, 2>> work_range(const Machine& machine, std::size_t axis);
 
-/// What a name means in expressions of this machine; kUnresolved where it means nothing.
+/// Returns the meaning of a name in expressions of this machine, or kUnresolved if it has no
+/// meaning.
 Symbol resolve_name(const Machine& machine, std::string_view name);
 /// Parses and resolves an expression for this machine. Throws ExpressionError with the unknown name.
 ExprPtr parse_expression_for(const Machine& machine, std::string_view text);
-/// The name of a symbol as expressions write it.
+/// Returns the name of a symbol as expressions write it.
 std::string symbol_name(const Machine& machine, const Symbol& symbol);
-/// The unit of a symbol ("mm", "deg/s", ...), for reports and unit checks.
+/// Returns the unit of a symbol ("mm", "deg/s", ...), for reports and unit checks.
 std::string symbol_unit(const Machine& machine, const Symbol& symbol);
 
-/// The machine of the nominal chain: statics at `nominal` (hidden ones without it at their value),
-/// tables and scalefactor 0; inputs and motion as they are. BaseShift is identity.
+/// Returns the machine of the nominal chain. Statics are at `nominal` (hidden statics without it
+/// at their value), tables and scalefactor are 0. Inputs and motion are unchanged. BaseShift is
+/// the identity.
 Machine nominal_machine(const Machine& machine);
 
 }  // namespace vernier::model

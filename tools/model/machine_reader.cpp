@@ -20,7 +20,8 @@ namespace {
 
 using Words = std::initializer_list<const char*>;
 
-/// Finds an element deeper than any of the format: who edits the text walks down its elements.
+/// Finds an element deeper than any of the format. Functions that edit the text descend its
+/// elements recursively.
 struct TooDeep : pugi::xml_tree_walker {
   static constexpr int kMostDepth = 16;  // of elements; the format has five
   bool for_each(pugi::xml_node& node) override {
@@ -443,7 +444,8 @@ class Reader {
     }
   }
 
-  /// scale: one number for each column that `fit` names, in that order, or one for all (each in its unit).
+  /// scale: one number for each column that `fit` names, in that order, or one number for all
+  /// (each in its unit).
   void read_scales(const pugi::xml_node& node, Table& table) {
     std::vector<std::size_t> columns;
     std::istringstream names(attribute(node, "fit").value_or(""));
@@ -550,7 +552,7 @@ class Reader {
                    std::string(error.what()) + ", in " + name + "=\"" + transform.text[dof] + "\"");
   }
 
-  /// No name may also be a quantity that the axes bring along (vX, lXx ...).
+  /// No name may also be a quantity that the axes define (vX, lXx ...).
   void check_names() {
     Machine only_axes;
     only_axes.axes = machine_.axes;
@@ -680,7 +682,7 @@ class Reader {
     bool tool = true;
     std::size_t index = 0;
   };
-  std::vector<Pending> pending_;  // transforms whose names wait for the axes and inputs
+  std::vector<Pending> pending_;  // transforms whose names are resolved after the axes and inputs are read
   std::vector<std::size_t> line_starts_;
 };
 

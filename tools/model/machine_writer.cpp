@@ -11,7 +11,7 @@
 namespace vernier::model {
 namespace {
 
-/// Collects the edits that turn the numbers of a text into those of a machine.
+/// Collects the edits that replace the numbers of a text by those of a machine.
 class Writer {
  public:
   Writer(const std::string& text, const Machine& machine, bool set_nominal)
@@ -57,8 +57,8 @@ class Writer {
     if (set_nominal_) set_nominal(node, item, before);
   }
 
-  /// Where the text has no nominal: the machine's, else the value that the text had. The number as it was
-  /// written is kept.
+  /// Sets nominal if the text has none: to the machine's nominal, else to the value that the text
+  /// had. The number is kept as it was written.
   void set_nominal(const pugi::xml_node& node, const Static& item, const std::string& before) {
     if (!text_of(node, "nominal").empty()) return;
     const bool as_written = !item.nominal || text::parse_number(before) == item.nominal;

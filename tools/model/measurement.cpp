@@ -56,7 +56,7 @@ class Builder {
     return std::move(result_);
   }
 
-  /// Rows to leave out because an input cell is empty.
+  /// Rows to exclude because an input cell is empty.
   const std::vector<char>& excluded() const { return excluded_; }
 
  private:
@@ -78,7 +78,8 @@ class Builder {
     }
   }
 
-  /// What a board had added; axis positions stay as commanded until it is known in all rows.
+  /// Reads the corrections that a board added. Axis positions are the commanded ones until the
+  /// correction is known in all rows.
   void read_corrections() {
     const auto zero = Column::Zero(static_cast<Eigen::Index>(reader_.rows()));
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
@@ -211,7 +212,7 @@ class Builder {
     result_.angle_uncertainty = read.isNaN().select(0, read);
   }
 
-  /// u of each row by what the machine file says of the instrument.
+  /// Sets u of each row from the uncertainty that the machine file states for the instrument.
   void state_uncertainty(const ReadingUncertainty& instrument) {
     const Column far = lengths_from(instrument.at);
     for (const Observation& o : result_.observations) {
@@ -227,8 +228,8 @@ class Builder {
     }
   }
 
-  /// How far the point of each row is from there, mm: as it was read, in the directions that were; of a
-  /// deviation its nominal point.
+  /// Returns the distance of the point of each row from `at`, mm. The read point is used, in the
+  /// directions that were read. For a deviation the nominal point is used.
   Column lengths_from(const std::array<double, 3>& at) const {
     Column squares = Column::Zero(static_cast<Eigen::Index>(reader_.rows()));
     for (const Observation& o : result_.observations) {
@@ -248,7 +249,7 @@ class Builder {
                                "an uncertainty is greater than 0");
   }
 
-  /// Is there a column of this name, and does the machine file not claim it for an input of its own?
+  /// Is there a column of this name that the machine file does not declare as an input?
   bool has_word(const std::string& name) const { return reader_.has(name) && !machine_.find_input(name); }
 
   static Labels labels_of(const std::vector<std::string>& words) {
@@ -262,7 +263,8 @@ class Builder {
     return labels;
   }
 
-  /// The set-up of each row; a run for which the machine file has a BaseShift keeps that.
+  /// Returns the set-up of each row. A run for which the machine file has a BaseShift keeps its
+  /// own set-up.
   std::vector<std::string> setups_of_rows() {
     std::vector<std::string> setups = reader_.words(columns::kSetup);
     const States& states = result_.states;
@@ -280,7 +282,8 @@ class Builder {
            });
   }
 
-  /// ax ay az: three pure numbers, a unit vector where they are given. Words are other columns.
+  /// ax ay az: three pure numbers, a unit vector if they are given. Columns of words with these
+  /// names are other columns.
   void read_directions() {
     if (!is_reading(columns::kDirection.front())) return;
     for (const char* name : columns::kDirection)
@@ -301,8 +304,8 @@ class Builder {
     has_directions_ = true;
   }
 
-  /// A word that names the row at the other end of a distance: a label that one row of the file bears, or the
-  /// number of a row of data, from 1.
+  /// Reads the word that names the row at the other end of a distance. It is a label that exactly
+  /// one row of the file has, or the number of a data row, from 1.
   void read_distances() {
     if (!is_reading(columns::kDistance)) return;
     const std::vector<std::string> from = reader_.words(columns::kFrom);
@@ -336,7 +339,8 @@ class Builder {
     has_distances_ = true;
   }
 
-  /// Three columns beside a reading: lengths of a point, or pure numbers of a direction.
+  /// Reads three columns that belong to a reading: lengths of a point, or pure numbers of a
+  /// direction.
   void three(const std::array<const char*, 3>& names, const char* owner, Eigen::Matrix3Xd& target) {
     target = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(reader_.rows()));
     for (std::size_t k = 0; k < 3; ++k) {
@@ -479,7 +483,7 @@ void append_candidates(Measurement& all, const Measurement& next) {
           {candidate.name, candidate.unit, join(Column::Constant(before, kAbsent), candidate.value)});
 }
 
-/// A column of words that one of two files lacks is empty there.
+/// Appends columns of words. If one of two files lacks a column, its cells are empty there.
 void append_labels_of_rows(Measurement& all, const Measurement& next) {
   for (const LabelColumn& other : next.labels)
     if (std::none_of(all.labels.begin(), all.labels.end(),
@@ -494,7 +498,7 @@ void append_labels_of_rows(Measurement& all, const Measurement& next) {
   }
 }
 
-/// What some rows have and others do not: ua, directions, other ends of distances.
+/// Appends data that only some rows have: ua, directions, other ends of distances.
 void append_optional(Measurement& all, const Measurement& next) {
   const auto before = static_cast<Eigen::Index>(all.rows()), more = static_cast<Eigen::Index>(next.rows());
   const auto with = [](const Column& column, Eigen::Index count) {
@@ -515,7 +519,8 @@ void append_optional(Measurement& all, const Measurement& next) {
   }
 }
 
-/// Where only one of two has a correction, the other's is 0; and so with the images.
+/// If only one of the two has a correction, the correction of the other is 0. The images are
+/// handled in the same way.
 void append_corrections(Measurement& all, Measurement& next) {
   for (auto [one, other] : {std::pair(&all, &next), std::pair(&next, &all)}) {
     if (one->correction.empty() && !other->correction.empty())
@@ -526,14 +531,15 @@ void append_corrections(Measurement& all, Measurement& next) {
   append(all.corrected, next.corrected);
 }
 
-/// Fills the corrections of rows that name only the image, and moves the axes to where the machine stood.
+/// Fills the corrections of rows that name only the image. Moves the axes to the actual positions
+/// of the machine.
 void add_corrections(Measurement& m, const Machine& machine, const std::string& text,
                      const ImageCorrection& images) {
   if (m.correction.empty() && !m.corrected.empty()) {
     const auto row = static_cast<std::size_t>(
         std::find_if(m.corrected.begin(), m.corrected.end(), [](const auto& word) { return !word.empty(); }) -
         m.corrected.begin());
-    if (row == m.rows()) return;  // the rows that it ran in are excluded
+    if (row == m.rows()) return;  // the rows with an active image are excluded
     if (!images)
       throw text::InputError(
           {m.files.front(), m.line[row]}, m.corrected[row],
@@ -545,7 +551,7 @@ void add_corrections(Measurement& m, const Machine& machine, const std::string& 
   for (std::size_t i = 0; i < m.correction.size(); ++i) m.states.axis[i] += m.correction[i];
 }
 
-/// Leaves out the rows that are marked, and counts them.
+/// Returns the rows without the marked ones, and counts those.
 Measurement without(const Measurement& all, const std::vector<char>& excluded) {
   std::vector<std::size_t> keep;
   for (std::size_t row = 0; row < all.rows(); ++row)
@@ -566,7 +572,7 @@ std::vector<T> pick(const std::vector<T>& all, const std::vector<std::size_t>& k
 
 Column commanded(const Measurement& m, std::size_t axis) {
   if (m.correction.empty()) return m.states.axis[axis];
-  // Adding and taking away loses the last bit; what somebody wrote has fewer than nine decimals.
+  // Addition and subtraction lose the last bit. A written position has fewer than nine decimals.
   return ((m.states.axis[axis] - m.correction[axis]) * 1e9).round() / 1e9;
 }
 
@@ -611,7 +617,7 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
   Measurement result;
   result.files = all.files;
   result.states = select_states(all.states, keep);
-  // A row's observations stand together; of a row that is kept twice the first one stands for it elsewhere.
+  // A row's observations are adjacent. If a row is kept twice, other rows refer to its first copy.
   std::vector<std::size_t> position(all.rows(), kNoRow), first(all.rows() + 1, 0);
   for (std::size_t i = keep.size(); i-- > 0;) position[keep[i]] = i;
   for (const Observation& o : all.observations) ++first[o.row + 1];

@@ -11,7 +11,7 @@
 
 namespace vernier::model {
 
-/// Kinds of reading are the measurement format's.
+/// The kinds of reading are those of the measurement format.
 using ObservationKind = format::ReadingKind;
 using format::is_direction;
 using format::is_free_of_setup;
@@ -25,14 +25,14 @@ struct Observation {
   double value = 0;
 };
 
-/// A column that the machine file does not know: it may be the key to a missing effect. NaN where the cell is
-/// empty.
+/// A column that the machine file does not declare. A missing effect may depend on it. NaN: the
+/// cell is empty.
 struct CandidateInput {
   std::string name, unit;
   Column value;
 };
 
-/// A column of words, kept as it stands.
+/// A column of words, kept as written.
 struct LabelColumn {
   std::string name;
   std::vector<std::string> value;
@@ -41,8 +41,8 @@ struct LabelColumn {
 /// `other_end` of a row without a distance.
 inline constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
 
-/// The rows of one or several measurement files, bound to a machine (FORMATS section 2). Rows excluded for an
-/// empty input cell are not in it, only counted.
+/// The rows of one or several measurement files, bound to a machine (FORMATS section 2). Rows with
+/// an empty input cell are not included. They are only counted.
 struct Measurement {
   std::vector<std::string> files;
   States states;
@@ -50,60 +50,65 @@ struct Measurement {
   std::vector<CandidateInput> candidates;
   std::vector<LabelColumn> labels;
   Column uncertainty;                   // u of the row, mm (deg for its rotations); 0 where not given
-  Column angle_uncertainty;             // ua: of its rotations, deg; 0 where not given; empty: in all
+  Column angle_uncertainty;             // ua: of its rotations, deg; 0 if not given; empty: given in no row
   std::vector<char> check;              // role of the row
-  std::vector<std::size_t> file, line;  // where the row stands
-  /// What a board had added in each row, an entry an axis, mm or deg; empty: nothing. states.axis is where
-  /// the machine stood, the commanded position with this added.
+  std::vector<std::size_t> file, line;  // file and line of the row
+  /// Correction that a board added in each row, one entry per axis, mm or deg. Empty: no
+  /// correction. states.axis is the actual position of the machine: the commanded position plus
+  /// the correction.
   std::vector<Column> correction;
-  std::vector<std::string> corrected;  // fingerprint of the image that ran in each row; empty: none in all
-  Eigen::Matrix3Xd centre;             // of `length`, measuring frame, mm
-  Eigen::Matrix3Xd nominal_point;      // of `d`, workpiece coordinates, mm
-  Eigen::Matrix3Xd direction;          // of a1 a2, unit vectors, measuring frame; empty: none in all
-  std::vector<std::size_t> other_end;  // row at the other end of a distance, else kNoRow; empty: none in all
+  std::vector<std::string>
+      corrected;                   // fingerprint of the active image in each row; empty: no image in any row
+  Eigen::Matrix3Xd centre;         // of `length`, measuring frame, mm
+  Eigen::Matrix3Xd nominal_point;  // of `d`, workpiece coordinates, mm
+  Eigen::Matrix3Xd direction;      // of a1 a2, unit vectors, measuring frame; empty: in no row
+  std::vector<std::size_t> other_end;  // row at the other end of a distance, else kNoRow; empty: no distances
   std::size_t excluded = 0;            // rows with an empty input cell
-  std::vector<std::string> recorded;   // names of the columns of motion that some file has (vX, feed, t ...)
+  std::vector<std::string>
+      recorded;  // names of the columns of motion that at least one file has (vX, feed, t ...)
 
   std::size_t rows() const { return states.count; }
   bool has_recorded(std::string_view name) const;
 };
 
-/// Standard uncertainty of a reading: ua of its row for a rotation that has one, else u; 0 where none is
-/// given. mm or deg. tool.
+/// Returns the standard uncertainty of a reading. For a rotation it is ua of its row if given,
+/// else u. 0 if none is given. mm or deg. tool.
 double uncertainty_of(const Measurement& measurement, const Observation& observation);
 
-/// The position that an axis was commanded to in each row (read, where that was logged), mm or deg: what was
-/// set, and so what tells whether two rows are at one pose. states.axis less the correction, to 1e-9 as it
-/// was written. tool.
+/// Returns the commanded position of an axis in each row (the read position, if it was logged), mm
+/// or deg. Two rows with the same commanded positions are at one pose. It is states.axis minus the
+/// correction, rounded to 1e-9 as it was written. tool.
 Column commanded(const Measurement& measurement, std::size_t axis);
 double commanded(const Measurement& measurement, std::size_t axis, Eigen::Index row);
-/// The rows as they were commanded, without a correction. tool.
+/// Returns the rows at their commanded positions, without a correction. tool.
 States commanded_states(const Measurement& measurement);
 
-/// Fills `correction` (0 in all rows when called) of one file's rows where `corrected` names an image.
-/// states.axis is as commanded. text: the file's own.
+/// Fills `correction` in the rows of one file where `corrected` names an image. It is 0 in all
+/// rows before the call. states.axis is the commanded position. text: the text of the file.
 using ImageCorrection =
     std::function<void(Measurement& rows, const Machine& machine, const std::string& text)>;
 
-/// Reads measurement files for a machine; columns in any order, units converted to the base units (an input
-/// to the unit that the machine declares). images: for files that name an image and have no column of a
-/// correction; without it such a file is refused. Throws InputError with file, line and word. tool.
+/// Reads measurement files for a machine. Columns may be in any order. Units are converted to the
+/// base units (an input to the unit that the machine declares). images: for files that name an
+/// image but have no correction column. Without `images` such a file is refused. Throws InputError
+/// with file, line and word. tool.
 Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine,
                              const ImageCorrection& images = {});
 
-/// Throws InputError with file and line where `t` falls from one row of a run to its next: what depends on
-/// time or lags has no meaning there. tool.
+/// Throws InputError with file and line if `t` decreases from one row of a run to the next.
+/// Time-dependent terms and lags have no meaning there. tool.
 void require_time_order(const Measurement& measurement);
 
-/// The rows `keep` of a measurement, any of them more than once, with their observations; a distance only
-/// where both its ends are kept.
+/// Returns the rows `keep` of a measurement with their observations. A row may be repeated. A
+/// distance is kept only if both its ends are kept.
 Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& keep);
 
-/// Appends rows bound to the same machine. Runs (and set-ups ...) of one name are one, or where `apart` none
-/// of `next` is one of `all`. Throws InputError where a column stands in two units. tool.
+/// Appends rows that are bound to the same machine. Runs (and set-ups ...) with the same name are
+/// merged. If `apart`, none of `next` is merged with one of `all`. Throws InputError if a column
+/// has two units. tool.
 void append_measurement(Measurement& all, Measurement next, bool apart = false);
 
-/// The same from text (one file), for tests and imports.
+/// Reads the same from a text (one file), for tests and imports.
 Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine,
                               const ImageCorrection& images = {});
 

@@ -6,10 +6,10 @@
 
 namespace vernier::model {
 
-/// May no axis have this name, because a column of the measurement format has it? `machine`: its axes have
-/// columns "correctionX" and so on.
+/// Is this name forbidden for an axis, because a column of the measurement format has it?
+/// `machine`: its axes have columns "correctionX" and so on.
 bool is_no_axis_name(const Machine& machine, std::string_view name);
-/// The same of an input. It may have a name of a later version of the format.
+/// The same for an input. An input may have the name of a column of a later version of the format.
 bool is_no_input_name(const Machine& machine, std::string_view name);
 /// The message about such a name.
 inline constexpr const char* kMeasuredName = "measurement files use this name for a measured column";

@@ -20,7 +20,8 @@ Matrix3d cross_matrix(const Vector3d& v) {
   return m;
 }
 
-/// Rotation vector of a rotation, rad; of the two around half a turn the one nearest to `like`.
+/// Returns the rotation vector of a rotation, rad. Near half a turn there are two. The one nearest
+/// to `like` is used.
 Vector3d nearest_rotation_vector(const Matrix3d& rotation, const Vector3d& like) {
   const Eigen::AngleAxisd turn(rotation);
   const Vector3d vector = turn.angle() * turn.axis();
@@ -43,7 +44,8 @@ Matrix3d inverse_left_jacobian(const Vector3d& phi) {
 struct ValueAndSlope {
   double value = 0, slope = 0;
 };
-/// acos(x) / sqrt(1 - x^2), 1 at x = 1: the angle between two directions over its sine, by its cosine.
+/// acos(x) / sqrt(1 - x^2), 1 at x = 1. It is the angle between two directions divided by its
+/// sine, as a function of its cosine.
 ValueAndSlope angle_over_sine(double x) {
   constexpr double kNear = 1e-8;  // below, a series: 1 + (1 - x)/3
   x = std::clamp(x, -1 + 1e-12, 1.0);
@@ -52,7 +54,8 @@ ValueAndSlope angle_over_sine(double x) {
   return {value, (x * value - 1) / square};
 }
 
-/// Column of the sight for a1 and a2, of the tool's frame for ix and iy.
+/// Returns the column of the measured direction's frame for a1 and a2, of the tool's frame for ix
+/// and iy.
 int across(ObservationKind kind) { return kind == ObservationKind::kA1 ? 1 : 2; }
 int level(ObservationKind kind) { return kind == ObservationKind::kIx ? 0 : 1; }
 
@@ -80,7 +83,7 @@ Vector3d ObservationModel::normal(Eigen::Index row) const {
 const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
   if (has_phi_) return phi_;
   Vector3d measured = Vector3d::Zero();
-  // Observations are ordered by row; the few of this one stand together.
+  // Observations are ordered by row, so those of this row are adjacent.
   auto o = std::lower_bound(m_.observations.begin(), m_.observations.end(), row,
                             [](const Observation& a, std::size_t r) { return a.row < r; });
   for (; o != m_.observations.end() && o->row == row; ++o)
@@ -94,8 +97,9 @@ const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
 Matrix3d ObservationModel::sight(Eigen::Index row) const {
   Vector3d along = tool_axis();
   if (m_.direction.cols() > 0 && m_.direction.col(row).allFinite()) along = m_.direction.col(row);
-  // The two directions across turn smoothly with the measured one, so that noise does not choose them.
-  // Eigen's unitOrthogonal() near z takes them from the small components, which are noise.
+  // The two directions across it must change smoothly with the measured direction, so that noise
+  // does not select them. Eigen's unitOrthogonal() near z computes them from the small components,
+  // which are noise.
   constexpr double kMostAlongX = 0.8;  // cosine; beyond it y is farther from the direction than x
   const Vector3d away = std::abs(along.x()) < kMostAlongX ? Vector3d::UnitX() : Vector3d::UnitY();
   const Vector3d across = along.cross(away).normalized();

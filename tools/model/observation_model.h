@@ -7,9 +7,9 @@
 
 namespace vernier::model {
 
-/// What the observations of one row should read, given the tool's pose in workpiece coordinates and the
-/// BaseShift of the row's set-up (null: identity). gravity: of the machine, unit vector. Keeps references.
-/// tool.
+/// Predicts the observations of one row from the tool's pose in workpiece coordinates and the
+/// BaseShift of the row's set-up (null: identity). gravity: of the machine, unit vector. Keeps
+/// references. tool.
 class ObservationModel {
  public:
   ObservationModel(const Measurement& measurement, const std::array<double, 3>& gravity,
@@ -17,15 +17,17 @@ class ObservationModel {
 
   /// Tool point in the measuring frame, mm.
   const Eigen::Vector3d& point() const { return point_; }
-  /// Where the other end of the row's distance is; before predicted() of one.
+  /// Sets the position of the other end of the row's distance. Call it before predicted() of a
+  /// distance.
   void set_other_end(const Eigen::Vector3d& point) { other_end_ = point; }
 
-  /// mm, or deg for rotations: of the rotation vectors that repeat every 360 deg the one nearest to the
-  /// reading.
+  /// Predicted value: mm, or deg for rotations. Rotation vectors repeat every 360 deg. The vector
+  /// nearest to the reading is used.
   double predicted(const Observation& observation);
 
-  /// How the observation answers to a motion of the tool in the measuring frame: point . gradient.point (mm)
-  /// + rotation . gradient.rotation (rad). For a rotation: after predicted() of an observation of this row.
+  /// Sensitivity of the observation to a motion of the tool in the measuring frame: point .
+  /// gradient.point (mm) + rotation . gradient.rotation (rad). For a rotation, call predicted() of
+  /// an observation of this row first.
   Twist gradient(const Observation& observation) const;
 
   /// Twists of the tool in the measuring frame by the six components of the BaseShift.
@@ -35,7 +37,8 @@ class ObservationModel {
  private:
   Eigen::Vector3d normal(Eigen::Index row) const;
   const Eigen::Vector3d& rotation_vector(std::size_t row);
-  /// The measured direction and two across it; where none was measured the tool's own.
+  /// The measured direction and two directions across it. Without a measured direction, the tool's
+  /// axes are used.
   Eigen::Matrix3d sight(Eigen::Index row) const;
   /// Tool axis (z of the tool's frame) in the measuring frame.
   Eigen::Vector3d tool_axis() const { return base_.rotation * pose_.rotation.col(2); }

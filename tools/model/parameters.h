@@ -20,7 +20,8 @@ struct Parameter {
   std::size_t column = 0;   // kStation, kBaseShift: 0..5 = X Y Z rX rY rZ
 };
 
-/// What a fit frees or holds as one: a static, a scale factor, a column of a table, a BaseShift.
+/// A unit that a fit frees or holds as a whole: a static, a scale factor, a column of a table, a
+/// BaseShift.
 class Freedom {
  public:
   Freedom(ParameterKind kind, std::string name, bool& flag)
@@ -29,7 +30,7 @@ class Freedom {
   ParameterKind kind() const { return kind_; }
   /// `alpha`, `scalefactor.X`, `table.X.rY`, `BaseShift`, `BaseShift[s2]`.
   const std::string& name() const { return name_; }
-  /// Statics and BaseShifts say that they are hidden, the others that they are free.
+  /// Statics and BaseShifts store whether they are hidden, the others whether they are free.
   bool is_free() const { return flag_ != says_hidden(); }
   void set_free(bool free) { flag_ = free != says_hidden(); }
 
@@ -41,16 +42,18 @@ class Freedom {
   bool& flag_;
 };
 
-/// The one walk over all that a fit could free, in the order of ParameterSet. They point into the machine.
+/// Returns everything that a fit could free, in the order of ParameterSet. It is the only such
+/// list. The entries point into the machine.
 std::vector<Freedom> freedoms_of(Machine& machine);
 
 /// The free parameters of a machine, in a fixed order: statics, scale factors, stations, BaseShifts.
 class ParameterSet {
  public:
   ParameterSet() = default;
-  /// All that FORMATS calls free: statics and BaseShifts without Hide, table columns named by `fit`. A
-  /// BaseShift whose run is none of `runs` is left out, and the plain one where every run has its own. In a
-  /// periodic table the last station is the first one again and is no parameter of its own.
+  /// All parameters that are free by FORMATS: statics and BaseShifts without Hide, table columns
+  /// named by `fit`. A BaseShift whose run is not in `runs` is excluded. The plain BaseShift is
+  /// excluded if every run has its own. In a periodic table the last station repeats the first one
+  /// and is not a parameter.
   ParameterSet(const Machine& machine, const std::vector<std::string>& runs);
 
   std::size_t size() const { return list_.size(); }
@@ -65,7 +68,7 @@ class ParameterSet {
   std::vector<Parameter> list_;
 };
 
-/// The BaseShift of a run: its own, else the plain one, else none (identity).
+/// Returns the BaseShift of a run: its own, else the plain one, else nullopt (identity).
 std::optional<std::size_t> base_shift_of(const Machine& machine, const std::string& run);
 
 }  // namespace vernier::model

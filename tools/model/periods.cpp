@@ -14,7 +14,7 @@ namespace {
 constexpr double kTurn = 360;   // deg: arguments of sin, cos and tan are degrees
 constexpr double kReach = 100;  // mm or deg: of an axis without min and max
 
-/// Pairs of states a small step apart, all over the axis.
+/// Pairs of states with a small distance, all over the axis.
 struct Slopes {
   States states;
   double step = 0;
@@ -33,7 +33,7 @@ struct Slopes {
     }
   }
 
-  /// The steepest slope of an expression over the axis, per mm or deg.
+  /// Returns the steepest slope of an expression over the axis, per mm or deg.
   double steepest(const Machine& machine, const Expr& expr) const {
     const Column value = evaluate(machine, expr, states);
     double most = 0;
@@ -46,7 +46,8 @@ struct Slopes {
 
 bool is_wave(const Expr& node) { return node.op == Op::kSin || node.op == Op::kCos || node.op == Op::kTan; }
 
-/// Where an expression of an axis is not straight: on a grid so fine that nothing real is between its points.
+/// Finds the ranges in which an expression of an axis is not straight. Its grid is finer than any
+/// real feature.
 class SharpStretches {
  public:
   SharpStretches(const Machine& machine, std::size_t axis, const States& at)
@@ -72,11 +73,13 @@ class SharpStretches {
   }
 
  private:
-  /// Gaps over the range, and steps of the grid in each: 262144 positions, 1 um of an axis of 262 mm.
+  /// Gaps over the range, and steps of the grid in each gap: 262144 positions, 1 um for an axis of
+  /// 262 mm.
   static constexpr std::size_t kGaps = 256, kSteps = 1024;
   static constexpr double kStraight = 2e-5;  // mm or deg: a fiftieth of what any machine is corrected to
 
-  /// Does it depend on the axis by more than sums, products and waves? Those have their own figures.
+  /// Does the expression depend on the axis by more than sums, products and sines? Those have
+  /// their own limits.
   bool may_be_sharp(const Expr& expr) const {
     bool of_axis = false, other = false;
     walk(expr, [&](const Expr& node) {
@@ -94,7 +97,8 @@ class SharpStretches {
     return states;
   }
 
-  /// The largest part of a gap between whose points the values are straight; 1 where none is.
+  /// Returns the largest part of a gap between whose points the values are straight, or 1 if no
+  /// part is.
   static std::size_t straight_stride(const Column& values) {
     std::size_t stride = kSteps;
     while (stride > 1 && !is_straight(values, static_cast<Eigen::Index>(stride))) stride /= 2;

@@ -11,13 +11,13 @@ namespace vernier::model {
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
-/// What the model says that each observation should read; mm, or deg for rotations. One entry per
-/// observation. A predicted rotation vector is the one nearest to the measured (they repeat every 360 deg).
-/// tool.
+/// Returns the predicted value of each observation; mm, or deg for rotations. One entry per
+/// observation. Rotation vectors repeat every 360 deg. The predicted vector is the one nearest to
+/// the measured vector. tool.
 Eigen::VectorXd predict(const Machine& machine, const Measurement& measurement);
 
-/// The same, and its derivatives by the free parameters (analytic): n_obs x n_params, mm or deg per parameter
-/// unit.
+/// The prediction and its derivatives by the free parameters (analytic): n_obs x n_params, mm or
+/// deg per parameter unit.
 struct Linearisation {
   Eigen::VectorXd predicted;
   SparseRows jacobian;
@@ -25,7 +25,7 @@ struct Linearisation {
 Linearisation linearise(const Machine& machine, const Measurement& measurement,
                         const ParameterSet& parameters);
 
-/// The same with the work that does not depend on the parameters' values done beforehand.
+/// The same. The work that does not depend on the parameters' values is done beforehand.
 class Linearizer;
 Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
                         std::size_t parameters);

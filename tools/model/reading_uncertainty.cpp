@@ -27,7 +27,7 @@ std::string without_spaces(const std::string& text) {
                          "mm, as \"2.5 + L/300\"");
 }
 
-/// "6um/m" and the like; a bare number is um, as in "2.5 + L/300".
+/// Adds "6um/m" and the like. A bare number is um, as in "2.5 + L/300".
 void add_length(const std::string& term, ReadingUncertainty& sum) {
   const std::string suffix = "/m";
   const bool per_metre = term.size() > suffix.size() && term.ends_with(suffix);

@@ -5,8 +5,8 @@
 
 namespace vernier::model {
 
-/// The same rows for a machine that declares more of their columns as inputs; rows with an empty cell in a
-/// column that is now an input are excluded and counted. tool.
+/// Returns the same rows for a machine that declares more of their columns as inputs. Rows with an
+/// empty cell in a new input column are excluded and counted. tool.
 Measurement rebind(const Measurement& measurement, const Machine& from, const Machine& to);
 
 }  // namespace vernier::model

@@ -81,7 +81,7 @@ void append_labels(States& all, const States& next, bool apart) {
     Labels& one = all.*labels;
     const Labels& other = next.*labels;
     if (one.of.empty() && other.of.empty()) continue;
-    // Where one of two files tells them, the runs of the other stand for its own.
+    // If only one of two files has labels, the runs of the other file are its labels.
     if (one.of.empty()) one = {all.run, all.run_names};
     if (other.of.empty())
       append(one.of, one.names, next.run, next.run_names);

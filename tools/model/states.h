@@ -12,9 +12,9 @@ struct Machine;
 
 using Column = Eigen::ArrayXd;
 
-/// A label of each moment. Without any the label of its run stands for it.
+/// A label of each moment. Without labels the label of the run is used.
 struct Labels {
-  std::vector<std::size_t> of;     // index into names, an entry a moment; empty: as the run
+  std::vector<std::size_t> of;     // index into names, one per moment; empty: as the run
   std::vector<std::string> names;  // each once
 };
 
@@ -27,7 +27,7 @@ struct States {
   std::vector<Column> velocity;      // mm/s, deg/s
   std::vector<Column> acceleration;  // mm/s^2, deg/s^2
   std::vector<Column> direction;     // -1, 0, +1
-  std::vector<Column> since;         // mm, deg; kLongWay where not recorded
+  std::vector<Column> since;         // mm, deg; kLongWay if not recorded
   Column feed;                       // mm/min
   Column curvature;                  // 1/mm
   std::array<Column, 3> normal;      // unit vector of the row, 0 where it has none
@@ -36,9 +36,9 @@ struct States {
   std::vector<Column> input;
   std::vector<std::size_t> run;  // index into run_names
   std::vector<std::string> run_names;
-  Labels setup;  // what a BaseShift stands for
-  Labels clock;  // of unbroken time: a lag, a count of visits and a drift begin with each
-  Labels block;  // part that may be left out to judge the rest
+  Labels setup;  // set-up: the rows that share a BaseShift
+  Labels clock;  // continuous time: a lag, a count of visits and a drift start at each
+  Labels block;  // part that may be held out to test the rest
 
   std::size_t of(const Labels& labels, std::size_t moment) const {
     return labels.of.empty() ? run[moment] : labels.of[moment];
@@ -48,29 +48,29 @@ struct States {
   }
 };
 
-/// The labels of moments that set-ups, clocks and blocks may be told by.
+/// The labels of moments that can define set-ups, clocks and blocks.
 inline constexpr std::array<Labels States::*, 3> kStateLabels = {&States::setup, &States::clock,
                                                                  &States::block};
 
-/// All moments are one run of this name, and one of all else.
+/// Makes all moments one run of this name, with one set-up, one clock and one block.
 void make_one_run(States& states, const std::string& name);
-/// A moment begins a run of its own by this name, and with it every other label.
+/// Starts a new run of this name at a moment. Every other label starts anew too.
 void begin_run(States& states, std::size_t moment, const std::string& name);
-/// Appends the runs, set-ups, clocks and blocks of `next`; labels of one name are one, or where `apart` none
-/// of `next` is one of `all`. The columns are not touched.
+/// Appends the runs, set-ups, clocks and blocks of `next`. Labels with the same name are merged.
+/// If `apart`, none of `next` is merged with one of `all`. The columns are not changed.
 void append_labels(States& all, const States& next, bool apart = false);
 
-/// `since` where no column says it: far beyond any decay length.
+/// `since` without a recorded column: far beyond any decay length.
 inline constexpr double kLongWay = 1e9;
 
 /// States of `count` moments for a machine with these numbers of axes and inputs: all columns zero, `since`
 /// kLongWay, one run named "".
 States make_states(std::size_t count, std::size_t axes, const std::vector<double>& input_references);
 
-/// ... for the axes and inputs of a machine, each input at its reference.
+/// The same for the axes and inputs of a machine, each input at its reference.
 States make_states(std::size_t count, const Machine& machine);
 
-/// The rows `which` of `states`, in that order.
+/// Returns the rows `which` of `states`, in that order.
 States select_states(const States& states, const std::vector<std::size_t>& which);
 
 }  // namespace vernier::model

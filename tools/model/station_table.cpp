@@ -10,7 +10,8 @@
 namespace vernier::model {
 namespace {
 
-/// Second derivatives of the interpolating cubic spline as a linear map of the values (natural ends).
+/// Returns the second derivatives of the interpolating cubic spline as a linear map of the values
+/// (natural ends).
 Eigen::MatrixXd natural_curvature(const std::vector<double>& x) {
   const auto n = static_cast<Eigen::Index>(x.size());
   Eigen::MatrixXd left = Eigen::MatrixXd::Identity(n, n), right = Eigen::MatrixXd::Zero(n, n);

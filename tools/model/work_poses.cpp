@@ -10,7 +10,7 @@
 namespace vernier::model {
 namespace {
 
-constexpr std::size_t kPoses = 500;  // give an rms over a volume to 3 %
+constexpr std::size_t kPoses = 500;  // they give an rms over a volume to 3 %
 
 }  // namespace
 

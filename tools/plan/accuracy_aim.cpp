@@ -20,7 +20,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Poses that a volume is looked at, far behind those that are offered in Halton's sequence.
+/// Number of poses at which a volume is evaluated. They are far behind the offered poses in
+/// Halton's sequence.
 constexpr std::size_t kLookedAt = 150, kFrom = 7919;
 
 model::Machine bare(model::Machine machine) {
@@ -28,7 +29,7 @@ model::Machine bare(model::Machine machine) {
   return machine;
 }
 
-/// How the machine's own parameters move the tool point in workpiece coordinates.
+/// Motion of the tool point by the machine's own parameters, in workpiece coordinates.
 MatrixXd own_columns_at(const model::Machine& machine, const model::States& states,
                         const model::ParameterSet& all, const std::vector<Index>& own) {
   const model::Machine without = bare(machine);
@@ -67,7 +68,7 @@ AimRows rows_of_part(const model::Machine& machine, const Knowledge& knowledge,
   const MatrixXd columns = values.map * own_columns_at(machine, part.states, knowledge.parameters, own);
   AimRows result{columns, {}};
   for (const tolerance::CharacteristicValue& value : values.values) {
-    // The mean square of the vectors that a characteristic is made from, and the mean of all of those.
+    // The mean square of the vectors of a characteristic, and the mean of all of those.
     const double share = std::sqrt(static_cast<double>(value.group) / static_cast<double>(value.count) /
                                    static_cast<double>(values.values.size()));
     result.rows.middleRows(value.first, value.count) *= share;

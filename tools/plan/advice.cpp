@@ -17,7 +17,7 @@ std::vector<std::string> advice_for(const std::string& text, const model::Machin
   if (d.verdict != diagnose::Verdict::kAmbiguous || d.candidates.empty()) return {};
   const diagnose::CandidateFinding& first = d.candidates.front();
   const std::string& id = first.candidate.choice.effect->id;
-  // A finding is not lost because no advice can be made of it.
+  // A finding remains valid even if it gives no advice.
   const auto advice = [&](const std::string& a, const std::string& b) -> std::vector<std::string> {
     try {
       return next_measurement(text, machine, m, a, b, effects);

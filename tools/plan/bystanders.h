@@ -8,9 +8,10 @@
 
 namespace vernier::plan {
 
-/// Other causes that explain the rows nearly as well as the best candidate of all: a diagnosis will weigh
-/// them too, so rows that separate two named effects had better separate these as well. One per effect,
-/// driving axis and input, best first, at most `most`; neither of the named ones. tool.
+/// Finds other causes that explain the rows nearly as well as the best candidate of all. A
+/// diagnosis compares them too, so rows that separate two named effects should separate these as
+/// well. One per effect, driving axis and input, best first, at most `most`. The named effects are
+/// not included. tool.
 std::vector<FittedRival> find_bystanders(const effects::MachineText& model,
                                          const model::Measurement& measurement,
                                          const std::vector<const FittedRival*>& named,

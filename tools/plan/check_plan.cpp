@@ -19,8 +19,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kCheckOffered = 400;  // poses that a short check is chosen from
-/// Standard deviations from which a change shows.
+constexpr std::size_t kCheckOffered = 400;  // poses from which a short check is selected
+/// Standard deviations above which a change is visible.
 constexpr double kShown = 5;
 
 /// Information of the chosen readings: sums over their rows.
@@ -36,7 +36,8 @@ class CheckPlanner {
     rows.uncertainty.setConstant(1e-3 * options.reading_um);
     all_ = check::suspect_columns(machine, rows);
     spread_ = check::spread_of_fit(machine, all_.suspects, all_.parameters);
-    // Columns are in units of the readings' uncertainty: back to um of the tool point.
+    // Columns are in units of the readings' uncertainty. Here they are converted back to um of the
+    // tool point.
     const double per_pose = options.reading_um / std::sqrt(static_cast<double>(kCheckOffered));
     moves_um_ = per_pose * all_.columns.colwise().norm();
     for (std::size_t j = 0; j < all_.suspects.size(); ++j)
@@ -83,11 +84,12 @@ class CheckPlanner {
     return told;
   }
 
-  /// Information on a change of each tested parameter by 1, after the set-up and the uncertainty of the fit.
+  /// Information on a change of each tested parameter by 1, after the set-up and the uncertainty
+  /// of the fit are eliminated.
   VectorXd amounts_of(const Told& told) const {
     MatrixXd gram = told.gram;
     if (told.set_up.cols() > 0) {
-      // A set-up that the poses chosen so far do not fix is anything.
+      // A set-up that the chosen poses do not determine is free.
       constexpr double kFree = 1e-9;
       MatrixXd set_up = told.set_up;
       set_up.diagonal().array() += kFree * (1 + set_up.diagonal().maxCoeff());
@@ -110,9 +112,10 @@ class CheckPlanner {
     return sum;
   }
 
-  /// A change that moves the tool by a metre and more before it shows is not seen.
+  /// A change that needs a motion of the tool of a metre or more to be visible counts as
+  /// invisible.
   bool seen(const VectorXd& amounts, Index j) const {
-    constexpr double kMost_um = 1e6;  // a change that is larger is no change but another machine
+    constexpr double kMost_um = 1e6;  // a larger change means another machine
     return amounts[j] > 0 && kShown / std::sqrt(amounts[j]) * moves_um_[j] < kMost_um;
   }
 
@@ -146,7 +149,7 @@ class CheckPlanner {
   }
 
   double random_um(std::size_t count) const {
-    constexpr std::size_t kDraws = 9;  // of other beginnings of the exchange
+    constexpr std::size_t kDraws = 9;  // of other starts of the exchange
     std::vector<double> worst;
     for (std::size_t draw = 0; draw < kDraws; ++draw) {
       std::vector<std::size_t> poses;

@@ -11,23 +11,24 @@ namespace vernier::plan {
 
 struct CheckPlanOptions {
   std::size_t points = 10;
-  double reading_um = 5;    // standard uncertainty of a coordinate that will be read
-  double expected_um = 20;  // change of the tool point, rms over the poses, from which one wants to know
+  double reading_um = 5;    // standard uncertainty of a coordinate of the planned readings
+  double expected_um = 20;  // smallest relevant change of the tool point, rms over the poses
 };
 
-/// How small a change a check shows.
+/// The smallest change that a check shows.
 struct Shown {
   check::Suspect suspect;
   double change = 0;   // in its unit
-  double tool_um = 0;  // what that moves the tool point by, rms over the work volume
+  double tool_um = 0;  // motion of the tool point by it, rms over the work volume
 };
 
-/// A short measurement that sees the likeliest changes of a fitted machine.
+/// A short measurement that shows the most probable changes of a fitted machine.
 struct CheckPlan {
   model::States states;      // in the order in which they are measured
-  std::vector<Shown> shows;  // the one that has to move the tool furthest before it shows comes first
+  std::vector<Shown> shows;  // the change with the largest motion of the tool comes first
   std::vector<std::string> not_seen;
-  double random_um = 0;  // the first of `shows`, from as many poses at random (median of several draws)
+  double random_um =
+      0;  // the first of `shows`, from the same number of random poses (median of several samples)
 };
 
 /// Chooses the poses one by one. Each pose raises most the sum over the tested parameters of log(1 +
@@ -37,7 +38,7 @@ struct CheckPlan {
 /// tool.
 CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options = {});
 
-/// A measurement file with these rows, readings to be filled in.
+/// Returns a measurement file with these rows. The readings must be filled in.
 std::string check_plan_csv(const model::Machine& machine, const CheckPlan& plan, double reading_um);
 
 }  // namespace vernier::plan

@@ -9,7 +9,8 @@
 namespace vernier::plan {
 namespace {
 
-/// Of a column's squared length over all rows: directions that the rows see less than this are free.
+/// Of a column's squared length over all rows: directions that the rows show less than this are
+/// free.
 constexpr double kRidge = 1e-10;
 
 }  // namespace

@@ -26,7 +26,7 @@ model::States offered_poses(const model::Machine& machine, std::size_t count, st
                              "a plan needs min and max of every axis");
     for (std::size_t i = 0; i < count; ++i) {
       double share = maths::radical_inverse(from + i + 1, kPrimes[axis % std::size(kPrimes)]);
-      // A third of the poses lie at the ends of an axis, drawn by another sequence.
+      // A third of the poses are at the ends of an axis, taken from another sequence.
       const double end = maths::radical_inverse(from + i + 1, kPrimes[(axis + 4) % std::size(kPrimes)]);
       if (end < 1.0 / 6) share = 0;
       if (end > 5.0 / 6) share = 1;

@@ -8,12 +8,14 @@
 
 namespace vernier::plan {
 
-/// Poses that a plan may choose from, spread over the working ranges of the machine (Halton's sequence, from
-/// its member `from` on). A third of them are at the ends of an axis, where errors are largest; inputs at
-/// their reference, either approach direction. Throws InputError for an axis without a range. tool.
+/// Returns poses from which a plan may choose, distributed over the working ranges of the machine
+/// (Halton's sequence, from its member `from` on). A third of them are at the ends of an axis,
+/// where errors are largest. Inputs are at their reference. Both approach directions occur. Throws
+/// InputError for an axis without a range. tool.
 model::States offered_poses(const model::Machine& machine, std::size_t count, std::size_t from);
 
-/// The chosen ones as a way: always to the nearest that is left, in shares of the axes' ranges.
+/// Returns the chosen poses as a path: always to the nearest remaining pose, in shares of the
+/// axes' ranges.
 std::vector<std::size_t> nearest_way(const model::Machine& machine, const model::States& offered,
                                      const std::vector<std::size_t>& chosen);
 

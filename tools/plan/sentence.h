@@ -18,7 +18,8 @@ class Explanation {
   std::string sentence() const;
 
  private:
-  /// A state that was changed: the planned rows at its farthest level, and the same rows with it as it was.
+  /// A changed state: the planned rows at its farthest level, and the same rows with the state
+  /// unchanged.
   struct Contrast {
     std::string where;     // "at T_bed 15 and 35 degC (so far 20 to 25)"
     std::string farthest;  // "35 degC"
@@ -26,7 +27,7 @@ class Explanation {
     bool usable = false;
   };
   struct Answer {
-    double a = 1, b = 1;  // size of the effect, planned over as it was
+    double a = 1, b = 1;  // size of the effect, planned divided by unchanged
   };
   std::vector<Contrast> contrasts() const;
   Contrast speed() const;

@@ -19,20 +19,21 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Fewer do not show their scatter.
+/// With fewer samples their scatter is not known.
 constexpr std::size_t kLeastSamples = 5;
-/// More are joined with their neighbours: nothing is lost and the resampling stays quick.
+/// More samples are joined with their neighbours. No information is lost and the resampling stays
+/// fast.
 constexpr std::size_t kMostSamples = 400;
-/// Blocks of rows of a side that is not paired: long, so that what one of them holds depends little on the
-/// next one (a path repeats its error from row to row).
+/// Blocks of rows of a side without pairs. They are long, so that successive blocks are nearly
+/// independent (a path repeats its error from row to row).
 constexpr std::size_t kBlocks = 20;
-/// More feeds than these are no feeds that somebody set.
+/// More feeds than these were not set by a user.
 constexpr std::size_t kMostFeeds = 12;
 constexpr double kTail = 0.025;  // on either side of 95 %
 
 double rounded(double value, double step) { return std::round(value / step) * step; }
 
-/// To so many significant digits.
+/// Rounds to this number of significant digits.
 double digits(double value, int count) {
   if (value == 0) return 0;
   const double step = std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1 - count);
@@ -47,8 +48,9 @@ model::Measurement as_commanded(const model::Measurement& m) {
   return result;
 }
 
-/// What somebody set before a reading: the rows of both sides that agree in it are one pose. Positions to
-/// 1 nm (and the like of a degree), feeds to three digits: they are read back, not typed.
+/// Returns the values that a user set before a reading. Rows of both sides with the same values
+/// are one pose. Positions are rounded to 1 nm (and a similar part of a degree), feeds to three
+/// digits, because they are read back and not typed.
 std::vector<double> pose_of(const model::Measurement& m, std::size_t row) {
   const auto at = static_cast<Index>(row);
   std::vector<double> key;
@@ -86,11 +88,11 @@ struct Sums {
   }
 };
 
-/// A side with where each of its rows belongs.
+/// A side with the sample of each of its rows.
 struct Side {
   model::Measurement rows;  // as commanded
   Eigen::VectorXd error;
-  std::vector<std::size_t> sample;  // of each row; kNone: left out
+  std::vector<std::size_t> sample;  // of each row; kNone: excluded
 };
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);  // no sample
 
@@ -107,7 +109,7 @@ std::vector<char> read_rows(const Side& side) {
   return read;
 }
 
-/// Gives the rows of both sides their poses; false where they have too few in common.
+/// Assigns poses to the rows of both sides. Returns false if they have too few common poses.
 bool pair_poses(Side& before, Side& after, BeforeAfter& result) {
   struct Pose {
     std::array<std::vector<std::size_t>, 2> rows;
@@ -141,7 +143,8 @@ bool pair_poses(Side& before, Side& after, BeforeAfter& result) {
   return true;
 }
 
-/// Blocks of neighbouring rows of one run; numbers from `first` on. Returns the next number.
+/// Divides a side into blocks of neighbouring rows of one run, with numbers from `first` on.
+/// Returns the next number.
 std::size_t cut_blocks(Side& side, std::size_t first) {
   const std::vector<char> read = read_rows(side);
   const auto total = static_cast<std::size_t>(std::count(read.begin(), read.end(), char{1}));
@@ -159,7 +162,7 @@ std::size_t cut_blocks(Side& side, std::size_t first) {
   return next;
 }
 
-/// Which readings a group takes.
+/// The readings of a group.
 struct PickedRows {
   std::optional<model::ObservationKind> kind;
   std::optional<double> feed;
@@ -170,10 +173,10 @@ struct PickedRows {
   }
 };
 
-/// The sums of one group by sample, and what comes of resampling them.
+/// The sums of one group by sample, and the result of resampling them.
 class Resampler {
  public:
-  /// first_after: where the samples of the second side begin; 0 where samples hold both sides.
+  /// first_after: index of the first sample of the second side; 0 if samples contain both sides.
   Resampler(std::size_t samples, std::size_t first_after, const BeforeAfterOptions& options)
       : samples_(samples), first_after_(first_after), options_(options) {}
 
@@ -223,8 +226,8 @@ class Resampler {
   }
   bool enough() const { return std::min(filled(0), filled(1)) >= kLeastSamples; }
 
-  /// Logarithm of rms after / rms before, and its standard uncertainty: the scatter of what each sample
-  /// contributes to it in first order.
+  /// Logarithm of rms after / rms before, and its standard uncertainty: the scatter of the
+  /// first-order contributions of the samples.
   struct Ratio {
     double value = 0, std = 0;
   };
@@ -257,7 +260,7 @@ class Resampler {
   }
 
   void resample(const std::array<Sums, 2>& all, ReductionGroup& result) const {
-    std::mt19937_64 random(options_.seed);  // the same draws for every group
+    std::mt19937_64 random(options_.seed);  // the same random samples for every group
     std::vector<double> times(samples_, 1), student;
     std::array<std::array<std::vector<double>, 3>, 2> drawn;
     const Ratio whole = all[0].squares > 0 && all[1].squares > 0 ? ratio(all, times) : Ratio{};
@@ -306,7 +309,8 @@ std::set<model::ObservationKind> kinds_of(const Side& side) {
   return kinds;
 }
 
-/// Feeds that somebody set, to two digits; nothing where it is one, or where there are too many to be set.
+/// Returns the feeds that a user set, to two digits. Empty if there is one feed, or if there are
+/// too many.
 std::vector<double> feeds_of(const Side& before, const Side& after) {
   if (!before.rows.has_recorded(format::columns::kFeed) || !after.rows.has_recorded(format::columns::kFeed))
     return {};
@@ -371,7 +375,7 @@ BeforeAfter compare_before_after(const model::Machine& machine, const model::Mea
   std::size_t samples = 0, first_after = 0;
   if (pair_poses(first, second, result)) {
     samples = 1 + *std::max_element(first.sample.begin(), first.sample.end(), [](auto a, auto b) {
-                return a + 1 < b + 1;  // kNone counts as nothing
+                return a + 1 < b + 1;  // kNone is handled like 0
               });
   } else {
     first_after = cut_blocks(first, 0);

@@ -14,7 +14,7 @@ namespace vernier::residual {
 namespace {
 
 constexpr int kMostPerSide = 5;     // cells that a picture of a volume can show
-constexpr double kRowsPerCell = 6;  // wanted, so that a mean says more than a reading
+constexpr double kRowsPerCell = 6;  // minimum, so that a mean is more accurate than a reading
 
 /// Nominal tool points of all rows in the measuring frame, mm.
 Eigen::Matrix3Xd tool_points(const model::Machine& machine, const model::Measurement& m) {

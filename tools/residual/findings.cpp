@@ -15,15 +15,14 @@ namespace vernier::residual {
 namespace {
 
 constexpr std::size_t kMostFindings = 6;  // of a kind
-/// Another column that explains this part of what the chosen one does is its double.
+/// Another column that explains this part of the chosen column's effect is equivalent to it.
 constexpr double kAlike = 0.97;
-/// Functions that differ in less than this part of their squared length are one to the eye.
+/// Functions that differ in less than this part of their squared length cannot be distinguished.
 constexpr double kTellable = 1e-3;
-/// Of the variance: less is not worth a sentence, however certain.
+/// Of the variance: a smaller share is not reported, however significant.
 constexpr double kWorthSaying = 0.002;
 
-/// A term that was taken, with the functions of its own that it brought (a period is no function of the
-/// basis).
+/// A selected term, with its additional functions (a period is not a function of the basis).
 struct Taken {
   BasisTerm term;
   std::optional<Period> period;
@@ -54,8 +53,8 @@ class Search {
     return taken_;
   }
 
-  /// Functions of everything taken but `except`, the constant first; last, what the products need beside them
-  /// so that they stand for nothing but the interaction.
+  /// Functions of all selected terms except `except`, the constant first. Last are the functions
+  /// that products need, so that they represent only the interaction.
   maths::FunctionSet others(std::size_t except) const {
     maths::FunctionSet set{0}, own{0};
     for (std::size_t i = 0; i < taken_.size(); ++i) {
@@ -70,7 +69,7 @@ class Search {
     return set;
   }
   const maths::Moments& moments() const { return base_; }
-  /// Beyond the constant.
+  /// Without the constant.
   maths::Moments centred() const {
     maths::Moments moments = base_;
     maths::condition_on(moments, {0});
@@ -82,7 +81,7 @@ class Search {
  private:
   std::size_t run_of(std::size_t i) const { return context_.measurement.states.run[sample_.rows[i]]; }
 
-  /// Sum over the pairs of rows `lag` apart within a run, over the sum of squares.
+  /// Sum over the pairs of rows with distance `lag` within a run, divided by the sum of squares.
   double at_lag(const Eigen::VectorXd& f, std::size_t lag) const {
     double sum = 0;
     for (std::size_t i = 0; i + lag < sample_.rows.size(); ++i)
@@ -91,8 +90,8 @@ class Search {
     return sum / f.squaredNorm();
   }
 
-  /// Functions of the columns that change from row to row: taking them out leaves serial correlation as it
-  /// is.
+  /// Functions of the columns that change from row to row. Their removal does not change serial
+  /// correlation.
   maths::FunctionSet quick_functions() const {
     // Correlation of neighbouring rows below which a column changes from row to row.
     constexpr double kQuick = 0.3;
@@ -110,8 +109,9 @@ class Search {
     return set;
   }
 
-  /// Factor by which serial correlation widens the variance of this curve's coefficient (Bartlett):
-  /// correlation of what is left beside the curve, up to the first lag where it is within chance.
+  /// Factor by which serial correlation increases the variance of this curve's coefficient
+  /// (Bartlett). It uses the correlation of the residual beside the curve, up to the first lag at
+  /// which it is not significant.
   double inflation(const Eigen::VectorXd& curve, const maths::FunctionSet& with) const {
     if (!(curve.squaredNorm() > 0)) return 1;
     maths::FunctionSet set = with;
@@ -137,7 +137,8 @@ class Search {
     return rest;
   }
 
-  /// Judges outliers anew by what was taken, so that a strong effect on few rows is not mistaken for them.
+  /// Selects outliers again after the selected terms, so that a strong effect on few rows is not
+  /// taken for outliers.
   void refresh() {
     for (int pass = 0; pass < 2; ++pass) {
       const Eigen::VectorXd explained_part = held_ - left(with({}));
@@ -195,7 +196,8 @@ class Search {
     }
     std::sort(options.begin(), options.end(),
               [](const Option& a, const Option& b) { return a.log_p < b.log_p; });
-    constexpr std::size_t kMostTries = 8;  // beyond, serial correlation has made chance of all that stand out
+    constexpr std::size_t kMostTries =
+        8;  // beyond, serial correlation has made all significant terms insignificant
     for (std::size_t i = 0; i < std::min(kMostTries, options.size()); ++i) {
       const BasisTerm& term = *options[i].term;
       if (corrected(options[i].log_p) >= std::log(context_.least_p)) break;
@@ -218,7 +220,7 @@ class Search {
     double log_p;
   };
 
-  /// The strongest sine over an axis, where it is less likely chance than `than`.
+  /// Returns the strongest sine over an axis, if its p-value is below `than`.
   std::optional<Found> better_period(double than) const {
     std::optional<Found> best;
     const Eigen::VectorXd rest = left(with({}));
@@ -247,8 +249,8 @@ class Search {
     return {s.normalized(), c.normalized()};
   }
 
-  /// Is there a mean that lines and parabolas through the columns' own zeros leave over? An error in
-  /// proportion to X has a mean, and is no offset.
+  /// Is a mean required beside lines and parabolas through the columns' own zeros? An error that
+  /// is proportional to X has a mean, but is not an offset.
   bool constant_needed() const {
     const auto n = sample_.held.size();
     std::vector<Eigen::VectorXd> functions;
@@ -282,7 +284,7 @@ class Search {
     return corrected(maths::log_p(small, part)) < std::log(context_.least_p);
   }
 
-  /// A period becomes two functions of the basis from here on.
+  /// Adds a period as two functions to the basis.
   bool take_period(const Found& found) {
     const auto [s, c] = sine_functions(found.column, found.period.length);
     const Eigen::Index first = matrix_.cols();
@@ -303,7 +305,7 @@ class Search {
     return true;
   }
 
-  /// Drops, weakest first, what the others have made superfluous.
+  /// Removes terms that the others have made superfluous, weakest first.
   void prune() {
     for (bool again = true; again;) {
       again = false;
@@ -313,7 +315,7 @@ class Search {
         if (taken_[i].term.shape == Shape::kConstant) continue;
         const maths::Explained part = maths::explained(moments(), others(i), taken_[i].term.subject);
         double p = corrected(maths::log_p(moments(), part));
-        // Too little to be worth a sentence goes before what may be chance.
+        // A term too small to report is removed before a term that may be chance.
         if (part.sum < kWorthSaying * base_.sum) p = 1 - part.sum / base_.sum;
         if (p <= most) continue;
         most = p;
@@ -327,11 +329,11 @@ class Search {
 
   const KindSample& sample_;
   const FindingContext& context_;
-  maths::Moments base_;     // with the periods that were taken
-  maths::Moments now_;      // beyond what has been taken
+  maths::Moments base_;     // with the selected periods
+  maths::Moments now_;      // beyond the selected terms
   Eigen::MatrixXd matrix_;  // as base_
   Eigen::VectorXd plain_;   // weighted residual
-  Eigen::VectorXd held_;    // with outliers held
+  Eigen::VectorXd held_;    // with limited outliers
   maths::FunctionSet quick_;
   std::vector<Taken> taken_;
 };
@@ -341,7 +343,7 @@ double adjusted_share(double sum, double rank, double whole, double freedom) {
   return std::clamp(1 - (1 - sum / whole) * freedom / (freedom - rank), 0.0, 1.0);
 }
 
-/// Fills a finding from what was taken: curve, range, runs, sentence.
+/// Fills a finding from the selected term: curve, range, runs, sentence.
 class Describer {
  public:
   Describer(const KindSample& sample, const FindingContext& context, const Search& search,
@@ -414,7 +416,7 @@ class Describer {
     return context_.columns[term.column].value[static_cast<Eigen::Index>(sample_.rows[i])];
   }
 
-  /// How the curve runs over its column.
+  /// Describes the curve over its column.
   void along(const BasisTerm& term, const Eigen::VectorXd& curve, SentenceFacts& facts) const {
     std::vector<std::pair<double, double>> points;
     for (std::size_t i = 0; i < sample_.rows.size(); ++i)
@@ -442,8 +444,8 @@ class Describer {
     return !term.second && (product.column == term.column || product.second == term.column);
   }
 
-  /// Does the curve, as fitted over all runs, hold within each? A run has a say where its own rows would show
-  /// it.
+  /// Is the curve, as fitted over all runs, correct within each run? A run counts if its own rows
+  /// would show the curve.
   void by_run(std::size_t at, Finding& f, SentenceFacts& facts) const {
     if (f.shape == Shape::kJumps || f.shape == Shape::kConstant || f.column == format::columns::kRun ||
         f.second_column == format::columns::kRun)
@@ -471,7 +473,7 @@ class Describer {
       if (s.n < 5) continue;
       const double cc = s.cc - s.c * s.c / s.w, cy = s.cy - s.c * s.y / s.w;
       const double spread = std::sqrt(std::max(variance, s.rr / s.n) / std::max(cc, 1e-300));
-      constexpr double kShown = 0.3;  // of the whole effect: beyond, the run's rows cannot show it
+      constexpr double kShown = 0.3;  // of the whole effect: below, the run's rows cannot show it
       if (cc <= 0 || spread > kShown) continue;
       ++f.runs;
       const double slope = cy / cc;
@@ -483,7 +485,7 @@ class Describer {
     f.in_all_runs = f.runs > 1 && f.runs == f.runs_agreeing;
   }
 
-  /// Columns of which one term would have done as well.
+  /// Finds columns of which one term would fit as well.
   void alike(std::size_t at, Finding& f) const {
     const Taken& one = taken_[at];
     const maths::FunctionSet others = search_.others(at);
@@ -509,7 +511,7 @@ class Describer {
   double scale_ = 1;
 };
 
-/// Neighbours in time that agree although every finding is taken out.
+/// Adds a finding if neighbours in time are correlated after all findings are removed.
 void add_wandering(const KindSample& sample, const FindingContext& context, const Search& search,
                    const std::vector<Taken>& taken, std::vector<Finding>& findings) {
   const maths::FunctionSet all = search.others(taken.size());
@@ -530,7 +532,7 @@ void add_wandering(const KindSample& sample, const FindingContext& context, cons
   f.shape = Shape::kWanders;
   f.p_value = p;
   const double scale = model::is_rotation(sample.kind) ? maths::kUradPerDeg : maths::kUmPerMm;
-  // The part that a row shares with the next one.
+  // The part that a row has in common with the next one.
   f.share_alone = f.share_after =
       std::clamp(best.correlation * rest.squaredNorm() / search.centred().sum, 0.0, 1.0);
   f.rms_um = scale * std::sqrt(best.correlation * rest.cwiseQuotient(sample.weight).squaredNorm() /

@@ -6,19 +6,20 @@
 
 namespace vernier::residual {
 
-/// What is fixed for all kinds of a search for findings.
+/// Settings that are the same for all kinds in a search for findings.
 struct FindingContext {
   const model::Measurement& measurement;
   const std::vector<RecordedColumn>& columns;
-  std::size_t tried = 1;  // terms and frequencies, all kinds: the factor of every p-value
-  double least_p = 0.01;  // corrected; a finding must stay below
+  std::size_t tried = 1;  // terms and frequencies of all kinds: the factor of every p-value
+  double least_p = 0.01;  // corrected; a finding must be below it
 };
 
-/// Terms and frequencies that a search over this sample tries. tool.
+/// Returns the number of terms and frequencies that a search over this sample tries. tool.
 std::size_t count_tried(const KindSample& sample, const std::vector<RecordedColumn>& columns);
 
-/// Takes the most significant term, then the most significant one beside it, and so on; drops those that the
-/// others make superfluous. Sentences are filled in. Shares of every column go to `shares`. tool.
+/// Selects the most significant term, then the most significant one beside it, and so on. Removes
+/// terms that the others make superfluous. Sentences are filled in. Shares of every column are
+/// added to `shares`. tool.
 std::vector<Finding> find_structure(const KindSample& sample, const FindingContext& context,
                                     std::vector<ColumnShare>& shares);
 

@@ -11,7 +11,7 @@
 namespace vernier::residual {
 namespace {
 
-/// Tests of one sort share its part of the chance of a false alarm.
+/// Tests of one sort share a part of the probability of a false alarm.
 struct Sort {
   double part = 0;
   std::vector<std::pair<double, std::string>> log_p;
@@ -44,7 +44,7 @@ class Tester {
     if (samples_.size() > 1) sort.add(maths::log_p_together(all, parts), "means");
   }
 
-  /// Every term of one column (products: of two), each kind apart and all together.
+  /// Tests every term of one column (products: of two), each kind separately and all together.
   void terms(Sort& sort, bool products) const {
     using Key = std::tuple<std::size_t, std::size_t, Shape, int>;
     std::map<Key, std::pair<std::vector<const maths::Moments*>, std::vector<maths::Explained>>> together;
@@ -69,7 +69,7 @@ class Tester {
       }
   }
 
-  /// All columns together, as far as the rows carry so many coefficients.
+  /// Tests all columns together, if there are enough rows for the coefficients.
   void joint(Sort& sort) const {
     for (const bool axes_only : {true, false})
       for (const int order : {1, 2, 3, 8}) {
@@ -156,8 +156,8 @@ class Tester {
 
   const std::vector<KindSample>& samples_;
   const std::vector<RecordedColumn>& columns_;
-  /// Beyond the mean. A fit's Jacobian crosses kinds, so tests of several kinds together leave it aside (on
-  /// the safe side), those of one kind use it.
+  /// Without the mean. A fit's Jacobian couples the kinds. Tests of several kinds together ignore
+  /// it (conservative), those of one kind use it.
   std::vector<maths::Moments> centred_, projected_;
 };
 

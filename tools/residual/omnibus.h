@@ -11,15 +11,15 @@ struct Repeats;
 
 struct Omnibus {
   double p = 1;
-  std::string by;         // the test that says most
-  std::size_t tried = 0;  // tests
+  std::string by;         // the test with the smallest p-value
+  std::size_t tried = 0;  // number of tests
 };
 
-/// One p-value for "this residual has some structure": the least of many tests, each with its share of the
-/// chance of a false alarm (weighted Bonferroni), so that it stays valid however the tests depend on one
-/// another. Tests of each kind apart and of all kinds together: constant; every column as a line, parabola,
-/// curve; all columns together; products of pairs; sines over the axes; neighbours in order and in place;
-/// repeats against lack of fit. tool.
+/// One p-value for "this residual has some structure". It is the smallest of many tests, each with
+/// its share of the probability of a false alarm (weighted Bonferroni). It is valid for any
+/// dependence between the tests. Tests of each kind separately and of all kinds together:
+/// constant; every column as a line, parabola, curve; all columns together; products of pairs;
+/// sines over the axes; neighbours in order and in position; repeats against lack of fit. tool.
 Omnibus omnibus_test(const std::vector<KindSample>& samples, const std::vector<RecordedColumn>& columns,
                      const model::Measurement& measurement, const Repeats& repeats);
 

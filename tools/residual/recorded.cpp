@@ -15,11 +15,11 @@ namespace {
 namespace columns = format::columns;
 using format::AxisQuantity;
 
-// Of a polynomial: eight bends in a range are a curve, more are a wave and looked for as one.
+// Of a polynomial: eight bends in a range are a curve. More are tested as a period.
 constexpr int kMostDegree = 8;
-constexpr std::size_t kMostRuns = 40;           // more are seen through `visit` and `t` only
-constexpr std::size_t kMostRunsOfProducts = 8;  // a product for each run of more would outnumber the readings
-constexpr double kHalfTurn = 180;               // deg: an axis that travels it gets harmonics
+constexpr std::size_t kMostRuns = 40;           // more runs are tested only through `visit` and `t`
+constexpr std::size_t kMostRunsOfProducts = 8;  // more runs would need more products than there are readings
+constexpr double kHalfTurn = 180;               // deg: an axis with this travel has harmonics
 
 class Recorder {
  public:
@@ -70,8 +70,8 @@ bool is_recorded(const RecordedColumn& column, const std::vector<std::size_t>& r
   });
 }
 
-/// Values of a column on some rows, scaled to -1..1; 0 where not recorded. By rank where they crowd at one
-/// end. At least one of the rows has a value.
+/// Returns values of a column on some rows, scaled to -1..1; 0 if not recorded. By rank if most
+/// values are near one end. At least one of the rows must have a value.
 Eigen::VectorXd scaled(const RecordedColumn& column, const std::vector<std::size_t>& rows, bool may_rank) {
   std::vector<double> known;
   for (const std::size_t row : rows) {
@@ -118,8 +118,8 @@ class Builder {
 
   void add_column(std::size_t at) {
     const RecordedColumn& column = columns_[at];
-    // One of several files may lack the column: readings of a kind that only that file has know nothing of
-    // it.
+    // One of several files may lack the column. Readings of a kind that only that file has do not
+    // contain it.
     if (!is_recorded(column, rows_)) return;
     if (column.kind == ColumnKind::kRun) return add_runs(at);
     if (column.kind == ColumnKind::kDirection) return add_direction(at);
@@ -161,7 +161,7 @@ class Builder {
     return static_cast<Eigen::Index>(functions_.size()) - 1;
   }
 
-  /// line: the values themselves; u: what the curves run over.
+  /// line: the values themselves; u: argument of the curves.
   void add_curves(std::size_t at, const Eigen::VectorXd& line, const Eigen::VectorXd& u) {
     const auto levels = static_cast<int>(std::min<std::size_t>(level_count(columns_[at], rows_), 64));
     const int degree = std::min(kMostDegree, levels - 1);
@@ -250,7 +250,7 @@ class Builder {
   std::vector<BasisTerm> terms_;
 };
 
-/// Which pairs are worth trying first: positions with one another, then with direction and inputs.
+/// Order in which pairs are tested: positions with one another, then with direction and inputs.
 int pair_rank(const RecordedColumn& a, const RecordedColumn& b) {
   const auto rank = [](const RecordedColumn& c) {
     switch (c.kind) {

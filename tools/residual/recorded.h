@@ -21,7 +21,7 @@ enum class ColumnKind : std::uint8_t {
   kNormal,
 };
 
-/// A quantity that was recorded with every row, as the tests see it.
+/// A quantity that was recorded with every row, in the form for the tests.
 struct RecordedColumn {
   std::string name, unit;
   ColumnKind kind = ColumnKind::kAxis;
@@ -29,34 +29,35 @@ struct RecordedColumn {
   model::Column value;  // of every row; NaN where not recorded
 };
 
-/// The columns that vary over the rows `rows`: axes, recorded motion, t, visit, run, inputs, candidate
-/// inputs, normal. tool.
+/// Returns the columns that vary over the rows `rows`: axes, recorded motion, t, visit, run,
+/// inputs, candidate inputs, normal. tool.
 std::vector<RecordedColumn> recorded_columns(const model::Machine& machine,
                                              const model::Measurement& measurement,
                                              const std::vector<std::size_t>& rows);
 
-/// Columns of a Basis that belong together: what one statement about the residual has as coefficients.
+/// Columns of a Basis that belong together: the coefficients of one statement about the residual.
 struct BasisTerm {
   Shape shape = Shape::kLinear;
   std::size_t column = 0;             // index into the recorded columns; kNone for the constant
   std::optional<std::size_t> second;  // of a product
   int order = 1;                      // of a curve: its degree
   std::vector<Eigen::Index> subject;  // columns of the matrix
-  std::vector<Eigen::Index> adjust;   // that have their chance first: a product's own two columns
+  std::vector<Eigen::Index> adjust;   // that are fitted first: a product's own two columns
 };
 inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);  // none of them
 
-/// Smooth functions of the recorded columns on some rows: the constant first, then for each column Legendre
-/// polynomials (directions: odd and even part; runs: one indicator less than there are runs; turning axes:
-/// the first two harmonics too), then products of pairs. Every column has length 1.
+/// Smooth functions of the recorded columns on some rows. The constant is first. Then each column
+/// has Legendre polynomials (directions: odd and even part; runs: one indicator less than there
+/// are runs; rotary axes: the first two harmonics too). Products of pairs follow. Every column has
+/// length 1.
 struct Basis {
   Eigen::MatrixXd matrix;        // rows x functions
-  std::vector<BasisTerm> terms;  // what is tried, in a fixed order
+  std::vector<BasisTerm> terms;  // the tested terms, in a fixed order
 };
 
-/// At most kMostPairs pairs of columns get products. tool.
+/// At most kMostPairs pairs of columns have products. tool.
 Basis make_basis(const std::vector<RecordedColumn>& columns, const std::vector<std::size_t>& rows);
-// 22 columns in pairs; more pairs than readings prove anything.
+// 22 columns in pairs. More pairs than readings are not significant.
 inline constexpr std::size_t kMostPairs = 250;
 
 }  // namespace vernier::residual

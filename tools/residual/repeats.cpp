@@ -18,7 +18,7 @@ struct PoseGroup {
   double weight = 0, mean = 0, squares = 0, plain_mean = 0, plain_squares = 0;
   std::size_t count = 0;
 
-  /// Running means keep the digits. value: weighted residual; w: 1/u.
+  /// Running means lose fewer digits. value: weighted residual; w: 1/u.
   void add(double value, double w, double plain) {
     ++count;
     const double before = value / w - mean, share = w * w / (weight + w * w);
@@ -97,7 +97,7 @@ std::optional<double> neighbour_error_um(const std::vector<KindSample>& samples,
     if (model::is_rotation(sample.kind)) continue;
     auto found = pairs_of.find(sample.rows);
     if (found == pairs_of.end()) found = pairs_of.emplace(sample.rows, neighbour_pairs(sample, place)).first;
-    // The closer half: the rest of a greedy pairing is far apart.
+    // The closer half: the other pairs of a greedy pairing are far apart.
     const std::size_t half = found->second.size() / 2;
     for (std::size_t i = 0; i < half; ++i) {
       const auto& [a, b] = found->second[i];

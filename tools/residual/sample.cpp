@@ -14,16 +14,16 @@
 namespace vernier::residual {
 namespace {
 
-// Robust spreads: what is beyond the first is held there, beyond the second
-// told.
+// Robust standard deviations: values beyond the first are limited to it, values beyond the second
+// are reported.
 constexpr double kHeld = 4, kOutlier = 5;
 constexpr double kMostOutliers = 0.1;  // share of the readings
-constexpr std::size_t kLeastRows = 8;  // a spread of fewer is known to no better than a quarter
+constexpr std::size_t kLeastRows = 8;  // the uncertainty of a standard deviation from fewer exceeds a quarter
 /// Directions of a Jacobian below this share of the largest were not determined by the fit.
 constexpr double kRankCutoff = 1e-5;
 
-/// Orthonormal directions that the fit has used up, one row per observation; empty without a Jacobian. scale:
-/// of each observation, 0 where it is not tested.
+/// Returns the orthonormal directions that the fit used, one row per observation; empty without a
+/// Jacobian. scale: of each observation, 0 if it is not tested.
 Eigen::MatrixXd fitted_directions(const std::vector<double>& scale, const StructureOptions& options) {
   if (options.jacobian == nullptr || options.jacobian->cols() == 0) return {};
   Eigen::MatrixXd j = *options.jacobian;
@@ -67,7 +67,7 @@ void set_moments(KindSample& sample, const Prepared& prepared) {
   sample.moments.freedom = static_cast<double>(sample.rows.size());
 }
 
-/// Fills `projected`. spread: of each kind's weighted residual.
+/// Fills `projected`. spread: standard deviation of each kind's weighted residual.
 void project(std::vector<KindSample>& samples, const std::vector<std::vector<std::size_t>>& observations,
              const std::vector<double>& spread, const Eigen::MatrixXd& directions) {
   std::vector<Eigen::MatrixXd> own;
@@ -111,7 +111,7 @@ struct SineSums {
     c1 += wc * w, s1 += ws * w, n1 += w * w;
     cr += wc * r, sr += ws * r, r1 += w * r;
   }
-  /// Explained sum of squares beyond the constant; factor of sine and cosine.
+  /// Returns the explained sum of squares beyond the constant, and the factors of sine and cosine.
   double explained(Eigen::Vector2d* factor) const {
     const double a = ss - s1 * s1 / n1, b = cs - s1 * c1 / n1, c = cc - c1 * c1 / n1;
     const double p = sr - s1 * r1 / n1, q = cr - c1 * r1 / n1, det = a * c - b * b;
@@ -126,11 +126,11 @@ struct SineSums {
 
 std::size_t hold_outliers(Eigen::VectorXd& values) {
   const double spread = maths::robust_spread({values.begin(), values.end()});
-  // More than half of the readings exactly met: no spread to judge by.
+  // More than half of the residuals are exactly zero: there is no scale.
   if (!(spread > 0)) return 0;
   std::size_t outliers = 0;
   for (const double value : values) outliers += std::abs(value) > kOutlier * spread ? 1U : 0U;
-  // So many are no accidents but what the residual looks like: large on some rows, small on most.
+  // So many are not outliers but a property of the residual: large on some rows, small on most.
   if (static_cast<double>(outliers) > kMostOutliers * static_cast<double>(values.size())) return 0;
   for (double& value : values) value = std::clamp(value, -kHeld * spread, kHeld * spread);
   return outliers;
@@ -164,7 +164,7 @@ KindSample make_sample(const model::Measurement& m, const Eigen::VectorXd& resid
   return sample;
 }
 
-/// Observations of the fit rows that are tested, kind by kind.
+/// Returns the tested observations of the fit rows, by kind.
 std::vector<std::vector<std::size_t>> tested_observations(const model::Measurement& m) {
   std::array<std::vector<std::size_t>, format::kReadingKindCount> of_kind;
   for (std::size_t i = 0; i < m.observations.size(); ++i)
@@ -196,7 +196,8 @@ std::vector<KindSample> kind_samples(const model::Measurement& m, const Eigen::V
     observations.push_back(which);
     list.push_back(std::move(sample));
   }
-  // Which of the parameters a kind paid for is not known: its share by number.
+  // The number of parameters that each kind determines is unknown. Its share of the readings is
+  // used.
   const double left = 1 - static_cast<double>(options.fitted_parameters) / std::max(1.0, readings);
   std::vector<double> scale(m.observations.size(), 0), spread;
   for (std::size_t k = 0; k < list.size(); ++k) {
@@ -216,7 +217,7 @@ std::optional<Period> strongest_period(const KindSample& sample, const RecordedC
                                        const Eigen::VectorXd& residual) {
   constexpr double kOversampling =
       4;  // steps per cycle over the range: a peak loses at most 5 % between them
-  constexpr double kMostCycles = 100;  // over the range: shorter waves ask for more positions than are read
+  constexpr double kMostCycles = 100;  // over the range: shorter periods need more positions than are read
   const std::size_t values = value_count(sample, column), n = sample.rows.size();
   if (values < 12) return std::nullopt;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -224,7 +225,8 @@ std::optional<Period> strongest_period(const KindSample& sample, const RecordedC
     low = std::min(low, column.value[static_cast<Eigen::Index>(row)]);
     high = std::max(high, column.value[static_cast<Eigen::Index>(row)]);
   }
-  // Regular positions alias beyond half their number; scattered ones carry as many periods as rows allow.
+  // Regular positions have aliases beyond half their number. Scattered positions allow as many
+  // periods as there are rows.
   const double most =
       std::min({kMostCycles, static_cast<double>(values - 1) / 2, static_cast<double>(n) / 6});
   const auto steps = static_cast<std::size_t>(kOversampling * most);
@@ -284,7 +286,8 @@ PairTest serial_pairs(const KindSample& sample, const model::Measurement& m, con
 
 std::vector<std::pair<std::size_t, std::size_t>> neighbour_pairs(
     const KindSample& sample, const std::vector<const RecordedColumn*>& columns) {
-  // Rows whose neighbours are looked for (each with each), and neighbours of each.
+  // Number of rows whose neighbours are searched (each with each), and number of neighbours of
+  // each.
   constexpr std::size_t kMostPaired = 3000, kNearest = 5;
   const std::size_t n = std::min(sample.rows.size(), kMostPaired);
   Eigen::MatrixXf place(static_cast<Eigen::Index>(columns.size()), static_cast<Eigen::Index>(n));

@@ -16,31 +16,33 @@ namespace vernier::residual {
 /// A record longer than this is tested on every n-th of its rows.
 inline constexpr std::size_t kMostTestedRows = 8000;
 
-/// The residual of one kind of observation over the fit rows, ready to be tested.
+/// The residual of one kind of observation over the fit rows, prepared for the tests.
 struct KindSample {
   model::ObservationKind kind = model::ObservationKind::kX;
   std::vector<std::size_t> rows;  // in the order of the file
   Eigen::VectorXd residual;       // mm or deg
   Eigen::VectorXd weight;         // 1/u, 1 where absent
-  Eigen::VectorXd held;           // weighted residual, held at 4 robust spreads: what the tests look at
-  std::size_t outliers = 0;       // beyond 5 robust spreads
+  Eigen::VectorXd held;      // weighted residual, limited to 4 robust standard deviations: input of the tests
+  std::size_t outliers = 0;  // beyond 5 robust standard deviations
   std::shared_ptr<const Basis>
       basis;               // its matrix with weighted rows, columns of length 1; shared between kinds
-  maths::Moments moments;  // of this kind alone, as the residual stands
-  /// After projection on the complement of the fit's Jacobian, which crosses kinds: sum and freedom are of
-  /// all kinds together, each in units of its own spread. Without a Jacobian the same as `moments`.
+  maths::Moments moments;  // of this kind alone, without a projection
+  /// After projection on the complement of the fit's Jacobian, which couples the kinds. Sum and
+  /// freedom are of all kinds together, each in units of its own standard deviation. Without a
+  /// Jacobian the same as `moments`.
   maths::Moments projected;
 
   const char* name() const { return format::name_of(kind); }
-  /// What `held` keeps once the joint fit of these functions is taken out.
+  /// Returns `held` minus the joint fit of these functions.
   Eigen::VectorXd without(const maths::FunctionSet& functions) const;
 };
 
-/// Holds values at 4 robust spreads and counts those beyond 5; where more than a tenth are, they are no
-/// outliers: nothing is held, 0. tool.
+/// Limits values to 4 robust standard deviations and counts those beyond 5. If these are more than
+/// a tenth, they are not outliers: no value is limited and 0 is returned. tool.
 std::size_t hold_outliers(Eigen::VectorXd& values);
 
-/// One sample for each kind with at least 8 fit rows and a residual that is not zero throughout. tool.
+/// Returns one sample for each kind with at least 8 fit rows and a residual that is not zero
+/// throughout. tool.
 std::vector<KindSample> kind_samples(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                      const std::vector<RecordedColumn>& columns,
                                      const StructureOptions& options);
@@ -49,12 +51,13 @@ std::vector<KindSample> kind_samples(const model::Measurement& measurement, cons
 struct Period {
   double length = 0;  // in the column's unit
   maths::Explained part;
-  std::size_t tried = 0;                             // frequencies
+  std::size_t tried = 0;                             // number of tested frequencies
   Eigen::Vector2d factor = Eigen::Vector2d::Zero();  // of sine and cosine, weighted residual per 1
 };
 
-/// Scans sines of the column from one period over its range to the finest that its values allow; nothing for
-/// a column with few values. residual: weighted, one per row of the sample. tool.
+/// Scans sines of the column from one period over its range to the shortest that its values allow.
+/// Returns nullopt for a column with few values. residual: weighted, one per row of the sample.
+/// tool.
 std::optional<Period> strongest_period(const KindSample& sample, const RecordedColumn& column,
                                        const Eigen::VectorXd& residual);
 
@@ -63,11 +66,12 @@ struct PairTest {
   double correlation = 0, pairs = 0, log_p = 0;
 };
 
-/// Neighbours in the order of the rows within a run, beginning with the first (phase 0) or second (1) row.
+/// Neighbours in the order of the rows within a run. Pairs begin with the first (phase 0) or
+/// second (1) row.
 PairTest serial_pairs(const KindSample& sample, const model::Measurement& measurement,
                       const Eigen::VectorXd& residual, std::size_t phase);
 
-/// Disjoint pairs of rows that lie close to one another in `columns` (each scaled to its range), closest
+/// Returns disjoint pairs of neighbouring rows in `columns` (each scaled to its range), closest
 /// first. At most 3000 rows are paired. tool.
 std::vector<std::pair<std::size_t, std::size_t>> neighbour_pairs(
     const KindSample& sample, const std::vector<const RecordedColumn*>& columns);

@@ -26,7 +26,7 @@ std::string with_unit(double value, const std::string& unit) {
   return fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
-/// "3.1 um per 100 mm": over a round part of the range, so that the number can be read.
+/// Returns "3.1 um per 100 mm": over a round part of the range, so that the number is readable.
 std::string slope(const Finding& f, const SentenceFacts& facts) {
   const double range = facts.high - facts.low;
   const double per = std::pow(10, std::floor(std::log10(range)));
@@ -99,7 +99,7 @@ std::string runs_clause(const Finding& f, const SentenceFacts& facts) {
   if (f.in_all_runs) return ", in all runs";
   if (f.runs < 2) return "";
   std::string names;
-  constexpr std::size_t kMostNamed = 3;  // that a sentence bears
+  constexpr std::size_t kMostNamed = 3;  // in a sentence
   for (std::size_t i = 0; i < facts.disagreeing.size() && i < kMostNamed; ++i)
     names += (i > 0 ? ", " : "") + facts.disagreeing[i];
   if (facts.disagreeing.size() > kMostNamed) names += " ...";
@@ -112,7 +112,7 @@ std::string sentence_of(const Finding& f, const SentenceFacts& facts) {
   std::string text = statement(f, facts) + runs_clause(f, facts);
   if (f.alike.empty()) return text;
   std::string names;
-  constexpr std::size_t kMostNamed = 4;  // that a sentence bears
+  constexpr std::size_t kMostNamed = 4;  // in a sentence
   for (std::size_t i = 0; i < f.alike.size() && i < kMostNamed; ++i)
     names += (i > 0 ? ", " : "") + f.alike[i];
   return text + "; " + names +

@@ -7,7 +7,7 @@
 
 namespace vernier::residual {
 
-/// What the sentence of a finding needs beside the finding itself.
+/// Data that the sentence of a finding needs in addition to the finding.
 struct SentenceFacts {
   std::string unit, second_unit;         // of the columns
   double low = 0, high = 0;              // range of the column
@@ -15,10 +15,10 @@ struct SentenceFacts {
   double highest_at = 0, lowest_at = 0;  // where the curve is highest and lowest
   bool monotone = false, time = false;
   std::string highest_run, lowest_run;
-  std::vector<std::string> disagreeing;  // runs that could show it and do not
+  std::vector<std::string> disagreeing;  // runs in which the effect would be visible, but is not
 };
 
-/// One sentence in plain English. tool.
+/// Returns one sentence in plain English. tool.
 std::string sentence_of(const Finding& finding, const SentenceFacts& facts);
 
 }  // namespace vernier::residual

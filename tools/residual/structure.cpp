@@ -33,7 +33,8 @@ std::optional<double> chi_tail(const model::Measurement& m, const Eigen::VectorX
   return maths::chi_square_tail(weights.cwiseProduct(residual).squaredNorm(), freedom);
 }
 
-/// Strongest first: by the readings' variance that each removes, in units of what is left of its own kind's.
+/// Sorts findings, strongest first: by the variance that each removes, in units of the residual
+/// variance of its own kind.
 void sort_by_strength(std::vector<Finding>& findings, const std::vector<KindSample>& samples) {
   const auto strength = [&](const Finding& f) {
     for (const KindSample& sample : samples)

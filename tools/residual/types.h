@@ -12,7 +12,7 @@
 
 namespace vernier::residual {
 
-/// How a residual depends on a recorded column.
+/// Form of the dependence of a residual on a recorded column.
 enum class Shape : std::uint8_t {
   kConstant,  // the same everywhere
   kLinear,
@@ -22,12 +22,12 @@ enum class Shape : std::uint8_t {
   kReverses,  // odd in a direction column
   kJumps,     // a value of its own in each run
   kProduct,   // of two columns
-  kWanders,   // neighbours in the order of the rows agree, and no column says why
+  kWanders,   // neighbours in the order of the rows are correlated, and no column explains it
 };
 inline constexpr std::array<const char*, 9> kShapeNames = {
     "constant", "linear", "square", "curve", "periodic", "reverses", "jumps", "product", "wanders"};
 
-/// Something that the residual of one kind of observation does, beyond chance.
+/// A significant pattern in the residual of one kind of observation.
 struct Finding {
   std::string observation;            // name of the kind of reading
   std::string column, second_column;  // second: of a product; both empty for a constant
@@ -35,28 +35,29 @@ struct Finding {
   double share_alone = 0;  // of the variance of this kind's residual over fit rows, 0..1, adjusted for
                            // the number of coefficients
   double share_after = 0;  // the same, beyond all other findings of this kind
-  double p_value = 1;      // times the number of things tried; with serial correlation accounted for
-  double rms_um = 0;       // of what it explains; urad for rotations
+  double p_value = 1;      // times the number of tests; corrected for serial correlation
+  double rms_um = 0;       // of the explained part; urad for rotations
   double low_um = 0, high_um = 0;           // least and largest value of the explained curve
   std::optional<double> period;             // in the column's unit
-  std::size_t runs = 0, runs_agreeing = 0;  // runs that could show it; that do
+  std::size_t runs = 0, runs_agreeing = 0;  // runs in which the effect would be visible; runs in which it is
   bool in_all_runs = false;
-  std::vector<std::string> alike;  // other columns that would explain as much: they move along with this one
-  std::string sentence;            // plain English, without a full stop
+  std::vector<std::string>
+      alike;             // other columns that explain as much, because they are correlated with this one
+  std::string sentence;  // plain English, without a full stop
 };
 
-/// What one column explains of one kind's residual, found or not.
+/// Share of one kind's residual that one column explains, found or not.
 struct ColumnShare {
   std::string observation, column;
   double share_alone = 0, share_after = 0;  // after: beyond the findings that do not name this column
-  double p_value = 1;                       // alone, corrected for the number tried
+  double p_value = 1;                       // alone, corrected for the number of tests
 };
 
 /// Mean residual vector of the fit rows in a part of the volume, at their mean tool point in the measuring
 /// frame.
 struct FailureCell {
   Eigen::Vector3d point_mm = Eigen::Vector3d::Zero(), mean_um = Eigen::Vector3d::Zero();
-  double noise_um = 0;  // what chance alone leaves of the mean's length (rms)
+  double noise_um = 0;  // expected length of the mean by chance alone (rms)
   std::size_t count = 0;
 };
 
@@ -64,23 +65,27 @@ struct FailureCell {
 struct FailurePicture {
   std::vector<Finding> findings;    // strongest first
   std::vector<ColumnShare> shares;  // every kind x column that varies
-  /// Chance that a residual without any structure (independent normal errors) looks as structured as this
-  /// one: one number for all columns, pairs, periods, repeats and neighbourhoods that were tried.
+  /// Probability that a residual without any structure (independent normal errors) looks as
+  /// structured as this one. It is one number for all columns, pairs, periods, repeats and
+  /// neighbourhoods that were tested.
   double omnibus_p = 1;
-  std::string omnibus_by;                // the test that says most
-  std::optional<double> chi_p;           // chi^2 against u; nothing where u is not given for every fit row
-  std::optional<double> pure_error_um;   // from rows at equal conditions; lengths only
-  std::optional<double> lack_of_fit_um;  // rms of what repeats leave unexplained by noise; 0 where none
+  std::string omnibus_by;               // the test with the smallest p-value
+  std::optional<double> chi_p;          // chi^2 against u; nullopt if u is not given for every fit row
+  std::optional<double> pure_error_um;  // from rows at equal conditions; lengths only
+  std::optional<double>
+      lack_of_fit_um;  // rms that noise by the repeats does not explain; 0 if it explains all
   std::optional<double> lack_of_fit_p;
   std::size_t repeat_freedom = 0;
   std::optional<double> neighbour_error_um;  // without repeats: from the nearest pairs; an upper bound
   std::vector<FailureCell> cells;
-  std::size_t tried = 0, outliers = 0;  // outliers: beyond 5 robust spreads, held at 4 in the tests
+  std::size_t tried = 0,
+              outliers = 0;  // outliers: beyond 5 robust standard deviations, limited to 4 in the tests
 };
 
 struct StructureOptions {
-  std::size_t fitted_parameters = 0;  // rank of the fit that left this residual
-  /// Of that fit, by observation; makes the tests sharper where many parameters were fitted. May be null.
+  std::size_t fitted_parameters = 0;  // rank of the fit of this residual
+  /// Jacobian of that fit, by observation. It makes the tests more sensitive if many parameters
+  /// were fitted. May be null.
   const model::SparseRows* jacobian = nullptr;
 };
 

@@ -10,25 +10,26 @@
 
 namespace vernier::tolerance {
 
-/// One cause of deviations, by the name that the catalogue of effects has for it: `squareness of Y in X`.
-/// Statics and table columns that are the same effect of the same axis at the same place are one.
+/// One cause of deviations, by its name in the catalogue of effects: `squareness of Y in X`.
+/// Statics and table columns that are the same effect of the same axis at the same location are
+/// one source.
 struct MachineSource {
   std::string name;
-  std::string effect;                   // id of the catalogue; "custom": a term that it does not hold
-  std::vector<std::size_t> parameters;  // indices into the set that it was made with
+  std::string effect;                   // id of the catalogue; "custom": a term that it does not contain
+  std::vector<std::size_t> parameters;  // indices into the parameter set of its construction
   std::vector<std::size_t> statics;
   std::vector<std::pair<std::size_t, std::size_t>> columns;  // of tables: table, column
   std::vector<std::size_t> scales;                           // axes with a scale factor
 };
 
-/// The free or non-nominal errors of a machine. A static gets the name of its term: the forms of the
-/// catalogue are searched in order for its quantities, its functions and the degree of freedom on which it
-/// acts. tool.
+/// Returns the free or non-nominal errors of a machine. A static gets the name of its term. The
+/// forms of the catalogue are searched in order for its quantities, its functions and the degree
+/// of freedom on which it acts. tool.
 std::vector<MachineSource> machine_sources(const model::Machine& machine,
                                            const model::ParameterSet& parameters,
                                            const std::vector<effects::Effect>& catalogue);
 
-/// The machine with this source at nominal. tool.
+/// Returns the machine with this source at nominal. tool.
 model::Machine without_source(const model::Machine& machine, const MachineSource& source);
 
 }  // namespace vernier::tolerance

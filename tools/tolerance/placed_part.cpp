@@ -25,7 +25,7 @@ struct SurfaceSample {
   Vector3d point, direction;
 };
 
-/// Two unit vectors across `axis`, the first one as near to X (else Y) as can be.
+/// Returns two unit vectors across `axis`. The first is as near to X (else Y) as possible.
 std::array<Vector3d, 2> across(const Vector3d& axis) {
   const Vector3d like = std::abs(axis.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
   const Vector3d first = (like - like.dot(axis) * axis).normalized();
@@ -108,7 +108,7 @@ class PointSolver {
   std::vector<std::size_t> linear_;
 };
 
-/// Where axes have ranges their middle is the safest place to begin a search.
+/// If axes have ranges, their centre is the safest start of a search.
 model::States start_of(const model::Machine& machine, const model::States& at) {
   model::States start = at;
   for (std::size_t a = 0; a < machine.axes.size(); ++a)
@@ -118,8 +118,8 @@ model::States start_of(const model::Machine& machine, const model::States& at) {
   return start;
 }
 
-/// Directions of the axes as points follow one another. An axis without motion keeps its last direction; it
-/// begins with + (from below).
+/// Sets directions of the axes in the order of the points. An axis without motion keeps its last
+/// direction. The first direction is + (from below).
 void set_senses(const model::Machine& machine, std::size_t first, std::size_t count, model::States& states) {
   constexpr double kStill = 1e-6;  // mm or deg
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {

@@ -19,10 +19,10 @@ namespace {
 
 using Eigen::Index;
 
-/// Points that are looked at for each stretch of a path, but no more than so many on all; on a circle.
+/// Evaluated points per stretch of a path, and their largest total; number of points on a circle.
 constexpr std::size_t kOnStretch = 12, kMostOfPath = 400, kOnWhole = 24;
 
-/// Moves that make one feature.
+/// Moves that form one feature.
 struct ProgramCut {
   std::size_t first_line = 0, last_line = 0;
   bool circle = false;
@@ -49,7 +49,7 @@ class CutCollector {
     cut.stretches.push_back(stretch.states);
   }
 
-  /// All stretches of a cut in one, points evenly along the way.
+  /// Returns all stretches of a cut together, with points evenly along the path.
   model::States points_of(const ProgramCut& cut, const model::Machine& nominal) const {
     std::vector<std::pair<const model::States*, std::size_t>> all;
     std::vector<double> way;
@@ -63,7 +63,7 @@ class CutCollector {
         last = point;
       }
     }
-    // A circle's last point is its first one again.
+    // The last point of a circle is its first point.
     const std::size_t count =
         cut.circle ? kOnWhole
                    : std::min(kMostOfPath, std::max<std::size_t>(2, kOnStretch * cut.stretches.size()));
@@ -104,7 +104,8 @@ Eigen::Matrix3Xd tangents_of(const Eigen::Matrix3Xd& points) {
   return tangents;
 }
 
-/// Centre, axis and diameter of a circle from points all round it: the least-squares one (Kasa 1976).
+/// Computes centre, axis and diameter of a circle from points all around it: the least-squares
+/// circle (Kasa 1976).
 void make_circle(const Eigen::Matrix3Xd& points, PartFeature& feature, Eigen::Matrix3Xd& direction) {
   const Eigen::Vector3d middle = points.rowwise().mean();
   Eigen::Matrix3Xd from = points.colwise() - middle;
