@@ -38,13 +38,13 @@ function machinesTable(status, due) {
 /** What one quantity does over the fleet, in a sentence each. */
 function driftWords(drift) {
   const name = `${drift.quantity}: `;
-  if (!drift.judged) return [`${name}too little to tell (${drift.machines} machines, ${drift.times} times)`];
+  if (!drift.judged) return [`${name}too few data (${drift.machines} machines, ${drift.times} times)`];
   const words = drift.own.map(
     (one) => `${name}${one.machine} drifts by itself, ${number(one.per_day, 3)} ± ${number(one.std, 2)} ${drift.unit} a day`,
   );
   if (drift.common)
     words.unshift(
-      `${name}${drift.machines - drift.own.length} machines move alike, by ${number(drift.common_swing, 3)} ${drift.unit}: look for what they share`,
+      `${name}${drift.machines - drift.own.length} machines change alike, by ${number(drift.common_swing, 3)} ${drift.unit}: look for a common cause`,
     );
   return words.length ? words : [`${name}nothing drifts (${drift.machines} machines, ${drift.times} times)`];
 }

@@ -7,7 +7,7 @@ import { on, store } from './store.js';
 
 const kFrom = {
   data: ['measured', 'the readings determine it'],
-  convention: ['by convention', 'the readings leave a combination open in which it takes part: as near to nominal as it can be'],
+  convention: ['not determined', 'part of a combination that the readings do not determine: set to the value nearest nominal'],
   prior: ['not measured', 'nominal, give or take what is plausible'],
 };
 const kShown = 500;
@@ -40,7 +40,7 @@ export function parameterPanel() {
     body.replaceChildren(...list.slice(0, kShown).map(row));
     const count = (from) => list.filter((one) => one.from === from).length;
     words.textContent =
-      `${list.length} free: ${count('data')} measured, ${count('convention')} settled by convention, ${count('prior')} not measured, ` +
+      `${list.length} free: ${count('data')} measured, ${count('convention')} not determined (nearest nominal), ${count('prior')} not measured, ` +
       `${count(null)} not fitted in this file.${list.length > kShown ? ` The first ${kShown} are shown.` : ''}`;
   });
   const head = ['parameter', 'value', '± std. uncertainty', 'unit', 'nominal', 'rests on'];
