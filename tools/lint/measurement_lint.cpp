@@ -14,7 +14,9 @@
 #include "tools/format/units.h"
 #include "tools/lint/lint_table.h"
 #include "tools/lint/measurement_meaning.h"
+#include "tools/model/machine.h"
 #include "tools/model/measurement.h"
+#include "tools/model/prediction.h"
 #include "tools/sheet/encoding.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet.h"
@@ -358,8 +360,11 @@ class Look {
   void confirm() {
     if (machine_ == nullptr || findings_.any(LintWeight::kError)) return;
     try {
-      model::parse_measurement(bytes_, file_, *machine_,
-                               [](model::Measurement&, const model::Machine&, const std::string&) {});
+      const model::Measurement rows = model::parse_measurement(
+          bytes_, file_, *machine_, [](model::Measurement&, const model::Machine&, const std::string&) {});
+      // What a fit begins with: the chain has a value at every row, as the file has it and at nominal.
+      model::predict(*machine_, rows);
+      model::predict(model::nominal_machine(*machine_), rows);
     } catch (const text::InputError& problem) {
       const std::string message = problem.what();
       findings_.error(

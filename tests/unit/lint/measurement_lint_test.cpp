@@ -152,6 +152,20 @@ TEST(MeasurementLintOf, AGoodFileSaysNothingThatIsWrong) {
     EXPECT_EQ(finding.weight, LintWeight::kRemark) << in_one_line(finding);
 }
 
+TEST(MeasurementLintOf, ARowWhereTheChainHasNoValueIsAnError) {
+  // GIVEN a term that is divided by a position, and a row at 0
+  const Machine pole = parse_machine(
+      R"xml(<machine><variables><static><k value="0" nominal="0" unit="mm"/></static>
+      <machineaxes><X min="0" max="100"/></machineaxes></variables>
+      <transforms><sixdof X="X+k/X"/></transforms></machine>)xml",
+      "m.xml");
+  const auto findings = lint_measurement("X[mm],x[mm]\n10,10\n0,0\n20,20\n", "s.csv", &pole);
+  std::string all;
+  for (const LintFinding& finding : findings)
+    if (finding.weight == LintWeight::kError) all += in_one_line(finding);
+  EXPECT_NE(all.find("finite"), std::string::npos) << all;
+}
+
 TEST(MeasurementLintOf, WhatItCallsUsableAFitReads) {
   // A file with no error must be read; one that the reader refuses must have one.
   for (const Case& one : kCases) {
