@@ -34,7 +34,7 @@ struct PartValues {
   Eigen::MatrixXd map;  // rows x 3 N: of deviations of the tool point, workpiece coordinates, mm
 };
 
-/// Throws InputError if the frame absorbs all rows that could determine a position.
+/// Throws InputError if the frame absorbs all rows that could determine a position. tool.
 PartValues part_values(const PlacedPart& part, PartFrame frame, const std::string& file);
 
 }  // namespace vernier::tolerance
