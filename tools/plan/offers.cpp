@@ -22,8 +22,8 @@ constexpr std::array<double, 3> kLater = {0.5, 1, 3};
 constexpr std::array<double, 3> kSpeeds = {0.5, 1, 2};
 constexpr std::array<double, 3> kSince = {0.002, 0.02, 0.2};
 
-/// Points of the unit interval, one sequence per dimension, evenly spread together: fractions of multiples of
-/// square roots of primes (Kronecker; Niederreiter 1992, ch. 3).
+/// Points of the unit interval, one sequence per dimension, evenly distributed together: fractions
+/// of multiples of square roots of primes (Kronecker; Niederreiter 1992, ch. 3).
 class Spread {
  public:
   explicit Spread(std::size_t index) : index_(static_cast<double>(index + 1)) {}
@@ -57,7 +57,7 @@ bool moves(const model::States& states, std::size_t row) {
   return false;
 }
 
-/// Draws the offered rows one by one into the columns.
+/// Writes the offered rows one by one into the columns.
 class Offerer {
  public:
   Offerer(const model::Machine& machine, const model::Measurement& existing, const Drivers& drivers,
@@ -154,7 +154,7 @@ class Offerer {
       model::begin_run(rows.states, row, kPlanRun);
       rows.states.visit[static_cast<Eigen::Index>(row)] = 0;
     }
-    // Where a tool will point is not known before it stands there.
+    // The direction of the tool is not known before the machine is at the pose.
     if (rows.direction.cols() > 0)
       rows.direction.rightCols(static_cast<Eigen::Index>(count_)).setConstant(std::nan(""));
     fixed_pose_.assign(rows.rows(), 0);
@@ -163,7 +163,7 @@ class Offerer {
         fixed_pose_[o.row] = 1;
   }
 
-  /// The offered rows are commanded where the templates were, and nothing is added to them.
+  /// The offered rows are at the commanded positions of the templates, without a correction.
   void plan_without_correction(model::Measurement& rows) const {
     const auto from = static_cast<Eigen::Index>(result_.existing), count = static_cast<Eigen::Index>(count_);
     for (std::size_t a = 0; a < rows.correction.size(); ++a) {
@@ -177,15 +177,16 @@ class Offerer {
     const std::size_t row = result_.existing + offer;
     const auto at = static_cast<Eigen::Index>(row);
     Spread spread(offer);
-    spread.next();  // has chosen the template
+    spread.next();  // has selected the template
     draw_motion(at, spread);
-    // Half of the poses are recorded ones: what an arm or an instrument reaches is not all of the ranges.
+    // Half of the poses are recorded ones: an arm or an instrument does not reach all of the
+    // ranges.
     const bool recorded_pose = spread.next() < 0.5;
     for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
       const double place = spread.next();
       if (fixed_pose_[row] != 0) continue;
       double& q = result_.rows.states.axis[a][at];
-      q = std::clamp(q, low_[a], high_[a]);  // room for an approach from either side
+      q = std::clamp(q, low_[a], high_[a]);  // space for an approach from either side
       if (recorded_pose) continue;
       const double inside = std::clamp((place - 0.3) / 0.4, 0.0, 1.0);
       q = low_[a] + inside * (high_[a] - low_[a]);
@@ -197,8 +198,8 @@ class Offerer {
       result_.rows.candidates[i].value[at] = spread.pick(candidate_levels_[i]);
   }
 
-  /// The template's motion, at another speed and in either sense: the same path, so that accelerations go
-  /// with the square.
+  /// The template's motion, at another speed and in either direction. The path is the same, so
+  /// accelerations are proportional to the square of the speed.
   void draw_motion(Eigen::Index at, Spread& spread) {
     model::States& s = result_.rows.states;
     const double speed = spread.pick(speeds_), sense = spread.next() < 0.5 ? -1 : 1;

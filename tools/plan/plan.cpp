@@ -20,12 +20,12 @@ namespace {
 
 /// The distance that a diagnosis requires from an alternative before it gives a name with confidence.
 constexpr double kLead = 6;
-/// One reading must not decide.
+/// One reading alone must not decide.
 constexpr std::size_t kLeastPoints = 4;
-/// So many points may always be spent on the other effects that explain the rows.
+/// This number of points is always allowed for the other effects that explain the rows.
 constexpr std::size_t kModerate = 16;
 constexpr std::size_t kMostExisting = 1500;
-/// Time for a part to take on a new temperature before it is measured again, s.
+/// Time for a part to reach a new temperature before it is measured again, s.
 constexpr double kSoakS = 3600;
 
 /// Sides of the two named effects, before those of the bystanders.
@@ -68,7 +68,7 @@ class Planner {
     plan_.b_true.needed = sides.needed[1];
     note(sides, &Separation::now);
     plan_.lead_of_a = lead_of_a();
-    // Told by what the rows could show, or by what they do show.
+    // Distinguished by what the rows could show, or by what they show.
     plan_.told_already = sides.reached(kPair) >= 1 || std::abs(plan_.lead_of_a) > plan_.worse().needed;
     if (!plan_.told_already || options_.points) choose(offers);
     if (plan_.rows.rows() > 0 && plan_.separable)
@@ -113,7 +113,8 @@ class Planner {
     return std::max(least, 1e-9);  // exact readings: a picometre
   }
 
-  /// By how much B explains the rows so far worse than A: chi^2 and the price of the unknowns (BIC).
+  /// Returns the difference by which B explains the present rows worse than A: chi^2 and the
+  /// penalty of the unknowns (BIC).
   double lead_of_a() const {
     const double price = std::log(static_cast<double>(existing_.observations.size()));
     const auto cost = [&](const FittedRival& rival) {
@@ -129,7 +130,7 @@ class Planner {
     return {rival.machine, setups};
   }
 
-  /// A bystander with an input that the rows lack here and there is left aside.
+  /// Excludes an alternative with an input that some rows lack.
   void keep_complete_bystanders() {
     std::erase_if(bystanders_, [&](const FittedRival& other) {
       return bound_to(existing_, other).rows() != existing_.rows();
@@ -150,14 +151,14 @@ class Planner {
             weights.asDiagonal() * Eigen::MatrixXd(all.jacobian)};
   }
 
-  /// Rows [0, existing) count, the others are offers. A true and B refitted, B true and A refitted, then each
-  /// of them true and a bystander refitted.
+  /// Rows [0, existing) are measured, the others are offers. Sides: A true and B refitted, B true
+  /// and A refitted, then each of them true and another alternative refitted.
   Sides sides_of(const model::Measurement& rows, std::size_t existing) const {
     const std::vector<Eigen::Index> first = first_observations(rows);
     Sides sides;
     const auto add = [&](const Linear& truth, const Linear& rival) {
       sides.side.emplace_back(rival.jacobian, truth.predicted - rival.predicted, first, existing);
-      // A truth with more unknowns pays for them in a diagnosis.
+      // A true effect with more unknowns has a larger penalty in a diagnosis.
       const double more = static_cast<double>(truth.rival->candidate.unknowns.size()) -
                           static_cast<double>(rival.rival->candidate.unknowns.size());
       const double price = std::log(static_cast<double>(first[existing_.rows()]));
@@ -194,7 +195,8 @@ class Planner {
     while (drop_unreached()) choose_at_most(offers, bystanders_.empty() ? most : moderate);
   }
 
-  /// Takes the bystanders out that the plan does not rule out. False: there are none.
+  /// Excludes the other alternatives that the plan does not rule out. Returns false if there are
+  /// none.
   bool drop_unreached() {
     const Sides real = sides_of(append_rows(existing_, plan_.rows), existing_.rows() + plan_.rows.rows());
     std::vector<FittedRival> kept;
@@ -217,7 +219,7 @@ class Planner {
     const std::size_t least = options_.points.value_or(kLeastPoints);
     std::vector<std::size_t> chosen;
     double goal = 1;
-    constexpr int kRounds = 4;  // of what the real order costs, at most
+    constexpr int kRounds = 4;  // of the loss by the real order, at most
     for (int round = 0; round < kRounds; ++round) {
       choose_rows(sides, chosen, least, most, goal);
       exchange_rows(sides, chosen);
@@ -231,7 +233,8 @@ class Planner {
     }
   }
 
-  /// Grouped by time, then by inputs (a temperature is set once), then by speed and place; one run.
+  /// Grouped by time, then by inputs (a temperature is set once), then by speed and position; one
+  /// run.
   model::Measurement carried_out(const Offers& offers, const std::vector<std::size_t>& chosen) const {
     std::vector<std::size_t> order;
     for (const std::size_t offer : chosen) order.push_back(offers.existing + offer);
@@ -263,7 +266,7 @@ class Planner {
     return rows;
   }
 
-  /// Time from one row to the next as it was recorded.
+  /// Recorded time from one row to the next.
   double pace() const {
     const model::Column& t = existing_.states.time;
     return (t.maxCoeff() - t.minCoeff()) / std::max(1.0, static_cast<double>(existing_.rows()) - 1);

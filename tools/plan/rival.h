@@ -39,7 +39,7 @@ FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidenc
 double value_of(const diagnose::Scored& scored, const diagnose::Evidence& evidence);
 
 /// Splits the argument of `--separate`. It is divided at a comma only if an id of an effect
-/// follows. Throws InputError if there are not two parts.
+/// follows. Throws InputError if there are not two parts. tool.
 std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
                                       const std::vector<effects::Effect>& effects);
 

@@ -106,7 +106,7 @@ Explanation::Contrast Explanation::speed() const {
 Explanation::Contrast Explanation::sense(std::size_t axis) const {
   Contrast c;
   const model::Column& old = existing_.states.direction[axis];
-  constexpr double kOneSided = 0.9;  // mean of the senses from which on rows were taken in one sense
+  constexpr double kOneSided = 0.9;  // mean of the directions above which the rows have one direction
   const double usual = old.mean();
   if (std::abs(usual) < kOneSided) return c;
   std::vector<std::size_t> which;
@@ -208,7 +208,8 @@ std::string Explanation::sentence() const {
     if (!contrast.usable) continue;
     const Answer answers = answer(contrast);
     const double score = std::abs(answers.a - answers.b) / (1 + std::abs(answers.a) + std::abs(answers.b));
-    constexpr double kWorthSaying = 0.05;  // of what both say: less no reading shows
+    constexpr double kWorthSaying =
+        0.05;  // of the sum of both: a smaller difference is invisible in the readings
     if (score < std::max(best + 1e-6, kWorthSaying)) continue;
     best = score;
     where = contrast.where;

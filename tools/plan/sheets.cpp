@@ -16,7 +16,8 @@
 namespace vernier::plan {
 namespace {
 
-/// A feed for approaches where none is recorded, mm/min, and the share of the range that an approach takes.
+/// Feed for approaches if none is recorded, mm/min, and the length of an approach as a share of
+/// the range.
 constexpr double kApproachFeed = 1000, kApproachShare = 0.05;
 
 struct SheetColumn {
@@ -24,7 +25,7 @@ struct SheetColumn {
   std::function<std::string(std::size_t)> cell;
 };
 
-/// Six significant digits: far finer than any axis is set or read.
+/// Six significant digits: finer than the resolution of any axis.
 std::string cell_text(double value) { return text::number_text(std::stod(fmt::format("{:.9g}", value))); }
 
 bool any_nonzero(const model::Column& column) { return (column != 0).any(); }
@@ -137,7 +138,7 @@ class MoveWriter {
     const double feed = s.feed[at] > 0 ? s.feed[at] : speed > 0 ? 60 * speed : kApproachFeed;
     out_ += fmt::format("G1{} F{}\n", words(from), cell_text(std::max(feed, kApproachFeed)));
     if (speed > 0 && turned(from, to, at)) {
-      // The axes that stand still come from their own side first.
+      // The axes that do not move are first approached from their own side.
       std::vector<double> ready = to;
       for (std::size_t a = 0; a < to.size(); ++a)
         if (s.velocity[a][at] != 0) ready[a] = from[a];
@@ -169,7 +170,7 @@ class MoveWriter {
     return since < model::kLongWay ? since : kApproachShare * span(a);
   }
 
-  /// Way before and behind a point that is passed: the least that any moving axis is given.
+  /// Path before and behind a point that is passed: the shortest run-up of all moving axes.
   double run_up(Eigen::Index at) const {
     double way = 1e300;
     for (std::size_t a = 0; a < machine_.axes.size(); ++a)
@@ -251,7 +252,8 @@ std::string plan_gcode(const Plan& plan) {
     if (row > 0) step = t - time;
     before = now;
     time = t;
-    // A bar between tool and centre bears its short stroke only, not the straight way to the next point.
+    // A bar between tool and centre allows only its short stroke, not the straight path to the
+    // next point.
     if (tethered) text += "M0 ; take the bar off before this move, put it on again at its end\n";
     writer.write(row);
   }

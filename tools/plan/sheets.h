@@ -15,7 +15,7 @@ std::string plan_csv(const Plan& plan);
 /// mm/min; axes have the names of the machine file. Approaches end within the declared ranges. tool.
 std::string plan_gcode(const Plan& plan);
 
-/// Returns poses as G-code in the same way, with a stop at each. `remark` is the first line.
+/// Returns poses as G-code in the same way, with a stop at each. `remark` is the first line. tool.
 std::string poses_gcode(const model::Machine& machine, const model::States& states,
                         const std::string& remark);
 

@@ -16,7 +16,7 @@ using Wave = std::complex<double>;
 
 constexpr double kMostPeriods = 1000;  // as a diagnosis looks for (FinePeriodThresholds::most_periods)
 constexpr std::size_t kPerRange = 2;   // frequencies evaluated for each that the range can distinguish
-constexpr std::size_t kFrequencies = static_cast<std::size_t>(kMostPeriods) * kPerRange;  // looked at in all
+constexpr std::size_t kFrequencies = static_cast<std::size_t>(kMostPeriods) * kPerRange;  // evaluated in all
 
 /// sum over the positions of exp(2 pi i f q) at f = k / (kPerRange * span), k = 0 ...
 std::vector<Wave> window(const std::vector<double>& positions, double low, double span) {
@@ -36,14 +36,14 @@ std::vector<Wave> window(const std::vector<double>& positions, double low, doubl
 
 std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
                                      std::size_t count) {
-  constexpr int kDraws = 60;                     // of positions, of which the best stand
+  constexpr int kDraws = 60;                     // of sets of positions, of which the best is used
   constexpr std::size_t kFirst = 3 * kPerRange;  // below, waves differ by less than three over the range
   const double span = high - low;
   std::vector<double> distinct = taken;
   std::sort(distinct.begin(), distinct.end());
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   const std::vector<Wave> there = window(distinct, low, span);
-  // To a ten-thousandth of the range or so, so that they can be read and typed.
+  // Rounded to about a ten-thousandth of the range, so that a person can read and type them.
   const double digit = std::pow(10, std::floor(std::log10(span / 5000)));
   std::mt19937_64 random(1);
   std::vector<double> best;
@@ -51,7 +51,7 @@ std::vector<double> uneven_positions(double low, double high, const std::vector<
   for (int draw = 0; draw < kDraws; ++draw) {
     std::vector<double> positions(count);
     for (std::size_t i = 0; i < count; ++i) {
-      // One in each stretch, anywhere in it.
+      // One position in each section, anywhere in it.
       const double share = (static_cast<double>(i) + static_cast<double>(random() >> 11) * 0x1p-53) /
                            static_cast<double>(count);
       positions[i] = std::round((low + share * span) / digit) * digit;
