@@ -8,9 +8,9 @@
 
 namespace vernier::text {
 
-/// The value, where it is finite. Every comparison that leads to a verdict reads its numbers through here.
-/// what: name of the number, for the message. Throws std::logic_error for NaN and infinity (exit status 70:
-/// no verdict is better than a wrong one). tool.
+/// Returns the value if it is finite. Every comparison that leads to a verdict reads its numbers
+/// with this function. what: name of the number, for the message. Throws std::logic_error for NaN
+/// and infinity (exit status 70: no verdict is better than a wrong one). tool.
 double decisive(double value, std::string_view what);
 
 /// The assurance of a result; the names are those of tools/docs/assurances.md.
@@ -29,8 +29,8 @@ enum class AssuranceKind : std::uint8_t {
 };
 const char* assurance_name(AssuranceKind kind);
 
-/// One rule that was looked at. `value` and `limit` are finite; a question of yes or no counts what is wrong
-/// (limit 0).
+/// One rule that was tested. `value` and `limit` are finite. A yes-or-no rule counts the
+/// violations (limit 0).
 struct AssuranceRule {
   std::string rule;  // short name with hyphens
   double value = 0, limit = 0;
@@ -38,24 +38,24 @@ struct AssuranceRule {
   bool ok = true;
 };
 
-/// A result's word of assurance: it holds where every rule that was looked at is met. With no rule it does
-/// not hold. tool.
+/// Assurance of a result. It holds if every tested rule is met. Without a rule it does not hold.
+/// tool.
 class Assurance {
  public:
   explicit Assurance(AssuranceKind kind) : kind_(kind) {}
 
-  /// The rule is met where value <= limit. Throws std::logic_error where either is not finite.
+  /// The rule is met if value <= limit. Throws std::logic_error if either is not finite.
   void at_most(std::string rule, double value, double limit, std::string text);
-  /// The rule is met where value >= limit. Throws as `at_most`.
+  /// The rule is met if value >= limit. Throws as `at_most`.
   void at_least(std::string rule, double value, double limit, std::string text);
-  /// The rule is met where `ok` is true: value is 0 where it is, else 1; the limit is 0.
+  /// The rule is met if `ok` is true: value is 0, else 1; the limit is 0.
   void require(std::string rule, bool ok, std::string text);
-  /// Something that the result does not cover, as a sentence.
+  /// Adds a sentence about something that the result does not cover.
   void not_covered(std::string text);
 
   AssuranceKind kind() const { return kind_; }
   bool holds() const;
-  /// The rules that are not met; where all are, all of them.
+  /// Returns the rules that are not met; if all are met, all of them.
   std::vector<AssuranceRule> because() const;
   const std::vector<std::string>& uncovered() const { return uncovered_; }
 

@@ -8,15 +8,17 @@
 namespace vernier::text {
 
 struct FieldRules {
-  char separator = ',';        // a blank: blanks and tabs, several count once
-  bool quotes_inside = false;  // a quote within a field that does not begin with one is a letter (5")
+  char separator = ',';  // a blank: blanks and tabs, several count as one
+  bool quotes_inside =
+      false;  // a quote inside a field without a quote at its start is a normal character (5")
 };
 
-/// The fields of one line, without blanks around them. A field may be in double quotes, in which a doubled
-/// quote is one quote. Throws InputError. tool.
+/// Returns the fields of one line, without surrounding blanks. A field may be in double quotes. A
+/// doubled quote in it is one quote. Throws InputError. tool.
 std::vector<std::string> fields_of(const std::string& line, const FieldRules& rules, const Place& place);
 
-/// A field as it is written: in quotes where it holds what a reader might take for more than a letter. tool.
+/// Returns a field as it is written. It is quoted if it contains characters that a reader could
+/// interpret. tool.
 std::string csv_cell(const std::string& text);
 
 }  // namespace vernier::text

@@ -8,22 +8,22 @@
 
 namespace vernier::text {
 
-/// A finite decimal number that fills the whole of `text` ("1", "-2.5e-3", "+4"); nothing for anything else
-/// (empty, blanks, hex, inf, nan) and for what is so large that its square is none (beyond 1e150).
-/// Independent of the locale.
+/// Parses a finite decimal number that is the whole of `text` ("1", "-2.5e-3", "+4"). Returns
+/// nullopt for anything else (empty, blanks, hex, inf, nan) and for a number so large that its
+/// square is infinite (beyond 1e150). Independent of the locale.
 std::optional<double> parse_number(std::string_view text);
 
-/// A count ("0", "12") that fills the whole of `text`; nothing for anything else and for what is too large
-/// for one.
+/// Parses a count ("0", "12") that is the whole of `text`. Returns nullopt for anything else and
+/// for a number that is too large.
 std::optional<std::size_t> parse_count(std::string_view text);
 
-/// Is this a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII)?
+/// Is this a name of the formats: letters, digits and _, starting with a letter or _ (ASCII)?
 bool is_name(std::string_view text);
 
-/// Sixteen hexadecimal digits, as fingerprints of images are shown.
+/// Returns sixteen hexadecimal digits, the text of an image's fingerprint.
 std::string fingerprint_text(std::uint64_t fingerprint);
 
-/// The shortest decimal that reads back to the same double.
+/// Returns the shortest decimal that reads back to the same double.
 std::string number_text(double value);
 
 }  // namespace vernier::text

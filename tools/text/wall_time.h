@@ -14,8 +14,8 @@ inline constexpr double kUsADay = 86'400e6;
 
 /// "2026-11-23T13:05:53Z" of a time in us since 1970.
 std::string utc_text(std::int64_t time_us);
-/// ... and back, in us; "2026-11-23" is midnight, the Z may be missing. Nothing where it is none, or where
-/// the calendar has no such day (2026-02-30).
+/// The inverse, in us. "2026-11-23" is midnight, the Z may be absent. Returns nullopt for another
+/// text, or if the calendar has no such day (2026-02-30).
 std::optional<std::int64_t> parse_utc(const std::string& text);
 
 }  // namespace vernier::text

@@ -6,24 +6,25 @@
 
 namespace vernier::text {
 
-/// The text without blanks, tabs and ends of line around it. tool.
+/// Returns the text without blanks, tabs and line ends around it. tool.
 std::string trimmed(std::string_view text);
 
-/// A to Z as a to z; all else stays. tool.
+/// Converts A to Z to a to z. Other characters do not change. tool.
 std::string in_small_letters(std::string_view text);
 
-/// The words between any of the separators; several in a row count once. tool.
+/// Returns the words between any of the separators. Several in succession count once. tool.
 std::vector<std::string> words_in(std::string_view text, std::string_view separators);
 
-/// The parts between single separators, without blanks around them; parts may be empty. tool.
+/// Returns the parts between single separators, without surrounding blanks. Parts may be empty.
+/// tool.
 std::vector<std::string> parts_of(std::string_view text, char separator);
 
-/// "a,b": the words with a separator between them. tool.
+/// Returns "a,b": the words with a separator between them. tool.
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
 
-/// Do the brackets of a JSON text nest deeper than `most`? What is in strings does not count. For any text; a
-/// parser is asked only afterwards, so that nothing from outside makes it, or who walks its tree, run out of
-/// stack.
+/// Is the nesting of brackets in a JSON text deeper than `most`? Brackets in strings do not count.
+/// Works for any text. It is called before the parser, so that no input exhausts the stack of the
+/// parser or of functions that walk its tree.
 bool nests_deeper_than(std::string_view json, std::size_t most);
 constexpr std::size_t kMostJsonDepth = 64;
 

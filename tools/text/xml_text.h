@@ -15,18 +15,18 @@ struct AttributeSpan {
   std::size_t value_size = 0;
 };
 
-/// The attributes of the start tag whose element name begins at `offset`. The text must be well-formed there
-/// (a parser has accepted it). tool.
+/// Returns the attributes of the start tag whose element name begins at `offset`. The text must be
+/// well-formed there (a parser has accepted it). tool.
 std::vector<AttributeSpan> attribute_spans(std::string_view text, std::size_t offset);
 
-/// Offset just behind the last attribute (or the name) of that start tag: where another attribute can be
-/// written.
+/// Returns the offset just behind the last attribute (or the name) of that start tag. Another
+/// attribute can be written there.
 std::size_t end_of_attributes(std::string_view text, std::size_t offset);
 
 /// 1-based line of an offset.
 std::size_t line_of(std::string_view text, std::size_t offset);
 
-/// Same letters, whatever their case (ASCII).
+/// Are the letters the same, ignoring case (ASCII)?
 bool equal_no_case(std::string_view a, std::string_view b);
 
 /// One replacement in a text: `size` characters at `at` become `text`.
@@ -34,10 +34,11 @@ struct TextEdit {
   std::size_t at = 0, size = 0;
   std::string text;
 };
-/// Applies edits that do not overlap, given in any order (those at one place in the order given).
+/// Applies edits that do not overlap, given in any order (those at one position in the given
+/// order).
 std::string apply_edits(const std::string& text, std::vector<TextEdit> edits);
 
-/// A number or text as it may stand between double quotes in an attribute.
+/// Returns a number or text in the form for an attribute between double quotes.
 std::string escape_attribute(std::string_view value);
 
 }  // namespace vernier::text
