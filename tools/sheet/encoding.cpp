@@ -34,7 +34,7 @@ void append(std::string& text, char32_t letter) {
   put(0x80 | (letter & 0x3F));
 }
 
-/// Length of the UTF-8 letter that begins at `at`; 0: none does.
+/// Returns the length of the UTF-8 letter at `at`; 0: no letter begins there.
 std::size_t utf8_length(std::string_view bytes, std::size_t at) {
   const std::uint8_t first = byte(bytes, at);
   const std::size_t size = first < 0x80   ? 1
@@ -110,7 +110,7 @@ Encoding encoding_of(std::string_view bytes) {
   if (bytes.starts_with("\xEF\xBB\xBF")) return Encoding::kUtf8Bom;
   if (bytes.starts_with("\xFF\xFE")) return Encoding::kUtf16Le;
   if (bytes.starts_with("\xFE\xFF")) return Encoding::kUtf16Be;
-  // Digits and separators of a table are ASCII: every other byte of UTF-16 is then zero.
+  // Digits and separators of a table are ASCII, so every other byte of UTF-16 is zero.
   std::array<std::size_t, 2> zeros{};
   const std::size_t looked = std::min<std::size_t>(bytes.size(), 4096);
   for (std::size_t i = 0; i < looked; ++i) zeros[i % 2] += bytes[i] == '\0' ? 1 : 0;

@@ -5,17 +5,17 @@
 
 namespace vernier::sheet {
 
-/// How the bytes of a file are letters.
+/// Encoding of the letters in the bytes of a file.
 enum class Encoding { kUtf8, kUtf8Bom, kUtf16Le, kUtf16Be, kWindows1252 };
 
-/// "UTF-8", "UTF-16 (little endian)" and so on.
+/// Returns "UTF-8", "UTF-16 (little endian)" and so on.
 const char* encoding_name(Encoding encoding);
 
-/// By byte order mark; without one UTF-16 by the zero bytes beside ASCII, UTF-8 where all of it is that, else
-/// the code page that Western spreadsheets write.
+/// Detects the encoding by the byte order mark. Without a mark, zero bytes beside ASCII mean
+/// UTF-16, valid UTF-8 means UTF-8, and anything else is the code page of Western spreadsheets.
 Encoding encoding_of(std::string_view bytes);
 
-/// The text as UTF-8 without a mark. What is no letter becomes U+FFFD. tool.
+/// Returns the text as UTF-8 without a mark. Invalid letters become U+FFFD. tool.
 std::string utf8_of(std::string_view bytes, Encoding encoding);
 
 }  // namespace vernier::sheet

@@ -16,7 +16,8 @@
 namespace vernier::sheet {
 namespace {
 
-/// Words for units in the languages of shop floors, in small letters, after the signs are spelled out.
+/// Words for units in the languages of shop floors, in small letters, after the signs are spelled
+/// out.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 58> kUnitWords = {{
     {"millimeter", "mm"},
     {"millimetre", "mm"},
@@ -91,7 +92,7 @@ bool is_numeric(const std::string& cell, const Sheet& sheet) {
   return plain_number(cell, sheet.decimal_comma).has_value();
 }
 
-/// A row of data: as many numbers as words, and at least one. Dates are neither.
+/// Is a row data: at least as many numbers as words, and at least one number? Dates are neither.
 bool is_data(const Sheet& sheet, std::size_t row) {
   std::size_t numbers = 0, filled = 0;
   for (const std::string& cell : sheet.rows[row]) {
@@ -101,7 +102,7 @@ bool is_data(const Sheet& sheet, std::size_t row) {
   return numbers > 0 && 2 * numbers >= filled && (numbers > 1 || filled == 1 || sheet.rows[row].size() <= 2);
 }
 
-/// A row of nothing but units, at least two of them (or all of a narrow table).
+/// Is a row only units, at least two of them (or all of a narrow table)?
 bool is_units(const std::vector<std::string>& row) {
   std::size_t units = 0;
   for (const std::string& cell : row) {
@@ -133,7 +134,7 @@ bool is_second_line(const Sheet& sheet, std::size_t row) {
   std::set<std::pair<std::string, std::string>> pairs;
   bool wanting = false;
   for (std::size_t k = 0; k < lower.size(); ++k) {
-    // A letter alone is an axis: A and C are units as well.
+    // A single letter is an axis, although A and C are units as well.
     const bool alone = lower[k].empty() || (lower[k].size() > 1 && unit_meant(lower[k]).has_value());
     if (alone && spread[k].empty() && !lower[k].empty()) return false;
     if (lower[k].empty() && spread[k].empty()) continue;
@@ -165,7 +166,8 @@ std::optional<std::string> unit_meant(std::string_view word) {
   if (small.ends_with('.')) small.pop_back();
   for (const auto& [text, unit] : kUnitWords)
     if (small == text) return std::string(unit);
-  // Capital letters where none belong: MM, Sec. Not for a single one: A is no a, M no m.
+  // Unusual capital letters: MM, Sec. A single capital letter is not converted: A is not a, M is
+  // not m.
   if (bare.size() > 1)
     if (const auto unit = format::find_unit(small)) return std::string(unit->name);
   return std::nullopt;
@@ -201,7 +203,8 @@ Heading parse_heading(std::string_view cell) {
   }
   for (const std::string_view between : {" in ", " ", "/", ",", "_"}) {
     const auto at = text.rfind(between);
-    // Behind a blank or _ stands a name's own word more often than a unit: only what no name would end in.
+    // After a blank or _, a part of the name is more frequent than a unit. Only units that no name
+    // ends with are accepted.
     const std::string rest = at == std::string::npos ? "" : text::trimmed(text.substr(at + between.size()));
     const bool weak = between == " " || between == "_";
     if (rest.empty() || at == 0 || (weak && (rest.size() < 2 || text::in_small_letters(rest) == "min")))

@@ -9,34 +9,36 @@
 
 namespace vernier::sheet {
 
-/// The unit of the formats that a word means in any usual spelling: "µm", "micron", "(°C)", "Grad", "inch",
-/// "mm/Min.", "U/min"; brackets around it do not count. Nothing where it is no unit. tool.
+/// Returns the unit of the formats for a word in any usual spelling: "µm", "micron", "(°C)",
+/// "Grad", "inch", "mm/Min.", "U/min". Brackets around it are ignored. Returns nullopt if it is
+/// not a unit. tool.
 std::optional<std::string> unit_meant(std::string_view word);
 
 /// A heading: its words without the unit, and the unit in it: "X [mm]", "X(mm)", "X / mm", "Temp. in °C".
 struct Heading {
   std::string text;          // as written
   std::string name;          // without unit
-  std::string unit;          // of the formats; empty: none written
-  std::string unknown_unit;  // what stands where a unit should and is none
+  std::string unit;          // of the formats; empty: no unit
+  std::string unknown_unit;  // the word in the position of a unit that is not a unit
 };
 Heading parse_heading(std::string_view cell);
 
-/// A sheet by its parts: title lines, headings (one line or two, a line of units below), data.
+/// The parts of a sheet: title lines, headings (one line or two, a line of units below), data.
 struct SheetTable {
-  std::vector<Heading> headings;  // one a column; named "1", "2" … where the sheet has no heading
+  std::vector<Heading> headings;  // one per column; named "1", "2" … if the sheet has no heading
   bool has_headings = false;
-  std::size_t heading_row = 0;  // index into the sheet's rows, where has_headings
+  std::size_t heading_row = 0;  // index into the sheet's rows, if has_headings
   std::size_t first_data = 0;
-  std::size_t units_row = 0;             // index, 0: none
+  std::size_t units_row = 0;             // index; 0: no such row
   std::optional<std::size_t> upper_row;  // of headings in two lines the first
 };
 
-/// Finds the parts: the first row that is mostly numbers begins the data. Throws InputError where none does.
-/// tool.
+/// Finds the parts: the first row that is mostly numbers starts the data. Throws InputError if
+/// there is no such row. tool.
 SheetTable parts_of_sheet(const Sheet& sheet);
 
-/// "X ist" → "X_ist": a name of the formats from any words, umlauts and signs spelled out. tool.
+/// "X ist" → "X_ist": returns a name of the formats for any words. Umlauts and signs are spelled
+/// out. tool.
 std::string name_from_words(std::string_view words);
 
 }  // namespace vernier::sheet

@@ -18,8 +18,8 @@ struct Line {
   std::size_t number = 0;
 };
 
-/// Does a line begin with what a spreadsheet writes where a formula failed, in English or German? It is a
-/// row.
+/// Does a line begin with the error value that a spreadsheet writes for a failed formula, in
+/// English or German? Such a line is a row.
 bool begins_with_error_value(const std::string& line) {
   for (const char* word : {"#REF!", "#N/A", "#DIV/0!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!", "#NV",
                            "#BEZUG!", "#WERT!", "#ZAHL!"})
@@ -31,7 +31,7 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
   std::vector<Line> lines;
   std::size_t number = 0;
   for (std::size_t at = 0; at < text.size();) {
-    // Old Macintosh files end their lines by a carriage return alone.
+    // Old Macintosh files end their lines with a carriage return alone.
     const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
     const std::string line = text.substr(at, end - at);
     at = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
@@ -45,7 +45,7 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
   return lines;
 }
 
-/// How many separators stand outside quotes.
+/// Returns the number of separators outside quotes.
 std::size_t count_outside_quotes(const std::string& line, char separator) {
   std::size_t count = 0;
   bool quoted = false;
@@ -56,7 +56,7 @@ std::size_t count_outside_quotes(const std::string& line, char separator) {
   return count;
 }
 
-/// The first line of a file from a spreadsheet may say it: sep=;
+/// The first line of a file from a spreadsheet may state it: sep=;
 char said_separator(std::vector<Line>& lines) {
   if (lines.empty() || !text::trimmed(lines.front().text).starts_with("sep=") ||
       text::trimmed(lines.front().text).size() > 5)
@@ -66,7 +66,8 @@ char said_separator(std::vector<Line>& lines) {
   return line[line.find('=') + 1];
 }
 
-/// Part of the lines that have the commonest number of separators, where that is not none.
+/// Returns the share of the lines with the most frequent number of separators, if that is not
+/// zero.
 double agreement(const std::vector<Line>& lines, char separator) {
   std::map<std::size_t, std::size_t> counts;
   for (const Line& line : lines) ++counts[count_outside_quotes(line.text, separator)];
@@ -77,7 +78,7 @@ double agreement(const std::vector<Line>& lines, char separator) {
 }
 
 char separator_of_lines(const std::vector<Line>& lines) {
-  constexpr double kMostAgree = 0.6;  // titles and remarks above a table are lines too
+  constexpr double kMostAgree = 0.6;  // titles and comments above a table are lines too
   char best = ' ';
   double most = 0;
   for (const char separator : {'\t', ';', ',', '|'}) {
@@ -91,9 +92,10 @@ char separator_of_lines(const std::vector<Line>& lines) {
   return most > 0.3 ? best : ' ';
 }
 
-/// As many cells in each row. One row far wider than the others would make a small file a large table.
+/// Makes the number of cells in each row equal. One row much wider than the others would make a
+/// small file a large table.
 void make_even(Sheet& sheet) {
-  // Cells, and empty cells for each that is there: what a small file may grow to.
+  // Limits of empty cells: in all, and per existing cell. They limit the growth of a small file.
   constexpr std::size_t kMostEmpty = 4u << 20, kMostEmptyForOne = 2;
   std::size_t cells = 0, widest = 0;
   for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
@@ -121,7 +123,7 @@ void split(Sheet& sheet, const std::vector<Line>& lines) {
   make_even(sheet);
 }
 
-/// Columns at the right that no row fills: what a spreadsheet's trailing separators leave.
+/// Removes empty columns at the right: the trailing separators of a spreadsheet.
 void drop_empty_columns(Sheet& sheet) {
   while (
       !sheet.rows.empty() && !sheet.rows.front().empty() &&
@@ -155,11 +157,11 @@ void guess_decimal(Sheet& sheet) {
             std::to_string((comma < point ? at_point : at_comma).line) + " (" +
             (comma < point ? point_word : comma_word) +
             "): say which one is meant (--decimal comma or point), the other cells are then refused");
-  // Where each sign could part thousands as well ("1,234") the one that is there is taken for the decimal
+  // If each sign could also separate thousands ("1,234"), the present sign is taken as the decimal
   // sign.
   sheet.decimal_comma = comma > 0 || (point == 0 && either_comma > either_point);
   sheet.decimal_doubtful = point == 0 && comma == 0 && either_comma + either_point > 0;
-  // Where a comma parts the columns it is no decimal sign of an unquoted cell.
+  // If a comma separates the columns, it is not the decimal sign of an unquoted cell.
   if (sheet.separator == ',' && comma == 0) sheet.decimal_comma = false;
 }
 
@@ -206,7 +208,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
       sheet.line.push_back(read.line[i]);
     }
     make_even(sheet);
-    // Its numbers are numbers; only cells that are text may have a decimal comma.
+    // Numbers of a workbook are numbers. Only text cells may have a decimal comma.
     sheet.decimal_comma = format.decimal_comma.value_or(false);
   } else {
     sheet.encoding = encoding_of(bytes);

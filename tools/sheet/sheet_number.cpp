@@ -26,8 +26,7 @@ std::string ascii_signs(std::string_view cell) {
   return text;
 }
 
-/// Takes `sign` out where it stands before groups of three digits, and only there. False: it stands
-/// elsewhere.
+/// Removes `sign` if it is only before groups of three digits. Returns false if it is elsewhere.
 bool take_thousands(std::string& text, char sign) {
   const std::size_t first = text.find(sign);
   if (first == std::string::npos) return true;

@@ -6,11 +6,12 @@
 
 namespace vernier::sheet {
 
-/// A cell as number text with a point and nothing else ("-1234.5"): thousands ("1.234,5", "1'234.5", "1
-/// 234,5") and the long minus sign are understood. Nothing where it is no number of this decimal sign. tool.
+/// Returns a cell as number text with a decimal point and no other sign ("-1234.5"). Thousands
+/// separators ("1.234,5", "1'234.5", "1 234,5") and the long minus sign are accepted. Returns
+/// nullopt if it is not a number with this decimal sign. tool.
 std::optional<std::string> plain_number(std::string_view cell, bool decimal_comma);
 
-/// How a cell's signs speak: for a comma or for a point as the decimal sign. "1,234" may be either.
+/// The decimal sign that a cell indicates: comma or point. "1,234" may be either.
 enum class DecimalSign { kNeither, kPoint, kComma, kEither };
 DecimalSign decimal_sign_in(std::string_view cell);
 

@@ -5,14 +5,14 @@
 
 namespace vernier::sheet {
 
-/// A sheet to be written: its first row are headings that stay in sight.
+/// A sheet for output. Its first row contains the headings and stays visible.
 struct SheetToWrite {
   std::string name;
-  std::vector<std::vector<std::string>> rows;  // a cell that reads as a number becomes one
+  std::vector<std::vector<std::string>> rows;  // a cell with the form of a number becomes a number
 };
 
-/// The bytes of a workbook (.xlsx). Same sheets, same bytes. Throws std::runtime_error where it cannot be
-/// written. tool.
+/// Returns the bytes of a workbook (.xlsx). The same sheets give the same bytes. Throws
+/// std::runtime_error if it cannot be written. tool.
 std::string workbook_of(const std::vector<SheetToWrite>& sheets);
 
 }  // namespace vernier::sheet
