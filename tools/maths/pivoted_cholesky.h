@@ -8,7 +8,7 @@ namespace vernier::maths {
 /// L L^T of the rows and columns of a positive semidefinite matrix that are not (nearly) dependent
 /// on the others: diagonal pivoting, block by block (Lucas, LAPACK-style codes for level 2 and 3
 /// pivoted Cholesky factorizations, LAPACK working note 161). The remaining columns define the
-/// null space, which is reported and not damped.
+/// null space, which is reported and not damped. tool.
 class PivotedCholesky {
  public:
   /// matrix: n x n, the lower triangle is read; its diagonal is about 1. A column whose remaining
