@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kShortRow = 24;  // numbers; shorter rows gain nothing
+constexpr std::size_t kShortRow = 24;  // numbers; packing shorter rows has no advantage
 
 bool is_numeric_row(const Json& value) {
   return value.is_array() && value.size() > kShortRow &&
@@ -100,7 +100,7 @@ Json packed(const Json& value) {
 }
 
 std::string script_json(const Json& value) {
-  // Not finite numbers are dumped as null.
+  // Numbers that are not finite are dumped as null.
   const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
   std::string safe;
   safe.reserve(text.size());

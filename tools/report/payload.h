@@ -8,18 +8,19 @@
 
 namespace vernier::report {
 
-/// Base64 (RFC 4648, padded) of some bytes. tool.
+/// Returns Base64 (RFC 4648, padded) of some bytes. tool.
 std::string base64(std::string_view bytes);
 
-/// Text for an HTML document: & < > " ' written as entities. tool.
+/// Returns text for an HTML document: & < > " ' become entities. tool.
 std::string escape_html(std::string_view text);
 
-/// `value` with long rows of numbers packed: {"u8": base64} for small whole numbers, else {"f32": base64} of
-/// little-endian floats, null and what is not finite as NaN. Short rows stay as they are. tool.
+/// Returns `value` with long rows of numbers packed: {"u8": base64} for small whole numbers, else
+/// {"f32": base64} of little-endian floats. null and values that are not finite become NaN. Short
+/// rows do not change. tool.
 nlohmann::ordered_json packed(const nlohmann::ordered_json& value);
 
-/// JSON that is valid inside a <script> element: no '<' and '>' in it, ASCII only; bytes that are no UTF-8
-/// are replaced. tool.
+/// Returns JSON that is valid inside a <script> element: without '<' and '>', ASCII only. Bytes
+/// that are not UTF-8 are replaced. tool.
 std::string script_json(const nlohmann::ordered_json& value);
 
 }  // namespace vernier::report

@@ -25,14 +25,15 @@ std::string file_list(const Json& result) {
   return list;
 }
 
-// The policy lets nothing be fetched, so that a page cannot but open offline.
+// The policy forbids any download, so that a page always opens offline.
 constexpr const char* kHead =
     "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
     "style-src 'unsafe-inline'; img-src data:\">\n";
 
-/// Who measured what, when and with what: the company above, the rest beside one another.
+/// Returns person, subject, date and instrument of the measurement: the company above, the others
+/// side by side.
 std::string letterhead(const Json& result) {
   std::string company, entries;
   for (const Json& one : result.value("header", Json::array())) {

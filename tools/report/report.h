@@ -26,28 +26,28 @@ namespace vernier::report {
 /// std::invalid_argument if `detail` contradicts itself. tool.
 std::string compare_report_html(const nlohmann::ordered_json& result);
 
-/// The same kind of page for a job of several steps:
-///   title, machine, files[], sections[{title, prose[], numbers[{label, value, unit, hint, strong}],
-///     ladder[{label, rms_um, check_rms_um}], tables[{caption, columns[], rows[][]}], parameters[],
-///     field: {axes[], counts[], point_mm[][3], deviation_um[][3], max_um} (arrows over a volume),
-///     plots[{x: {name, unit, values[]}, y[{name, unit, values[]}], bars, log, caption}],
-///     detail (as above), notes[]}]
-/// tool.
+/// Makes the same kind of page for a job of several steps: title, machine, files[],
+/// sections[{title, prose[], numbers[{label, value, unit, hint, strong}], ladder[{label, rms_um,
+/// check_rms_um}], tables[{caption, columns[], rows[][]}], parameters[], field: {axes[], counts[],
+/// point_mm[][3], deviation_um[][3], max_um} (arrows over a volume), plots[{x: {name, unit,
+/// values[]}, y[{name, unit, values[]}], bars, log, caption}], detail (as above), notes[]}] tool.
 std::string improvement_report_html(const nlohmann::ordered_json& result);
 
-/// The page of `diagnose`: verdict in words, ladder, candidates, next measurements, where the model fails.
-/// Draws the JSON result of FORMATS section 3 (machine, files[], verdict, explanation, rms_um, check_rms_um,
-/// noise_um, candidates[], runner_up, ladder[], next_measurement[] of texts or objects with `sentence`) and,
-/// where there, findings[] and structure{} (tools/results/structure_json.h), notes[], detail (as above).
-/// Candidates may also have score, signature, impostors[], why_not. tool.
+/// Makes the page of `diagnose`: verdict in words, stepwise model, candidates, next measurements,
+/// where the model fails. It draws the JSON result of FORMATS section 3 (machine, files[],
+/// verdict, explanation, rms_um, check_rms_um, noise_um, candidates[], runner_up, ladder[],
+/// next_measurement[] of texts or objects with `sentence`) and, if present, findings[] and
+/// structure{} (tools/results/structure_json.h), notes[], detail (as above). Candidates may also
+/// have score, signature, impostors[], why_not. tool.
 std::string diagnose_report_html(const nlohmann::ordered_json& result);
 
-/// The page of `improve`: the error falling step by step. ladder[{effect, add, label, rms_um, check_rms_um}],
-/// noise_um, and whatever the page of diagnose draws; simulation{rms_before_um, rms_after_um, max_after_um,
-/// ticks}; steps[{title, prose[], findings[], explanation}]. tool.
+/// Makes the page of `improve`: the decrease of the error step by step. ladder[{effect, add,
+/// label, rms_um, check_rms_um}], noise_um, and everything that the page of diagnose draws;
+/// simulation{rms_before_um, rms_after_um, max_after_um, ticks}; steps[{title, prose[],
+/// findings[], explanation}]. tool.
 std::string improve_report_html(const nlohmann::ordered_json& result);
 
-/// Observations of one kind that a page draws at most.
+/// Largest number of observations of one kind that a page draws.
 inline constexpr std::size_t kMostDrawn = 20000;
 
 }  // namespace vernier::report
