@@ -11,16 +11,16 @@
 
 namespace vernier::workbench {
 
-/// The requests of the page, without a network: files, commands, rows, predictions, terms, history, a board.
-/// A request that needs a file is answered by a separate process (FileReader), or by a command. May be called
-/// from several threads. tool.
+/// Answers the requests of the page, without a network: files, commands, rows, predictions, terms,
+/// history, a board. A request that needs a file is answered by a separate process (FileReader),
+/// or by a command. May be called from several threads. tool.
 class Api {
  public:
-  /// directory: of the project. program: the `vernier` that runs commands. version: shown on the page.
-  /// Throws InputError where there is no such folder.
+  /// directory: of the project. program: the `vernier` that executes commands. version: shown on
+  /// the page. Throws InputError if there is no such folder.
   Api(const std::string& directory, const std::string& program, std::string version);
 
-  /// Never throws: bad input is 422 with {"message"}, an unknown path 404, our own fault 500.
+  /// Never throws. Bad input is 422 with {"message"}, an unknown path 404, an internal error 500.
   ApiReply reply(const ApiRequest& request);
 
  private:

@@ -19,7 +19,7 @@ struct Field {
   FieldKind kind;
   const char* option = "";
   bool required = false;
-  const char* words = "";  // the only ones that are taken, a blank between two; empty: any
+  const char* words = "";  // the only accepted words, separated by a blank; empty: any
 };
 
 struct Allowed {
@@ -28,13 +28,13 @@ struct Allowed {
   std::vector<Field> fields;
 };
 
-/// All that the page can do; the order of the fields is that of the words.
+/// All commands of the page. The order of the fields is that of the words.
 const std::vector<Allowed>& allowed() {
   using K = FieldKind;
   const Field machine{"machine", K::kIn, "", true}, rows{"measurements", K::kInList, "", true},
       output{"output", K::kOut, "-o", true}, report{"output", K::kOut, "-o"},
       url{"to", K::kText, "--to", true},
-      // What a board added to rows that name its image: the project's compiled images.
+      // Correction of a board in rows that name its image: from the project's compiled images.
       images{"images", K::kFlag, "--images=."}, header{"header", K::kTextList, "--header"};
   static const std::vector<Allowed> kAll = {
       {"new",
@@ -140,7 +140,7 @@ const std::vector<Allowed>& allowed() {
         {"key", K::kIn, "--key"}}},
       {"board", true, false, {{"what", K::kText, "", true}, url, {"key", K::kIn, "--key"}}},
       {"status", true, false, {url}},
-      // Only what reads: a fleet is not changed from a page.
+      // Only commands that read: a page does not change a fleet.
       {"fleet",
        false,
        false,

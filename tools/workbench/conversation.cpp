@@ -118,7 +118,7 @@ bool Conversation::ask(const Message& question, double patience_s, Message& answ
 std::string Conversation::end() {
   if (child_ < 0) return "no answer";
   ::close(stream_);
-  // One that has broken off is given the time to say how; one that hangs is not.
+  // A program that ended is given time to report its status. A program that hangs is not.
   int status = 0;
   pid_t ended = 0;
   for (int i = 0; i < 50 && ended == 0; ++i) {

@@ -10,8 +10,8 @@ namespace vernier::workbench {
 /// Texts as one message between two processes.
 using Message = std::vector<std::string>;
 
-/// The next message of a stream; false at its end, after `patience_s` without a byte (0: waits for ever), and
-/// where more comes than any message has. tool.
+/// Reads the next message of a stream. Returns false at its end, after `patience_s` without a byte
+/// (0: waits without limit), and if more bytes arrive than any message has. tool.
 bool read_message(int stream, double patience_s, Message& message);
 /// False if the other end does not take it. tool.
 bool write_message(int stream, double patience_s, const Message& message);
@@ -20,7 +20,7 @@ bool write_message(int stream, double patience_s, const Message& message);
 /// its own process group and ends together with this object. tool.
 class Conversation {
  public:
-  /// Throws InputError where it cannot be started.
+  /// Throws InputError if it cannot be started.
   Conversation(const std::string& program, const std::vector<std::string>& arguments,
                const std::string& directory);
   /// Ends it immediately.
@@ -28,10 +28,11 @@ class Conversation {
   Conversation(const Conversation&) = delete;
   Conversation& operator=(const Conversation&) = delete;
 
-  /// False where it ended, or said nothing for patience_s: it is of no use any more.
+  /// Returns false if the program ended, or gave no answer for patience_s. The object then cannot
+  /// be used any more.
   bool ask(const Message& question, double patience_s, Message& answer);
-  /// Ends it and reports how it had ended: "exit status 70", "signal 11", or "no answer" if it was still
-  /// running.
+  /// Ends it and returns how it had ended: "exit status 70", "signal 11", or "no answer" if it was
+  /// still running.
   std::string end();
 
  private:

@@ -56,7 +56,7 @@ std::optional<UnitPowers> powers_of(format::Dimension dimension) {
 
 using Unit = std::optional<UnitPowers>;
 
-/// Walks an expression from its leaves; nothing goes on as nothing.
+/// Computes the unit of an expression from its leaves. An unknown unit remains unknown.
 class UnitWalk {
  public:
   UnitWalk(const model::Machine& machine, const std::string& unknown, std::vector<std::string>& warnings)
@@ -109,7 +109,7 @@ class UnitWalk {
   Unit alike(const model::Expr& expr) {
     const Unit a = of(*expr.args[0]), b = of(*expr.args[1]);
     double constant = 0;
-    // A number beside a quantity is one of its unit: T - 20.
+    // A number that is added to a quantity has its unit: T - 20.
     if (model::is_constant(*expr.args[0], constant)) return b;
     if (model::is_constant(*expr.args[1], constant)) return a;
     if (a && b && *a != *b)
@@ -177,7 +177,8 @@ class UnitWalk {
       warnings_.push_back(what + " is in " + unit_text(*unit) + ", not a pure number");
   }
 
-  /// Turns over a period (360*X/p) are pure numbers, an axis' own angle is in deg: both are right.
+  /// Turns over a period (360*X/p) are pure numbers, an axis' own angle is in deg. Both are
+  /// accepted.
   void angle(const model::Expr& expr) {
     const Unit unit = of(expr);
     if (unit && *unit != UnitPowers{} && *unit != UnitPowers{0, 1})

@@ -12,13 +12,14 @@ namespace vernier::workbench {
 /// Powers of mm, deg, degC, s, V, N, kg.
 using UnitPowers = std::array<int, 8>;
 
-/// Powers of a unit of FORMATS section 2 ("mm/s", "1/mm"); nothing for a unit that is none of them.
+/// Returns powers of a unit of FORMATS section 2 ("mm/s", "1/mm"); nullopt for another unit.
 std::optional<UnitPowers> unit_powers(const std::string& unit);
-/// "mm/degC", "mm", "1" for no unit.
+/// Returns "mm/degC", "mm", "1" for no unit.
 std::string unit_text(const UnitPowers& powers);
 
-/// The unit of an expression, with `unknown` taken as a pure number; `nullopt` if it is not determined (a
-/// static without unit, a power that is no number). warnings: units that do not match. tool.
+/// Returns the unit of an expression, with `unknown` taken as a pure number; `nullopt` if it is
+/// not determined (a static without unit, a power that is not a number). warnings: units that do
+/// not match. tool.
 std::optional<UnitPowers> expression_unit(const model::Machine& machine, const model::Expr& expr,
                                           const std::string& unknown, std::vector<std::string>& warnings);
 

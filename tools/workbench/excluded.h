@@ -6,26 +6,28 @@
 
 namespace vernier::workbench {
 
-/// A row of a measurement file that was taken out by hand: a comment `# excluded "reason": row` in its place,
-/// so that every command passes over it, every other row keeps its line, and nothing is lost.
+/// A row of a measurement file that a user excluded: a comment `# excluded "reason": row` replaces
+/// it. Every command then skips the row, every other row keeps its line, and no data are lost.
 struct ExcludedRow {
   std::size_t line = 0;  // 1-based
   std::string reason, row;
 };
 
-/// The rows taken out of a measurement file's text, by line. tool.
+/// Returns the excluded rows of a measurement file's text, by line. tool.
 std::vector<ExcludedRow> excluded_rows(const std::string& text);
 
-/// The text with the rows on these lines taken out. reason: without quotes and line ends. Throws InputError
-/// with the line where it holds no row. `file` is for messages. tool.
+/// Returns the text with the rows on these lines excluded. reason: without quotes and line ends.
+/// Throws InputError with a line that contains no row. `file` is for messages. tool.
 std::string exclude_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines, const std::string& reason);
 
-/// The text with the excluded rows on these lines back in. Throws InputError with the line where none is.
+/// Returns the text with the excluded rows on these lines restored. Throws InputError with a line
+/// that has no excluded row.
 std::string restore_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines);
 
-/// Lines such as "12,15-20": 1-based, sorted, each once. Throws InputError with the word. tool.
+/// Parses lines such as "12,15-20": 1-based, sorted, each once. Throws InputError with the word.
+/// tool.
 std::vector<std::size_t> parse_lines(const std::string& text);
 
 }  // namespace vernier::workbench

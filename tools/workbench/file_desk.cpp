@@ -51,16 +51,18 @@ ApiReply FileDesk::answer(const ApiRequest& request) {
   return (this->*route->answer)(request);
 }
 
-/// Machines and measurements are read before they are kept, so that an error shows where it was dropped.
+/// Machines and measurements are read before they are stored, so that an error is reported where
+/// the file was dropped.
 ApiReply FileDesk::check(const ApiRequest& request) {
   const std::string name = request.word("name");
   if (name.ends_with(".xml")) model::parse_machine(request.body, name);
-  // What does not even begin as a measurement file may be a spreadsheet: kept, and imported from there.
+  // A file that does not begin like a measurement file may be a spreadsheet. It is stored and
+  // imported from there.
   if (name.ends_with(".csv") && begins_as_measurement(request.body)) format::parse_csv(request.body, name);
   return json_reply({{"name", name}});
 }
 
-/// {"kind"}: "measurement", or "sheet" where a table has to be imported.
+/// {"kind"}: "measurement", or "sheet" if a table must be imported.
 ApiReply FileDesk::kind(const ApiRequest& request) {
   const std::string text = text::read_file(project_.existing(request.word("name")).string());
   return json_reply({{"kind", begins_as_measurement(text) ? "measurement" : "sheet"}});
@@ -150,7 +152,8 @@ ApiReply FileDesk::term(const ApiRequest& request) {
   const auto json = body_json(request);
   const std::string name = text_at(json, "machine");
   model::Machine machine = model::parse_machine(text::read_file(project_.existing(name).string()), name);
-  // Columns of the measurement that the machine does not know: `add` declares what a term uses of them.
+  // Columns of the measurement that the machine does not declare: `add` declares those that a term
+  // uses.
   if (json.contains("columns") && json["columns"].is_array()) {
     for (const auto& column : json["columns"]) {
       model::Input input;

@@ -14,7 +14,7 @@ class FileDesk {
  public:
   explicit FileDesk(const Project& project) : project_(project), cache_(project) {}
 
-  /// Is it for this desk? What is to be kept (PUT) is only looked at here.
+  /// Does this class answer the request? For a PUT it only checks the file.
   static bool answers(const ApiRequest& request);
   /// Never throws; as Api::reply.
   ApiReply reply(const ApiRequest& request);

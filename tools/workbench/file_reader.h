@@ -15,11 +15,11 @@ namespace vernier::workbench {
 /// from several threads. tool.
 class FileReader {
  public:
-  /// patience_s: without an answer for so long it is ended.
+  /// patience_s: without an answer for this time the process is ended.
   FileReader(std::string program, const Project& project, double patience_s = 300)
       : program_(std::move(program)), project_(project), patience_s_(patience_s) {}
 
-  /// As FileDesk::reply; 422 where the process that reads ended over it.
+  /// As FileDesk::reply; 422 if the reading process ended because of the file.
   ApiReply reply(const ApiRequest& request);
 
  private:

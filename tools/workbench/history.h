@@ -13,7 +13,7 @@ namespace vernier::workbench {
 /// tool.
 class CommandHistory {
  public:
-  /// Reads what an earlier session left. Throws InputError where that cannot be read.
+  /// Reads the history of an earlier session. Throws InputError if it cannot be read.
   explicit CommandHistory(const Project& project);
 
   /// result: of the command; its rms_um and check_rms_um are kept.

@@ -56,7 +56,7 @@ Json summary(const ImageView& image) {
           {"effects", effects_of(image)}};
 }
 
-/// Why the two cannot be run side by side; empty where they can.
+/// Returns why the two cannot be compared by execution; empty if they can.
 std::string why_not(const ImageView& a, const ImageView& b) {
   if (a.axes().size != b.axes().size || a.inputs().size != b.inputs().size)
     return "they are for machines with other axes or inputs";

@@ -6,11 +6,12 @@
 
 namespace vernier::workbench {
 
-/// How two images differ: {"same", "a" and "b": {name, fingerprint, bytes, operations, tables, lags, axes[],
-/// inputs[], effects[]}, "only_a", "only_b": effects by their share names, "poses", "corrections": [{axis,
-/// unit, rms, max, at: {axis: position}}] or "why_not"}. The corrections are those of both equations before
-/// limits, at the same quasi-random poses of the declared ranges, at rest with either sense, inputs within
-/// theirs; um or mdeg. a: what would run; b: what runs. Throws InputError for what is no image. tool.
+/// Compares two images: {"same", "a" and "b": {name, fingerprint, bytes, operations, tables, lags,
+/// axes[], inputs[], effects[]}, "only_a", "only_b": effects by their share names, "poses",
+/// "corrections": [{axis, unit, rms, max, at: {axis: position}}] or "why_not"}. The corrections
+/// are those of both equations before limits, at the same quasi-random poses of the declared
+/// ranges, at rest with either approach direction, inputs within their ranges; um or mdeg. a: the
+/// new image; b: the active image. Throws InputError for bytes that are not an image. tool.
 nlohmann::ordered_json image_diff(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b);
 
 }  // namespace vernier::workbench

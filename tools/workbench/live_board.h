@@ -9,8 +9,8 @@
 
 namespace vernier::workbench {
 
-/// Watches one board at a time, as `vernier watch` does. A thread asks the board kLiveRateHz times a second,
-/// keeps the last pictures, and disconnects after kLetGoS without a request. tool.
+/// Watches one board at a time, as `vernier watch` does. A thread reads the board kLiveRateHz
+/// times a second, keeps the last pictures, and disconnects after kLetGoS without a request. tool.
 class LiveBoard {
  public:
   static constexpr double kLiveRateHz = 20, kLetGoS = 5;
@@ -20,9 +20,9 @@ class LiveBoard {
   LiveBoard(const LiveBoard&) = delete;
   LiveBoard& operator=(const LiveBoard&) = delete;
 
-  /// Pictures (live_json) with a number above `after`, each with `seq` and `at_s`, as soon as there is one,
-  /// at most after half a second: {"pictures": [...], "error": text or null}. A new url lets go of the board
-  /// before. Throws InputError for what is no board's address.
+  /// Returns pictures (live_json) with a number above `after`, each with `seq` and `at_s`. It
+  /// waits for a picture for at most half a second: {"pictures": [...], "error": text or null}. A
+  /// new url disconnects from the previous board. Throws InputError for an invalid board address.
   nlohmann::ordered_json pictures(const std::string& url, std::uint64_t after);
 
  private:
@@ -30,7 +30,7 @@ class LiveBoard {
   void look(const std::string& url);
   void end();
 
-  std::mutex ending_;  // held while one watch is exchanged for another
+  std::mutex ending_;  // held while one watch replaces another
   std::mutex guard_;
   std::condition_variable changed_;
   std::thread thread_;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kNotStarted = 127, kOurBug = 70;
 
-/// Both ends of a pipe, closed when they go.
+/// Both ends of a pipe, closed in the destructor.
 struct Pipe {
   Pipe() {
     if (::pipe2(end.data(), O_CLOEXEC) != 0)
@@ -38,14 +38,15 @@ struct Pipe {
   std::array<int, 2> end{-1, -1};
 };
 
-/// Between fork and exec only calls that are safe there: everything was prepared by the parent.
+/// Between fork and exec only calls that are safe there are allowed. The parent prepares
+/// everything.
 [[noreturn]] void become(const char* program, char* const* arguments, char* const* environment,
                          const char* directory, const StandardStreams& streams) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::dup2(streams.in, 0) < 0 || ::dup2(streams.out, 1) < 0 || ::dup2(streams.error, 2) < 0)
     ::_exit(kNotStarted);
-  // Connections of the server are no business of a command.
+  // A command must not inherit connections of the server.
   ::close_range(3, ~0U, 0);
   if (::chdir(directory) != 0) ::_exit(kNotStarted);
   sigset_t none;
@@ -55,7 +56,7 @@ struct Pipe {
   ::_exit(kNotStarted);
 }
 
-/// Standard error, cut into lines while it comes.
+/// Standard error, split into lines as it arrives.
 class Lines {
  public:
   explicit Lines(const std::function<void(std::string_view)>& on_line) : on_line_(on_line) {}
@@ -79,7 +80,7 @@ class Lines {
   std::string open_;
 };
 
-/// Reads both pipes until both are closed; false where more came than was allowed.
+/// Reads both pipes until both are closed. Returns false if more bytes arrived than allowed.
 bool collect(Pipe& out, Pipe& err, std::size_t most, ProcessResult& result, Lines& lines) {
   std::array<pollfd, 2> wait = {{{out.end[0], POLLIN, 0}, {err.end[0], POLLIN, 0}}};
   std::array<char, 65536> bytes;
@@ -119,7 +120,7 @@ pid_t start_process(const std::string& program, const std::vector<std::string>& 
   const std::vector<char*> argv = pointers(words), envp = pointers(environment);
   const pid_t child = ::fork();
   if (child == 0) become(program.c_str(), argv.data(), envp.data(), directory.c_str(), streams);
-  if (child > 0) ::setpgid(child, child);  // whoever of the two comes first
+  if (child > 0) ::setpgid(child, child);  // the first of the two processes sets it
   return child;
 }
 
@@ -143,7 +144,7 @@ ProcessResult run_process(const std::string& program, const std::vector<std::str
     whole = collect(out, err, most_bytes, result, lines);
   }
   if (!whole) running.cancel();
-  running.group = 0;  // from here on its number may belong to another one
+  running.group = 0;  // from here on another process may have its number
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }

@@ -10,13 +10,13 @@
 
 namespace vernier::workbench {
 
-/// How a program ended, and what it wrote.
+/// Exit status of a program, and its output.
 struct ProcessResult {
-  int exit = -1;  // its exit status; 128 + signal where one ended it
+  int exit = -1;  // its exit status; 128 + signal if a signal ended it
   std::string out, err;
 };
 
-/// A program while it runs, so that another thread can end it.
+/// A running program, so that another thread can end it.
 struct RunningProcess {
   std::atomic<pid_t> group{0};  // its process group; 0 before and after
   std::atomic<bool> cancelled{false};
@@ -31,7 +31,7 @@ ProcessResult run_process(const std::string& program, const std::vector<std::str
                           const std::string& directory, std::size_t most_bytes,
                           const std::function<void(std::string_view)>& on_line, RunningProcess& running);
 
-/// What becomes a program's standard input, output and error.
+/// Streams for a program's standard input, output and error.
 struct StandardStreams {
   int in, out, error;
 };
@@ -40,7 +40,7 @@ struct StandardStreams {
 pid_t start_process(const std::string& program, const std::vector<std::string>& arguments,
                     const std::string& directory, const StandardStreams& streams);
 
-/// A command as a shell takes it: words quoted where they must be.
+/// Returns a command for a shell: words are quoted if necessary.
 std::string shell_text(const std::string& program, const std::vector<std::string>& arguments);
 
 }  // namespace vernier::workbench

@@ -8,9 +8,9 @@
 
 namespace vernier::workbench {
 
-/// What a file of a project is, by its name.
+/// Kind of a file of a project, by its name.
 enum class FileKind : std::uint8_t { kMachine, kMeasurement, kInstrument, kReport, kImage, kKey, kOther };
-/// As the page writes it: "machine" ...
+/// Returns the kind as the page writes it: "machine" ...
 const char* kind_name(FileKind kind);
 
 struct ProjectFile {
@@ -20,31 +20,32 @@ struct ProjectFile {
   std::int64_t modified_s = 0;  // since 1970
 };
 
-/// May a file of a project be called so? One to three parts between '/', each of 1 to 120 bytes, without
-/// control characters, '\' and ':', not starting with '.', '-', '~' or a blank. tool.
+/// Is the name allowed for a file of a project? One to three parts between '/', each of 1 to 120
+/// bytes, without control characters, '\' and ':', not starting with '.', '-', '~' or a blank.
+/// tool.
 bool is_project_name(std::string_view name);
 
-/// Throws InputError with the name where `path` is a symbolic link, a device or a pipe. tool.
+/// Throws InputError with the name if `path` is a symbolic link, a device or a pipe. tool.
 void refuse_special(const std::filesystem::path& path, const std::string& name);
 
-/// A folder that the workbench reads and writes, and nothing outside of it: names are checked as above, and
-/// no part of a name may be a symbolic link, a device or a pipe. tool.
+/// A folder that the workbench reads and writes. It accesses nothing outside this folder: names
+/// are checked as above, and no part of a name may be a symbolic link, a device or a pipe. tool.
 class Project {
  public:
-  /// Throws InputError where `directory` is no folder.
+  /// Throws InputError if `directory` is not a folder.
   explicit Project(const std::string& directory);
 
   const std::filesystem::path& root() const { return root_; }
-  /// Path of a file or folder that is there. Throws InputError with the name: no such name, a link, not
-  /// there.
+  /// Returns the path of an existing file or folder. Throws InputError with the name: invalid
+  /// name, a link, does not exist.
   std::filesystem::path existing(const std::string& name) const;
-  /// Path that may be written; it need not be there. Throws InputError as above, and where a folder holds a
-  /// link, a device or a pipe.
+  /// Returns a path that may be written; it need not exist. Throws InputError as above, and if a
+  /// folder contains a link, a device or a pipe.
   std::filesystem::path writable(const std::string& name) const;
-  /// Writes a file; a reader sees the old one or the whole new one.
+  /// Writes a file. A reader sees either the old file or the complete new file.
   void save(const std::string& name, const std::string& bytes) const;
-  /// What lies in the folder and one level below, by name; hidden files and links are left out, and what
-  /// comes after the first 2000.
+  /// Lists the folder and one level below, by name. Hidden files and links are omitted, and
+  /// entries after the first 2000.
   std::vector<ProjectFile> list() const;
 
  private:

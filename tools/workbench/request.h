@@ -12,12 +12,12 @@
 
 namespace vernier::workbench {
 
-/// A request of the page that has proved where it comes from.
+/// A request of the page whose origin was verified.
 struct ApiRequest {
   std::string method, path;  // "GET", "/api/rows"
   std::multimap<std::string, std::string> query;
   std::string body;
-  /// The value of a query word, empty where it is absent.
+  /// Returns the value of a query word, empty if it is absent.
   std::string word(const std::string& name) const;
   std::vector<std::string> words(const std::string& name) const;
 };
@@ -31,11 +31,12 @@ struct ApiReply {
 ApiReply json_reply(const nlohmann::ordered_json& json, int status = 200);
 ApiReply blob_reply(std::string bytes);
 
-/// What `answer` gives; where it throws: bad input is 422 with {"message"}, our own fault 500. The project's
-/// folder is left out of messages. tool.
+/// Returns the reply of `answer`. If it throws, bad input is 422 with {"message"}, an internal
+/// error 500. The project's folder is removed from messages. tool.
 ApiReply reply_of(const Project& project, const std::function<ApiReply()>& answer);
 
-/// A body that holds a JSON object. This and what follows throws InputError with the word.
+/// Parses a body that contains a JSON object. This function and the following ones throw
+/// InputError with the word.
 nlohmann::json body_json(const ApiRequest& request);
 std::string text_at(const nlohmann::json& json, const char* key);
 std::vector<std::string> texts_at(const nlohmann::json& json, const char* key);

@@ -57,7 +57,7 @@ Json vectors(Blob& blob, const Eigen::Matrix3Xd& list) {
   return json;
 }
 
-/// Unit vectors along which a row's length, distance or d is measured; 0 for rows without.
+/// Returns unit vectors along which a row's length, distance or d is measured; 0 for other rows.
 Eigen::Matrix3Xd directions(const model::Measurement& m, const Eigen::Matrix3Xd& point) {
   Eigen::Matrix3Xd list = Eigen::Matrix3Xd::Zero(3, point.cols());
   for (const model::Observation& o : m.observations) {
@@ -73,7 +73,7 @@ Eigen::Matrix3Xd directions(const model::Measurement& m, const Eigen::Matrix3Xd&
   return list;
 }
 
-/// Standard uncertainty of each observation, mm or deg; 0 where the file gives none.
+/// Returns the standard uncertainty of each observation, mm or deg; 0 if the file gives none.
 Eigen::VectorXd standard_uncertainties(const model::Measurement& m) {
   Eigen::VectorXd u = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m.observations.size()));
   for (std::size_t i = 0; i < m.observations.size(); ++i)
@@ -81,12 +81,13 @@ Eigen::VectorXd standard_uncertainties(const model::Measurement& m) {
   return u;
 }
 
-/// What the fit that wrote the file knew of a parameter, where its value is still that fit's.
+/// Adds the uncertainty of a parameter from the fit that wrote the file, if its value is still
+/// that of the fit.
 void add_knowledge(Json& json, const model::FitRecord& record, const std::string& name, double value) {
   const auto found = std::find(record.parameters.begin(), record.parameters.end(), name);
   if (found == record.parameters.end()) return;
   const auto row = static_cast<Eigen::Index>(found - record.parameters.begin());
-  constexpr double kSame = 1e-9;  // of the value: what the file's digits may change
+  constexpr double kSame = 1e-9;  // of the value: possible change by the digits in the file
   if (std::abs(record.values[row] - value) > kSame * std::max(1e-9, std::abs(value))) return;
   json["std"] = record.factor.row(row).norm();
   if (static_cast<std::size_t>(row) < record.origins.size())

@@ -13,22 +13,22 @@
 
 namespace vernier::workbench {
 
-/// A machine and rows of a project, as read.
+/// A machine and rows of a project, as they were read.
 struct LoadedRows {
   std::string text;        // of the machine file
-  model::Machine machine;  // with its set-up fitted to the rows, where that was asked for
+  model::Machine machine;  // with its set-up fitted to the rows, if requested
   bool datum = false;
   model::Measurement measurement;
 };
 
-/// Reads machines with their measurements and keeps the last few, as long as their files stay as they are.
+/// Reads machines with their measurements and keeps the last few while their files do not change.
 /// May be called from several threads. tool.
 class RowCache {
  public:
   explicit RowCache(const Project& project) : project_(project) {}
-  /// Names in the project. `datum`: the machine's set-up is fitted to the rows first (`compare --datum`).
-  /// Rows that were measured with a correction on find its image in the project. Throws InputError with file,
-  /// line and word.
+  /// Names in the project. `datum`: the machine's set-up is fitted to the rows first (`compare
+  /// --datum`). For rows that were measured with a correction, the image is searched in the
+  /// project. Throws InputError with file, line and word.
   std::shared_ptr<const LoadedRows> get(const std::string& machine,
                                         const std::vector<std::string>& measurements, bool datum);
 
@@ -44,19 +44,22 @@ class RowCache {
   std::vector<Entry> kept_;
 };
 
-/// Everything that the page draws of a machine and rows (Blob): columns, runs, roles, lines, tool points,
-/// directions of lengths, observations with residuals in um or urad, circles, figures. tool.
+/// Returns all data that the page draws of a machine and rows (Blob): columns, runs, roles, lines,
+/// tool points, directions of lengths, observations with residuals in um or urad, circles,
+/// figures. tool.
 std::string rows_blob(const LoadedRows& rows);
 
-/// Residuals and figures with some parameters set otherwise; nothing is written. tool.
+/// Returns residuals and figures with other values of some parameters. No file is written. tool.
 std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, double>& values);
 
-/// What an effect would explain: the change that adding and fitting it makes to the residual of the fitted
-/// model, per observation, um or urad. add: a candidate's `add` string. tool.
+/// Returns the part that an effect would explain: the change of the residual of the fitted model
+/// after the effect is added and fitted, per observation, um or urad. add: a candidate's `add`
+/// string. tool.
 std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 
-/// Free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention, prior) as the
-/// fit that wrote the file left them; null where there was none, or where the value was changed since.
+/// Free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention,
+/// prior) come from the fit that wrote the file. They are null if there was no fit, or if the
+/// value was changed later.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
 }  // namespace vernier::workbench

@@ -29,7 +29,7 @@ bool same_secret(const std::string& a, const std::string& b) {
   return difference == 0;
 }
 
-/// The value of a cookie; empty where it is absent.
+/// Returns the value of a cookie; empty if it is absent.
 std::string cookie(const std::string& header, const std::string& name) {
   std::size_t at = 0;
   while (at < header.size()) {
@@ -47,8 +47,8 @@ void refuse(httplib::Response& response, int status, const char* why) {
   response.set_content(std::string("vernier workbench: ") + why + "\n", "text/plain");
 }
 
-/// Sets a body that goes out as it is: the library would compress texts, which on one computer only costs
-/// time.
+/// Sets a body that is sent unchanged. The library would compress texts, which only needs time on
+/// one computer.
 void set_plain(httplib::Response& response, std::string_view bytes, const std::string& type,
                std::shared_ptr<const std::string> owner = nullptr) {
   if (bytes.empty()) return response.set_content("", type);
@@ -116,8 +116,8 @@ bool WorkbenchServer::Inside::welcome(const httplib::Request& request, httplib::
   if (request.method != "GET" || request.path != "/" || !request.has_param("token")) return false;
   if (!same_secret(request.get_param_value("token"), token)) return false;
   response.set_header("Set-Cookie", cookie_name() + "=" + token + "; Path=/; HttpOnly; SameSite=Strict");
-  // A redirect would come without the cookie where the address was opened from elsewhere; a page of our own
-  // that moves on does not.
+  // A redirect would be sent without the cookie if the address was opened from another site. A
+  // page of the workbench that redirects has the cookie.
   response.set_content(
       "<!doctype html><meta charset=utf-8><link rel=icon href='data:,'><meta http-equiv=refresh "
       "content='0;url=/'>",
@@ -141,7 +141,7 @@ WorkbenchServer::Inside::Handled WorkbenchServer::Inside::guard(const httplib::R
     refuse(response, 403, "not from this page");
     return Handled::Handled;
   }
-  // Bodies come with their length and as they are: nothing unpacks, nothing grows without end.
+  // Bodies must have a length and no encoding, so nothing is unpacked and the size is limited.
   if (request.has_header("Transfer-Encoding") || request.has_header("Content-Encoding") ||
       (request.method != "DELETE" && !request.has_header("Content-Length"))) {
     refuse(response, 411, "a body needs its length");
@@ -171,7 +171,7 @@ void WorkbenchServer::Inside::answer(const httplib::Request& request, httplib::R
 WorkbenchServer::WorkbenchServer(Api& api, std::uint16_t port) : inside_(std::make_unique<Inside>(api)) {
   httplib::Server& server = inside_->server;
   Inside* const inside = inside_.get();
-  // Not the library's default, which lets another process of this user listen on the same port.
+  // The library's default would let another process of this user listen on the same port.
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -226,7 +226,7 @@ void WorkbenchServer::serve() {
 void WorkbenchServer::stop() {
   std::unique_lock lock(inside_->guarded);
   inside_->ended = true;
-  // The library forgets a stop that comes before it has begun to listen.
+  // The library ignores a stop that arrives before it listens.
   while (inside_->serving && !inside_->server.is_running()) {
     lock.unlock();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -11,7 +11,7 @@ namespace vernier::workbench {
 /// Largest body of a request, bytes.
 inline constexpr std::size_t kMostBodyBytes = std::size_t{64} << 20;
 
-/// 32 random bytes as hexadecimal digits, from the system's random numbers. tool.
+/// Returns 32 random bytes as hexadecimal digits, from the system's random numbers. tool.
 std::string new_token();
 
 /// The page and its API on 127.0.0.1. A request is answered only under three conditions. It names this host
@@ -20,7 +20,7 @@ std::string new_token();
 /// carry the header X-Vernier. tool.
 class WorkbenchServer {
  public:
-  /// port 0: any free one. Throws InputError where it is taken.
+  /// port 0: any free port. Throws InputError if the port is in use.
   WorkbenchServer(Api& api, std::uint16_t port);
   ~WorkbenchServer();
   WorkbenchServer(const WorkbenchServer&) = delete;
@@ -28,7 +28,7 @@ class WorkbenchServer {
 
   std::uint16_t port() const;
   const std::string& token() const;
-  /// The address to open, with the token.
+  /// Returns the address to open, with the token.
   std::string url() const;
   /// Serves until stop(), which any thread may call.
   void serve();

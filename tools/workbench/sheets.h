@@ -11,14 +11,15 @@ namespace vernier::workbench {
 /// Other text may be a spreadsheet. tool.
 bool begins_as_measurement(const std::string& text);
 
-/// How a spreadsheet is understood and what would come of it: {how, separator, decimal, heading_line, columns
-/// (columns_json), rows: the first as cells, csv: the first lines of the measurement file, n_rows, message:
-/// why it is none yet}. Throws InputError where it is no table at all. tool.
+/// Returns how a spreadsheet is interpreted and the result of its import: {how, separator,
+/// decimal, heading_line, columns (columns_json), rows: the first as cells, csv: the first lines
+/// of the measurement file, n_rows, message: reason why it is not yet a measurement}. Throws
+/// InputError if it is not a table. tool.
 nlohmann::ordered_json sheet_preview(const std::string& bytes, const std::string& file,
                                      const importer::SheetWords& words);
 
-/// The words of a request: separator, decimal, comment, sheet, unit (texts), skip (number), columns,
-/// deviations, leave, set (lists). Throws InputError.
+/// Returns the words of a request: separator, decimal, comment, sheet, unit (texts), skip
+/// (number), columns, deviations, leave, set (lists). Throws InputError.
 importer::SheetWords sheet_words(const nlohmann::json& request);
 
 }  // namespace vernier::workbench

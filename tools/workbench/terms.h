@@ -7,15 +7,16 @@
 
 namespace vernier::workbench {
 
-/// Every name that an expression of this machine may use, with its unit and what it is, for completion:
-/// [{name, unit, what}]. `candidates`: columns that the machine does not know yet, which `add` declares.
-/// tool.
+/// Returns every name that an expression of this machine may use, with its unit and meaning, for
+/// completion: [{name, unit, what}]. `candidates`: columns that the machine does not declare yet;
+/// `add` declares them. tool.
 nlohmann::ordered_json expression_names(const model::Machine& machine);
 
-/// Is `text` a term for a degree of freedom whose unit is `unit` (mm or deg)? The unknown coefficient is `k`.
-/// {"ok", "message", "offset", "word"} where it is no expression of this machine; else {"ok": true, "unit" of
-/// the expression without k, "k_unit": what k must have, "warnings": units that do not go together}. Units
-/// never scale a value (FORMATS section 1), so that they only warn. tool.
+/// Is `text` a term for a degree of freedom whose unit is `unit` (mm or deg)? The unknown
+/// coefficient is `k`. Returns {"ok", "message", "offset", "word"} if it is not an expression of
+/// this machine; else {"ok": true, "unit" of the expression without k, "k_unit": required unit of
+/// k, "warnings": units that do not match}. Units never scale a value (FORMATS section 1), so a
+/// mismatch is only a warning. tool.
 nlohmann::ordered_json check_term(const model::Machine& machine, const std::string& text,
                                   const std::string& unit);
 
