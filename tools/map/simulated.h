@@ -32,7 +32,6 @@ LineResult measure_line(const Bench& bench, const std::string& name, const Eigen
 /// Measures each linear axis through the middle of the volume; body diagonals (four) and face
 /// diagonals (two in each face at the low end of the third axis; with two axes the two of the
 /// plane). Names: "X", "+X+Y-Z", "+X-Y". A line that the nominal chain cannot follow is omitted.
-/// tool.
 std::vector<LineResult> axis_lines(const model::Machine& machine, const Bench& bench);
 std::vector<LineResult> diagonals(const model::Machine& machine, const Bench& bench);
 
