@@ -16,7 +16,7 @@
 namespace vernier::compile {
 namespace {
 
-/// A column this small relative to 1 rad per rad does not tilt the tool.
+/// A column this small relative to 1 rad per rad has no influence on the tilt.
 constexpr double kTiltsNothing = 1e-9;
 /// One pair of axes is better than one nearer to the tool if its determinant is larger by this factor.
 constexpr double kBetter = 1.05;

@@ -14,7 +14,7 @@ namespace {
 
 using GiNaC::ex;
 
-/// Which degree of freedom of a transform comes when, from the side of the base.
+/// Order of the degrees of freedom of a transform, from the side of the base.
 struct LinkStep {
   std::size_t dof;
   bool rotation;
@@ -29,7 +29,7 @@ ex motion_value(const model::Machine& machine, const model::Transform& transform
   try {
     const ex value = book.value(*transform.dof[step.dof]);
     return step.rotation ? expand_inside(to_rad(value)) : expand_inside(value);
-  } catch (const std::exception& error) {  // a pole of GiNaC, say
+  } catch (const std::exception& error) {  // for example a pole of GiNaC
     throw text::InputError({machine.file, transform.line}, transform.text[step.dof],
                            std::string("cannot be derived: ") + error.what());
   }

@@ -13,12 +13,12 @@ class SymbolBook;
 
 using SymbolicVector = std::array<GiNaC::ex, 3>;
 
-/// Rotation matrix as a product that merges turns about one axis in a row: parallel axes give sin(q2+q3), not
-/// products of sines.
+/// Rotation matrix as a product. Successive rotations about one axis are merged: parallel axes
+/// give sin(q2+q3), not products of sines.
 class RotationProduct {
  public:
   void turn(int axis, const GiNaC::ex& angle_rad);
-  /// The product applied to a vector.
+  /// Returns the product applied to a vector.
   SymbolicVector operator*(const SymbolicVector& v) const;
 
  private:
@@ -29,17 +29,18 @@ class RotationProduct {
   std::vector<Turn> turns_;
 };
 
-/// v turned about axis x, y or z (0..2).
+/// Returns v rotated about axis x, y or z (0..2).
 SymbolicVector turned(const SymbolicVector& v, int axis, const GiNaC::ex& angle_rad);
 
-/// a x b.
+/// Returns a x b.
 SymbolicVector cross(const SymbolicVector& a, const SymbolicVector& b);
 
 /// Unit vector of axis 0..2.
 SymbolicVector unit_vector(int axis);
 
-/// The chain as elementary motions from the workpiece to the tool: the workpiece branch backwards with signs
-/// changed, then the tool branch. Throws InputError naming the expression that cannot be expressed. tool.
+/// Returns the chain as elementary motions from the workpiece to the tool: the workpiece branch in
+/// reverse order with opposite signs, then the tool branch. Throws InputError naming the
+/// expression that cannot be expressed. tool.
 std::vector<ElementaryMotion> elementary_motions(const model::Machine& machine, SymbolBook& book);
 
 }  // namespace vernier::derive

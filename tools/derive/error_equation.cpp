@@ -13,15 +13,16 @@ namespace {
 
 using GiNaC::ex;
 
-/// The chain at errors 0, walked from the workpiece to the tool.
+/// The chain at errors 0, from the workpiece to the tool.
 class NominalChain {
  public:
   explicit NominalChain(std::vector<ElementaryMotion> nominal) : motions_(std::move(nominal)) {}
 
-  /// What the tool point (mm) and the tool (rad) do per unit of motion j, in workpiece coordinates.
+  /// Returns the velocity of the tool point (mm) and of the tool's rotation (rad) per unit of
+  /// motion j, in workpiece coordinates.
   Sensitivity velocity(std::size_t j) const {
-    // The frame just before the run of turns about one axis that ends at j: the axis of j is the same there,
-    // and turns about it can still be added up.
+    // The frame just before the run of rotations about one axis that ends at j. The axis of j is
+    // the same there, and the angles of rotations about it can still be added.
     std::size_t start = j;
     const ElementaryMotion& motion = motions_[j];
     if (motion.rotation)
@@ -71,7 +72,7 @@ class NominalChain {
   std::vector<ElementaryMotion> motions_;
 };
 
-/// Slope of a motion by an error, at errors 0. Throws where there is none.
+/// Returns the slope of a motion by an error, at errors 0. Throws if there is no slope.
 ex nominal_slope(const model::Machine& machine, const ElementaryMotion& motion,
                  const ErrorParameter& parameter, const SymbolBook& book, const GiNaC::exmap& no_errors) {
   const model::Transform& transform = transform_of(machine, motion);
@@ -94,7 +95,7 @@ std::vector<ElementaryMotion> nominal_motions(const model::Machine& machine,
                                               const std::vector<ElementaryMotion>& motions,
                                               const GiNaC::exmap& no_errors, SymbolBook& book,
                                               std::vector<Abbreviation>& abbreviations) {
-  constexpr std::size_t kLongSum = 3;  // terms from which on a sum gets a name
+  constexpr std::size_t kLongSum = 3;  // number of terms above which a sum gets a name
   std::vector<ElementaryMotion> nominal = motions;
   for (ElementaryMotion& m : nominal) {
     const model::Transform& transform = transform_of(machine, m);

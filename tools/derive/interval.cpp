@@ -47,7 +47,7 @@ compile::Interval power_range(const ex& e, const Ranges& ranges) {
   const compile::Interval exponent = range_of(e.op(1), ranges);
   if (base.low == 0 && exponent.low < 0)
     throw NoRange(text_of(e.op(0)) + " may be zero below a fraction line");
-  // Monotonic in each of the two separately: the extremes are at corners.
+  // Monotonic in each of the two separately, so the extremes are at corners.
   const auto [low, high] =
       std::minmax({std::pow(base.low, exponent.low), std::pow(base.low, exponent.high),
                    std::pow(base.high, exponent.low), std::pow(base.high, exponent.high)});
@@ -83,7 +83,7 @@ compile::Interval function_range(const ex& e, const Ranges& ranges) {
 compile::Interval cosine_range(const compile::Interval& a) {
   compile::Interval result =
       widened(compile::hull({std::cos(a.low), std::cos(a.low)}, {std::cos(a.high), std::cos(a.high)}));
-  const double slack = 1e-9;  // an extreme just outside is taken in
+  const double slack = 1e-9;  // an extreme just outside is included
   if (std::floor((a.high + slack) / (2 * pi)) >= std::ceil((a.low - slack) / (2 * pi))) result.high = 1;
   if (std::floor((a.high + slack) / (2 * pi) - 0.5) >= std::ceil((a.low - slack) / (2 * pi) - 0.5))
     result.low = -1;

@@ -9,20 +9,22 @@
 
 namespace vernier::derive {
 
-/// Ranges of symbols: what each may be.
+/// Ranges of symbols.
 using Ranges = std::map<GiNaC::ex, compile::Interval, GiNaC::ex_is_less>;
 
-/// An expression has no finite range: a symbol without one, a division by a range with zero in it.
+/// An expression has no finite range: a symbol without a range, or a division by a range that
+/// contains zero.
 class NoRange : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Interval that holds every value of the expression over the ranges. Every operation widens its result by
-/// 1e-12 of it, far above the rounding of a double. Throws NoRange. tool.
+/// Returns an interval that contains every value of the expression over the ranges. Every
+/// operation widens its result by 1e-12 of it, far above the rounding of a double. Throws NoRange.
+/// tool.
 compile::Interval range_of(const GiNaC::ex& expr, const Ranges& ranges);
 
-/// All values of sin and cos over an interval of angles in rad.
+/// Returns the range of sin and cos over an interval of angles in rad.
 compile::Interval sine_range(const compile::Interval& angle_rad);
 compile::Interval cosine_range(const compile::Interval& angle_rad);
 

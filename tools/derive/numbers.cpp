@@ -42,7 +42,8 @@ GiNaC::ex constant_part(const GiNaC::ex& sum) {
   return 0;
 }
 
-/// Sign of the symbol of an expanded angle that comes first by name; 1 where it is no plain factor.
+/// Returns the sign of the symbol of an expanded angle that is first by name; 1 if it is not a
+/// plain factor.
 int leading_sign(const GiNaC::ex& angle) {
   std::string first;
   int sign = 1;

@@ -4,16 +4,16 @@
 
 namespace vernier::derive {
 
-/// The exact rational that the shortest decimal of `value` names (0.1 is 1/10); the decimals of pi, 180/pi
-/// and pi/180 to eleven digits or more become those constants. tool.
+/// Returns the exact rational of the shortest decimal of `value` (0.1 is 1/10). Decimals of pi,
+/// 180/pi and pi/180 with eleven digits or more become those constants. tool.
 GiNaC::ex exact_number(double value);
 
-/// Radians of an angle in degrees, and back; exact.
+/// Returns radians of an angle in degrees, and the inverse; exact.
 GiNaC::ex to_rad(const GiNaC::ex& angle_deg);
 GiNaC::ex to_deg(const GiNaC::ex& angle_rad);
 
-/// sin and cos with quarter turns taken out and the sign of the angle settled by its first symbol: sin(-C) is
-/// -sin(C), cos(B - pi/2) is sin(B). GiNaC leaves these as they are.
+/// sin and cos with quarter turns removed. The first symbol of the angle determines its sign:
+/// sin(-C) is -sin(C), cos(B - pi/2) is sin(B). GiNaC does not convert these.
 GiNaC::ex sine(const GiNaC::ex& angle_rad);
 GiNaC::ex cosine(const GiNaC::ex& angle_rad);
 

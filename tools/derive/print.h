@@ -8,11 +8,12 @@ namespace vernier::derive {
 
 enum class Notation { kText, kLatex };
 
-/// The expression with terms and factors in a fixed order: the same text in every run (GiNaC's own order
-/// depends on addresses). The text form reads back with GiNaC's parser where all names are identifiers. tool.
+/// Prints the expression with terms and factors in a fixed order: the same text in every run
+/// (GiNaC's own order depends on addresses). GiNaC's parser can read the text form if all names
+/// are identifiers. tool.
 std::string print(const GiNaC::ex& expr, Notation notation);
 
-/// A name in LaTeX: EXX is E_{XX}, d_lAx is \Delta \mathrm{lAx}.
+/// Returns a name in LaTeX: EXX is E_{XX}, d_lAx is \Delta \mathrm{lAx}.
 std::string latex_name(const std::string& name);
 
 }  // namespace vernier::derive

@@ -40,7 +40,7 @@ std::string sum_text(const std::vector<std::string>& terms, const std::string& s
   return text;
 }
 
-/// Terms on lines of bounded length, one term at least.
+/// Distributes terms over lines of bounded length, at least one term per line.
 std::string wrapped(const std::string& head, const std::vector<std::string>& terms) {
   std::string text = head + " =", line;
   if (terms.empty()) return text + " 0\n";

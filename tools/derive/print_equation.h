@@ -9,16 +9,17 @@
 
 namespace vernier::derive {
 
-/// An equation with what is known about its remainder.
+/// An equation with the bound of its remainder.
 struct DerivedMachine {
   ErrorEquation equation;
   SecondOrderBound bound;
-  std::optional<SecondOrder> sampled;  // none where a linear axis has no range
+  std::optional<SecondOrder> sampled;  // no value if a linear axis has no range
   std::size_t samples = 0;
 };
 
-/// One component of the deviation: 0..2 tool point (mm), 3..5 rotation vector (rad), 6..8 direction of the
-/// tool's z; a sum over the errors with their sensitivities in factored form. "0" where there is none. tool.
+/// Prints one component of the deviation: 0..2 tool point (mm), 3..5 rotation vector (rad), 6..8
+/// direction of the tool's z. It is a sum over the errors with their sensitivities in factored
+/// form. "0" if there is no term. tool.
 std::string print_component(const ErrorEquation& equation, std::size_t component, Notation notation,
                             const std::string& separator = " ");
 

@@ -18,7 +18,7 @@ using GiNaC::ex;
 
 compile::Interval scaled(const compile::Interval& a, double by) { return {a.low / by, a.high / by}; }
 
-/// A motion over the ranges: where it may be, how fast and how strongly accelerated when all errors grow from
+/// A motion over the ranges: its range, and its speed and acceleration when all errors grow from
 /// 0.
 struct Travel {
   compile::Interval value;

@@ -14,7 +14,7 @@ namespace vernier::derive {
 namespace {
 
 using GiNaC::ex;
-constexpr int kCubicSteps = 16;  // looks between two stations for the largest value of a spline
+constexpr int kCubicSteps = 16;  // evaluations between two stations for the largest value of a spline
 
 /// Component errors of ISO 230-1 by the columns X Y Z rX rY rZ of a table.
 constexpr std::array<const char*, 6> kIsoPrefix = {"EX", "EY", "EZ", "EA", "EB", "EC"};
@@ -79,7 +79,7 @@ ex SymbolBook::value(const model::Expr& expr) {
   if (expr.op == model::Op::kNumber) return exact_number(expr.number);
   if (expr.op == model::Op::kSymbol) return symbol_value(expr);
   if (is_opaque(expr.op)) return opaque_value(expr);
-  const ex first = value(*expr.args[0]);  // in order: errors are listed as they are met
+  const ex first = value(*expr.args[0]);  // in order: errors are listed in the order of their first use
   return operation(expr.op, first, expr.args.size() > 1 ? value(*expr.args[1]) : ex(0));
 }
 
@@ -138,8 +138,8 @@ ex SymbolBook::opaque_value(const model::Expr& expr) {
   for (const model::ExprPtr& arg : expr.args) args.push_back(value(*arg));
   const GiNaC::realsymbol name(text);
   ex result = name;
-  // Where an error acts inside, the derivative gets a symbol of its own: harmless as long as its factor is
-  // zero in the nominal chain, found by rough_word() otherwise.
+  // If an error acts inside, the derivative gets its own symbol. That is correct if its factor is
+  // zero in the nominal chain. Otherwise rough_word() finds it.
   for (const ErrorParameter& p : parameters)
     if (std::any_of(args.begin(), args.end(), [&](const ex& a) { return a.has(p.symbol); })) {
       rough_.emplace_back(GiNaC::realsymbol("D_" + p.name + text), text);
@@ -188,7 +188,8 @@ std::string SymbolBook::inferred_unit(const ErrorParameter& p,
   bool turns = false, shifts = false;
   for (const ElementaryMotion& motion : motions) {
     if (!motion.value.has(p.symbol)) continue;
-    // A number (or a number times pi/180) by which the static acts alone: it is that motion's own unit.
+    // If the static acts alone by a number (or a number times pi/180), its unit is that of the
+    // motion.
     const ex slope = motion.value.diff(p.symbol);
     const ex plain = motion.rotation ? (slope * 180 / GiNaC::Pi).expand() : slope.expand();
     if (!GiNaC::is_a<GiNaC::numeric>(plain)) return "";
@@ -234,7 +235,7 @@ double SymbolBook::file_size(const ErrorParameter& p) const {
     largest = std::max(largest, std::abs(table.stations[i].value[column]));
     if (table.interpolation != model::Interpolation::kCubic || i == 0) continue;
     const double from = table.stations[i - 1].loc, to = table.stations[i].loc;
-    for (int k = 1; k < kCubicSteps; ++k)  // a spline may rise above its stations
+    for (int k = 1; k < kCubicSteps; ++k)  // a spline may exceed its stations
       largest = std::max(largest,
                          std::abs(model::table_values(table, from + (to - from) * k / kCubicSteps)[column]));
   }

@@ -10,26 +10,28 @@
 
 namespace vernier::derive {
 
-/// The symbols of one derivation, and expressions of the machine in them. Values are in units of the machine
-/// file (mm, deg); the symbols behind them are rad where the file has degrees.
+/// The symbols of one derivation, and expressions of the machine in these symbols. Values are in
+/// units of the machine file (mm, deg). The symbols are in rad if the file has degrees.
 class SymbolBook {
  public:
   explicit SymbolBook(const model::Machine& machine);
 
-  /// The expression with all errors in it. Throws GiNaC's pole_error and std::logic_error where it has none.
+  /// Returns the expression with all errors in it. Throws GiNaC's pole_error and std::logic_error
+  /// if it has no value.
   GiNaC::ex value(const model::Expr& expr);
 
-  /// Statics without a unit are lengths or angles by where they act; called once all motions are known.
-  /// Replaces degrees by radians in the motions.
+  /// Statics without a unit are lengths or angles, depending on where they act. Called once when
+  /// all motions are known. Replaces degrees by radians in the motions.
   void settle_units(std::vector<ElementaryMotion>& motions);
 
   /// Gives every error its largest size, from the file or from `sizes`.
   void settle_sizes(const ErrorSizes& sizes);
 
-  /// The word under which an error has no derivative, where `coefficient` depends on one; else empty.
+  /// Returns the word under which an error has no derivative, if `coefficient` depends on one;
+  /// else empty.
   std::string rough_word(const GiNaC::ex& coefficient) const;
 
-  /// `wanted`, or `other` where that is taken; taken from now on.
+  /// Returns `wanted`, or `other` if `wanted` is used. The name is used from then on.
   std::string free_name(const std::string& wanted, const std::string& other);
 
   std::vector<ErrorParameter> parameters;
@@ -56,8 +58,7 @@ class SymbolBook {
   std::map<std::pair<int, std::size_t>, GiNaC::ex> known_;
   std::map<std::string, GiNaC::ex> known_opaque_;
   std::set<std::string> names_;
-  std::vector<std::pair<GiNaC::realsymbol, std::string>>
-      rough_;  // stands for a derivative that does not exist
+  std::vector<std::pair<GiNaC::realsymbol, std::string>> rough_;  // replaces a derivative that does not exist
 };
 
 }  // namespace vernier::derive

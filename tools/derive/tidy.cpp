@@ -5,10 +5,10 @@ namespace vernier::derive {
 namespace {
 
 using GiNaC::ex;
-/// Sums longer than this are not factored: it would take seconds and find nothing.
+/// Longer sums are not factored: it would need seconds and find nothing.
 constexpr std::size_t kFactorTerms = 24;
 
-/// sin(x)^n with n >= 2, wherever it stands.
+/// sin(x)^n with n >= 2, at any position.
 class SquaresOfSines : public GiNaC::map_function {
  public:
   ex operator()(const ex& e) override {
@@ -25,8 +25,8 @@ class SquaresOfSines : public GiNaC::map_function {
   bool found = false;
 };
 
-/// The factors of a product with every sum in them multiplied out: one form, whatever GiNaC's inner order
-/// (its factors may come back half factored, differently in each run).
+/// Returns the factors of a product with every sum in them multiplied out. The form does not
+/// depend on GiNaC's inner order (its factors may be half factored, differently in each run).
 ex with_flat_factors(const ex& product) {
   if (GiNaC::is_a<GiNaC::power>(product)) return GiNaC::pow(product.op(0).expand(), product.op(1));
   if (!GiNaC::is_a<GiNaC::mul>(product)) return product.expand();
@@ -35,7 +35,8 @@ ex with_flat_factors(const ex& product) {
   return result;
 }
 
-/// Factors of an expanded sum, sines and the like taken as unknowns; the sum itself where that fails.
+/// Returns factors of an expanded sum, with sines and the like as unknowns; the sum itself if that
+/// fails.
 ex factored(const ex& sum) {
   GiNaC::exmap unknowns;
   const ex polynomial = sum.to_polynomial(unknowns);

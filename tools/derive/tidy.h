@@ -15,7 +15,8 @@ GiNaC::ex expand_inside(const GiNaC::ex& expr);
 /// Expanded, with sin^2 replaced by 1 - cos^2: equal trigonometric polynomials of one angle become the same.
 GiNaC::ex canonical(const GiNaC::ex& expr);
 
-/// The same value in the shortest form found: canonical, then factored where it is small enough.
+/// Returns the same value in the shortest form found: canonical, then factored if it is small
+/// enough.
 GiNaC::ex tidy(const GiNaC::ex& expr);
 
 /// Number of terms of a sum, 1 for anything else, 0 for zero.

@@ -11,16 +11,16 @@
 
 namespace vernier::derive {
 
-/// One error of the machine: a table value (at the pose), the deviation of a static from its nominal, or a
-/// scale factor. In the equation it stands for a number in `unit`.
+/// One error of the machine: a table value (at the pose), the deviation of a static from its
+/// nominal, or a scale factor. In the equation it is a number in `unit`.
 struct ErrorParameter {
   GiNaC::realsymbol symbol;
-  std::string name;    // ISO 230 for table values (EXX), the static's name, d_NAME where its nominal is not 0
-  std::string source;  // as the machine file calls it: lXx, AL, scalefactor of X
-  model::Symbol key;   // kTableValue, kStatic, or kAxis for a scale factor
-  std::string unit;    // mm, rad, or the static's own unit
-  double file_units = 1;   // machine-file units per `unit`: 180/pi for what the file holds in deg
-  double magnitude = 0;    // largest absolute value assumed, in `unit`
+  std::string name;       // ISO 230 for table values (EXX), the static's name, d_NAME if its nominal is not 0
+  std::string source;     // as in the machine file: lXx, AL, scalefactor of X
+  model::Symbol key;      // kTableValue, kStatic, or kAxis for a scale factor
+  std::string unit;       // mm, rad, or the static's own unit
+  double file_units = 1;  // machine-file units per `unit`: 180/pi if the file has deg
+  double magnitude = 0;   // largest assumed absolute value, in `unit`
   bool from_file = false;  // the magnitude is the machine's own (largest table value, value - nominal)
 };
 
@@ -33,14 +33,15 @@ struct NominalSymbol {
   double file_units = 1;  // machine-file units per `unit`: 180/pi for a rotary axis
 };
 
-/// A subexpression without a derivative that stands as one symbol: a comparison, sign, abs, min, max, lag.
+/// A subexpression without a derivative that is one symbol: a comparison, sign, abs, min, max,
+/// lag.
 struct OpaqueSymbol {
   GiNaC::realsymbol symbol;
   model::ExprPtr expr;  // at nominal values
   std::vector<GiNaC::ex> args;
 };
 
-/// A long length of the nominal chain (a sum of tool offsets, say) that stands as one symbol.
+/// A long length of the nominal chain (for example a sum of tool offsets) that is one symbol.
 struct Abbreviation {
   GiNaC::realsymbol symbol;
   GiNaC::ex value;  // mm
@@ -51,12 +52,12 @@ struct Abbreviation {
 using Sensitivity = std::array<GiNaC::ex, 6>;
 
 /// An elementary motion of the chain from the workpiece to the tool: along or about x, y or z.
-/// `value`: mm or rad with all errors in it; at errors 0 it is the nominal chain's.
+/// `value`: mm or rad including all errors. With errors 0 it is the value of the nominal chain.
 struct ElementaryMotion {
   bool rotation = false;
   int axis = 0;
   GiNaC::ex value;
-  bool workpiece = false;  // which branch, which transform, which degree of freedom
+  bool workpiece = false;  // branch, transform, degree of freedom
   std::size_t link = 0, dof = 0;
 };
 
@@ -71,10 +72,10 @@ struct ErrorEquation {
   std::array<GiNaC::ex, 3> position;     // nominal tool point in workpiece coordinates, mm
   std::array<GiNaC::ex, 3> tool_axis;    // nominal direction of the tool's z in workpiece coordinates
   std::vector<Sensitivity> sensitivity;  // by parameter
-  std::vector<std::string> notes;        // what was taken how; parameters of second order only
+  std::vector<std::string> notes;        // conventions that were used; parameters of second order only
 };
 
-/// Sizes of errors of which the machine file says nothing (zero tables, statics at their nominal).
+/// Sizes of errors that the machine file does not state (zero tables, statics at their nominal).
 struct ErrorSizes {
   double length_mm = 0.1;
   double angle_rad = 1e-3;

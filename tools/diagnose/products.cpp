@@ -86,7 +86,7 @@ std::size_t factors_in(const model::Expr& term) {
   return count;
 }
 
-/// A sense times itself is 1, so the product is a simpler term.
+/// An approach direction (+1 or -1) times itself is 1, so the product is a simpler term.
 bool would_cancel(const model::Expr& term, const ProductFactor& factor) {
   if (!factor.is_sense) return false;
   const std::string name = model::to_text(*factor.value);

@@ -116,7 +116,7 @@ Eigen::VectorXd Pulls::column(const effects::Wave& wave) const {
   return read;
 }
 
-/// Masses from the tool inwards: first the load at the tool. A mass is excluded if its moment is
+/// Masses in order from the tool to the base, first the load at the tip. A mass is excluded if its moment is
 /// proportional to that of another over the rows, or to that of a bar at the joint itself.
 void Pulls::with_masses(const effects::Choice& choice, std::vector<effects::Choice>& list) const {
   const effects::DofPlace& joint = *choice.place;

@@ -19,7 +19,7 @@ enum class PlaceRule : std::uint8_t {
   kTurn,      // the other angles of q's transform
   kLength,    // every length of the chain
   kAngle,     // every angle of the chain
-  kBase,      // lengths of the transform that carries the whole branch
+  kBase,      // lengths of the transform that carries everything
   kBaseTurn,  // angles of that transform
   kSag,       // angles about a horizontal axis and lengths along gravity, of any transform
   kJoint,     // the angle that a rotary axis moves, where gravity has a moment about it

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Of what counts as reached.
+/// Tolerance of a reached point.
 constexpr double kSlack_mm = 1e-6;
 
 const model::Axis& ranged(const model::Machine& machine, std::size_t axis) {
@@ -119,7 +119,7 @@ Eigen::Matrix3Xd Bench::measure(const Eigen::Matrix3Xd& points) const {
 model::States Bench::states_of(const Eigen::MatrixXd& positions) const {
   const Index count = positions.cols();
   model::States states = standing_at(positions);
-  constexpr double kStill_mm = 1e-9;  // less is rounding of the back solution, no motion
+  constexpr double kStill_mm = 1e-9;  // a smaller value is rounding of the inverse solution, not motion
   for (Index k = 0; k < positions.rows(); ++k) {
     const std::size_t axis = axes_[static_cast<std::size_t>(k)];
     double sense = 0, since = model::kLongWay;

@@ -11,36 +11,39 @@ namespace vernier::map {
 
 /// Deviation vectors on a grid over the ranges of one to three axes.
 struct ErrorField {
-  std::vector<std::size_t> axes;    // swept, the first one runs fastest
-  std::vector<std::size_t> counts;  // nodes along each
-  model::States states;             // one a node
+  std::vector<std::size_t> axes;    // swept; the first one changes fastest
+  std::vector<std::size_t> counts;  // number of nodes along each
+  model::States states;             // one per node
   Eigen::Matrix3Xd nominal;         // tool point of the nominal chain, mm
   Eigen::Matrix3Xd deviation;       // actual - nominal, mm
 };
 
-/// The field over the declared ranges of `axes`, `count` nodes along each; everything else as in `at` (count
-/// 1). Throws InputError: an axis without min and max, no axis or more than three. tool.
+/// Returns the field over the declared ranges of `axes`, `count` nodes along each. Everything else
+/// is as in `at` (count 1). Throws InputError: an axis without min and max, no axis or more than
+/// three. tool.
 ErrorField error_field(const model::Machine& machine, const model::States& at,
                        const std::vector<std::size_t>& axes, std::size_t count);
 
-/// A machine on which measurements are simulated: its nominal chain is what was commanded, the machine itself
-/// what happens. Its linear axes are found by the closed back solution where the nominal chain has one, else
-/// by iteration.
+/// A machine on which measurements are simulated. Its nominal chain gives the command, the machine
+/// itself the actual position. Its linear axes come from the closed inverse solution if the
+/// nominal chain has one, else from iteration.
 class Bench {
  public:
-  /// Throws InputError where the chain has no linear axis or more than three, or one without a range.
+  /// Throws InputError if the chain has no linear axis or more than three, or one without a range.
   Bench(const model::Machine& machine, const model::States& at);
 
   const std::vector<std::size_t>& axes() const { return axes_; }
-  /// Nominal tool point (mm) where the linear axes stand at these fractions (0..1) of their ranges.
+  /// Returns the nominal tool point (mm) with the linear axes at these fractions (0..1) of their
+  /// ranges.
   Eigen::Vector3d point_at(const Eigen::VectorXd& fraction) const;
-  /// Can the linear axes bring the nominal tool point to all of these (3 x N, mm), ranges aside?
+  /// Can the linear axes bring the nominal tool point to all of these points (3 x N, mm), without
+  /// regard to ranges?
   bool meets(const Eigen::Matrix3Xd& points) const;
   /// The same within their ranges.
   bool reaches(const Eigen::Matrix3Xd& points) const;
-  /// Where the tool point really is when these are commanded one after the other, at rest at each. Senses of
-  /// motion and travel since reversal are those of the way there; the first point is come to as its second
-  /// is.
+  /// Returns the actual tool points if these points are commanded one after the other, at rest at
+  /// each. Directions of motion and travel since reversal are those of this path. The first point
+  /// is approached in the same way as the second.
   Eigen::Matrix3Xd measure(const Eigen::Matrix3Xd& points) const;
 
  private:

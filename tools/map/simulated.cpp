@@ -26,7 +26,7 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-constexpr int kCirclePoints = 360;  // a degree each
+constexpr int kCirclePoints = 360;  // one per degree
 const char* const kPlaneNames[] = {"XY", "YZ", "ZX"};
 
 double range(const Eigen::VectorXd& v) { return v.maxCoeff() - v.minCoeff(); }
@@ -73,8 +73,8 @@ Matrix3Xd circle_points(const Vector3d& centre, double radius, int plane, int se
   return points;
 }
 
-/// The largest radius (mm) whose circle the axes reach, less a tenth; none where they do not move in that
-/// plane.
+/// Returns the largest radius (mm) of a circle that the axes reach, minus a tenth; nullopt if they
+/// do not move in that plane.
 std::optional<double> fitting_radius(const Bench& bench, const Vector3d& centre, int plane) {
   double low = 0, high = 1e-3;
   const auto reach = [&](double r) { return bench.reaches(circle_points(centre, r, plane, 1)); };
@@ -90,7 +90,8 @@ std::optional<double> fitting_radius(const Bench& bench, const Vector3d& centre,
 importer::CircularPass measured_circle(const Bench& bench, const Vector3d& centre, double radius, int plane,
                                        int sense) {
   const Matrix3Xd points = circle_points(centre, radius, plane, sense);
-  // A lap before the one that counts, so that senses and travel since reversal are those of steady motion.
+  // A lap before the evaluated one, so that directions and travel since reversal are those of
+  // steady motion.
   Matrix3Xd laps(3, 2 * kCirclePoints + 1);
   laps << points.leftCols(kCirclePoints), points;
   const Matrix3Xd actual = bench.measure(laps).rightCols(kCirclePoints);
@@ -106,7 +107,8 @@ importer::CircularPass measured_circle(const Bench& bench, const Vector3d& centr
   return pass;
 }
 
-/// Adds the line if the nominal chain can follow it: where axes turn the tool point it need not.
+/// Adds the line if the nominal chain can follow it. If axes rotate the tool point, that is not
+/// certain.
 void add_line(const Bench& bench, const std::string& name, const Eigen::VectorXd& from,
               const Eigen::VectorXd& to, std::vector<LineResult>& lines) {
   const Vector3d first = bench.point_at(from), last = bench.point_at(to);
@@ -117,7 +119,7 @@ void add_line(const Bench& bench, const std::string& name, const Eigen::VectorXd
 void add_diagonal(const model::Machine& machine, const Bench& bench, const std::vector<Index>& moving,
                   unsigned signs, std::vector<LineResult>& lines) {
   const auto count = static_cast<Index>(bench.axes().size());
-  // Faces at the low end of the axes that stay.
+  // Faces at the low end of the axes that do not move.
   Eigen::VectorXd from = Eigen::VectorXd::Zero(count), to = from;
   std::string name;
   for (std::size_t i = 0; i < moving.size(); ++i) {
@@ -151,7 +153,7 @@ LineResult measure_line(const Bench& bench, const std::string& name, const Vecto
     high = std::max({high, f, r});
     mean_low = std::min(mean_low, (f + r) / 2);
     mean_high = std::max(mean_high, (f + r) / 2);
-    // The end is turned at, not passed: there the senses do not differ.
+    // At the end the motion reverses without passing it, so the directions do not differ there.
     if (i + 1 < positions) line.reversal_um = std::max(line.reversal_um, std::abs(f - r));
   }
   line.error_um = high - low;
@@ -211,7 +213,7 @@ Json squares_json(const Bench& bench) {
     const auto radius = fitting_radius(bench, centre, plane);
     if (!radius) continue;
     const double half = *radius / std::sqrt(2.0);  // its corners lie on the circle
-    constexpr int kSide = 21;                      // points of a square's side, as ISO 230-1 draws it
+    constexpr int kSide = 21;                      // points of a square's side, as in ISO 230-1
     const double corner[5][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}};
     double slope[4] = {}, straight = 0;
     Json sides = Json::array();
@@ -232,7 +234,8 @@ Json squares_json(const Bench& bench) {
       straight = std::max(straight, straightness(nominal, off, along));
       sides.push_back(maths::kUmPerMm * ((actual.col(kSide - 1) - actual.col(0)).norm() - 2 * half));
     }
-    // Side 0 along the first axis, side 1 along the second; the opposite sides have the opposite sense.
+    // Side 0 is along the first axis, side 1 along the second. The opposite sides have the
+    // opposite direction.
     const double square = (slope[1] + slope[3]) / 2 - (slope[0] + slope[2]) / 2;
     list.push_back({{"plane", kPlaneNames[plane]},
                     {"side_mm", 2 * half},
@@ -264,8 +267,8 @@ Json cylinder_json(const Bench& bench) {
       rows.push_back({1, p.x() / r, p.y() / r, p.z() * p.x() / r, p.z() * p.y() / r});
     }
   }
-  // r = radius + shift and tilt of the axis seen in the radial direction: linear, as the circle's analysis
-  // is.
+  // r = radius + shift and tilt of the axis in the radial direction. It is linear, like the
+  // analysis of the circle.
   Eigen::MatrixXd a(static_cast<Index>(rows.size()), 5);
   for (std::size_t i = 0; i < rows.size(); ++i) a.row(static_cast<Index>(i)) = rows[i].transpose();
   const Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(radii.data(), static_cast<Index>(radii.size()));

@@ -8,42 +8,46 @@
 
 namespace vernier::map {
 
-/// A straight line measured there and back, deviations along it from its first point, um.
+/// A straight line measured forward and back, deviations along it from its first point, um.
 struct LineResult {
   std::string name;
   Eigen::Vector3d from, to;         // nominal ends, mm
   std::vector<double> distance_mm;  // of the positions, from the first
   std::vector<double> forward_um, reverse_um;
-  double error_um = 0;     // E: range over both senses
-  double mean_um = 0;      // M: range of the mean of both senses
-  double reversal_um = 0;  // B: largest difference of the senses
+  double error_um = 0;     // E: range over both directions
+  double mean_um = 0;      // M: range of the mean of both directions
+  double reversal_um = 0;  // B: largest difference of the directions
   double straightness_um =
-      0;  // range across the line about its least-squares line, the worse of two directions
+      0;  // range across the line about its least-squares line, the larger one of two directions
 };
 
 constexpr int kLinePositions = 21;  // of a line: every twentieth of it
 
-/// A line of `positions` points between two nominal points, forward then back. Source of E, M, B: ISO 230-6
-/// (diagonals), ISO 230-2 (single axes), here of one run a sense and so without repeatability. tool.
+/// Measures a line of `positions` points between two nominal points, forward then back. Source of
+/// E, M, B: ISO 230-6 (diagonals), ISO 230-2 (single axes), here with one run per direction and
+/// therefore without repeatability. tool.
 LineResult measure_line(const Bench& bench, const std::string& name, const Eigen::Vector3d& from,
                         const Eigen::Vector3d& to, int positions = kLinePositions);
 
-/// Each linear axis through the middle of the volume; body diagonals (four) and face diagonals (two in each
-/// face at the low end of the third axis; with two axes the two of the plane). Names: "X", "+X+Y-Z", "+X-Y".
-/// A line that the nominal chain cannot follow is left out.
+/// Measures each linear axis through the middle of the volume; body diagonals (four) and face
+/// diagonals (two in each face at the low end of the third axis; with two axes the two of the
+/// plane). Names: "X", "+X+Y-Z", "+X-Y". A line that the nominal chain cannot follow is omitted.
 std::vector<LineResult> axis_lines(const model::Machine& machine, const Bench& bench);
 std::vector<LineResult> diagonals(const model::Machine& machine, const Bench& bench);
 
-/// ISO 230-4 numbers of circles in the planes XY, YZ, ZX of the workpiece about the middle of the volume,
-/// both senses, as large as fits; planes that the axes cannot reach are left out. tool.
+/// Returns ISO 230-4 results of circles in the planes XY, YZ, ZX of the workpiece about the middle
+/// of the volume, in both directions, with the largest possible radius. Planes that the axes
+/// cannot reach are omitted. tool.
 nlohmann::ordered_json circles_json(const Bench& bench);
-/// Squares in the same planes: angle of the sides (um/m from 90 deg), side lengths, straightness.
+/// Returns results of squares in the same planes: angle of the sides (um/m from 90 deg), side
+/// lengths, straightness.
 nlohmann::ordered_json squares_json(const Bench& bench);
-/// A cylinder (five circles along Z): range of the radii about its least-squares axis, tilt of that axis;
-/// null where the axes cannot reach it.
+/// Returns results of a cylinder (five circles along Z): range of the radii about its
+/// least-squares axis, tilt of that axis; null if the axes cannot reach it.
 nlohmann::ordered_json cylinder_json(const Bench& bench);
-/// Lines through points of a CSV file `x[mm],y[mm],z[mm],run`, a line a run: length between its ends and
-/// straightness. Throws InputError: a point out of the volume, fewer than two points. tool.
+/// Returns results of lines through points of a CSV file `x[mm],y[mm],z[mm],run`, one line per
+/// run: length between its ends and straightness. Throws InputError: a point outside the volume,
+/// fewer than two points. tool.
 nlohmann::ordered_json free_lines_json(const Bench& bench, const std::string& path);
 
 nlohmann::ordered_json line_json(const LineResult& line);

@@ -27,7 +27,7 @@ RigidMotion align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
   const Eigen::Vector3d from_mean = from.rowwise().mean(), to_mean = to.rowwise().mean();
   const Eigen::Matrix3Xd a = from.colwise() - from_mean, b = to.colwise() - to_mean;
   RigidMotion motion;
-  // A standing machine: what is left of its points is rounding of their coordinates.
+  // A machine at rest: the differences of its points are rounding of their coordinates.
   const double extent = std::max(from.squaredNorm(), to.squaredNorm());
   motion.rotation = rotation_of(b * a.transpose(), extent);
   motion.translation = to_mean - motion.rotation * from_mean;

@@ -10,17 +10,17 @@ struct RigidMotion {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
-/// The rigid motion that brings `from` closest to `to` in the sum of squared distances.
-/// from, to: 3 x N, N >= 1, in correspondence. Points on one line leave the rotation about it open: the
-/// smallest is taken; a single point leaves all of it open: none is taken. Source: Umeyama, IEEE PAMI 13
-/// (1991) 376, equations 40-43, without scale. tool.
+/// Returns the rigid motion that brings `from` closest to `to` in the sum of squared distances.
+/// from, to: 3 x N, N >= 1, in correspondence. Points on one line do not determine the rotation
+/// about it: the smallest rotation is used. For a single point no rotation is used. Source:
+/// Umeyama, IEEE PAMI 13 (1991) 376, equations 40-43, without scale. tool.
 RigidMotion align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
-/// Do points (3 x N) fix a rigid motion: are there three that do not lie on one line (to 1e-9 of their
-/// extent)?
+/// Do points (3 x N) determine a rigid motion: are there three that are not on one line (to 1e-9
+/// of their extent)?
 bool fixes_motion(const Eigen::Matrix3Xd& points);
 
-/// motion applied to `from`, minus `to`.
+/// Returns the motion applied to `from`, minus `to`.
 Eigen::Matrix3Xd aligned_error(const RigidMotion& motion, const Eigen::Matrix3Xd& from,
                                const Eigen::Matrix3Xd& to);
 

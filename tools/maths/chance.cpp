@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMostTerms = 10000;  // of a fraction that converges in sqrt(n)
 constexpr double kDone = 1e-13;    // relative: a digit above rounding
-constexpr double kTiny = 1e-300;   // stands for 0 in a denominator (modified Lentz)
+constexpr double kTiny = 1e-300;   // replaces 0 in a denominator (modified Lentz)
 
 /// Continued fraction of the incomplete beta function, x < (a + 1) / (a + b + 2).
 double beta_fraction(double a, double b, double x) {

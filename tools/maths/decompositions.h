@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Systems of equations and decompositions of matrices whose size is known at run time only, compiled once
-// here: what the library instantiates for one of them costs a compiler seconds in every room that asks for
-// it.
+// Systems of equations and decompositions of matrices of dynamic size. They are compiled once
+// here, because each instantiation in another folder would need seconds of compile time.
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -23,37 +22,40 @@ VectorXd solve_symmetric(const MatrixXd& a, const VectorXd& b);
 MatrixXd solve_symmetric(const MatrixXd& a, const MatrixXd& b);
 }  // namespace compiled
 
-/// A vector for a vector, a matrix for a matrix.
+/// The result is a vector for a vector, a matrix for a matrix.
 template <class Right>
 using Solution = Eigen::Matrix<double, Eigen::Dynamic, Right::ColsAtCompileTime == 1 ? 1 : Eigen::Dynamic>;
 
-/// x of least |a x - b|; a: n x p of rank p. Householder QR with column pivoting. tool.
+/// Returns x of least |a x - b|; a: n x p of rank p. Householder QR with column pivoting. tool.
 template <class Right>
 Solution<Right> least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::least_squares(a, Solution<Right>(b));
 }
-/// The shortest x of least |a x - b|; a of any rank. Complete orthogonal decomposition. tool.
+/// Returns the shortest x of least |a x - b|; a of any rank. Complete orthogonal decomposition.
+/// tool.
 template <class Right>
 Solution<Right> least_norm(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::least_norm(a, Solution<Right>(b));
 }
-/// x of a x = b; a symmetric, positive definite. Cholesky. tool.
+/// Returns x of a x = b; a symmetric, positive definite. Cholesky. tool.
 template <class Right>
 Solution<Right> solve_positive(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::solve_positive(a, Solution<Right>(b));
 }
-/// x of a x = b; a symmetric and, but for rounding, positive semidefinite. Cholesky with pivots. tool.
+/// Returns x of a x = b; a symmetric and, except for rounding, positive semidefinite. Cholesky
+/// with pivots. tool.
 template <class Right>
 Solution<Right> solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::solve_symmetric(a, Solution<Right>(b));
 }
-/// x of a x = b; a square and regular. Gauss with row pivots. tool.
+/// Returns x of a x = b; a square and regular. Gauss with row pivots. tool.
 Eigen::MatrixXd solve_square(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// n x rank, orthonormal: what the columns of a reach, those left out that depend on others to `threshold`
-/// of the largest pivot (0: the library's, rounding). Householder QR with column pivoting. tool.
+/// Returns an orthonormal basis, n x rank, of the range of a. Columns that depend on others to
+/// `threshold` of the largest pivot (0: the library's, rounding) are excluded. Householder QR with
+/// column pivoting. tool.
 Eigen::MatrixXd range_of(const Eigen::MatrixXd& a, double threshold = 0);
-/// n x p, orthonormal: the first p <= n columns of Q of a = Q R, whatever their rank. tool.
+/// Returns n x p, orthonormal: the first p <= n columns of Q of a = Q R, for any rank. tool.
 Eigen::MatrixXd thin_q(const Eigen::MatrixXd& a);
 
 }  // namespace vernier::maths

@@ -2,8 +2,8 @@
 #pragma once
 #include <numbers>
 
-/// Factors between the units that tools write: the only place where they stand. Files keep mm, deg, degC and
-/// s; a radian appears only inside a function that needs one.
+/// Factors between the units that tools write. They are defined only here. Files use mm, deg, degC
+/// and s. Radians occur only inside functions that need them.
 namespace vernier::maths {
 
 inline constexpr double kRadPerDeg = std::numbers::pi / 180;

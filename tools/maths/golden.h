@@ -7,8 +7,9 @@ struct Peak {
   double at = 0, value = 0;
 };
 
-/// Where a function is largest between two points, by golden sections: the better of the last two looked at.
-/// The function has one peak there, else one of them is found. tool.
+/// Returns the position and value of the maximum of a function between two points, by golden
+/// sections: the better of the last two points. If the function has several peaks, one of them is found.
+/// tool.
 template <typename Function>
 Peak golden_peak(const Function& value, double low, double high, int sections) {
   constexpr double kGolden = 0.381966011250105;  // 2 - (1 + sqrt 5)/2

@@ -4,13 +4,16 @@
 
 namespace vernier::maths {
 
-/// The middle one of `values`, of an even count the upper of the two; 0 of none. tool.
+/// Returns the median of `values`, of an even count the upper of the two; 0 for an empty list.
+/// tool.
 double median(std::vector<double> values);
 
-/// Standard deviation of a normal law that has this median size (Hampel 1974: 1.4826 of it). tool.
+/// Returns the standard deviation of a normal distribution with this median size (Hampel 1974:
+/// 1.4826 of it). tool.
 double spread_of_median(double median_size);
 
-/// Spread of deviations from 0, from their median size: wild ones do not move it; 0 of none. tool.
+/// Returns the standard deviation of deviations from 0, from their median size, so that outliers
+/// do not change it; 0 for an empty list. tool.
 double robust_spread(std::vector<double> deviations);
 
 }  // namespace vernier::maths

@@ -27,7 +27,7 @@ struct Sweep {
     }
   }
 
-  /// Explained sum of squares of pivot i; nothing where it is a combination of those before.
+  /// Returns the explained sum of squares of pivot i; 0 if it is a combination of earlier ones.
   double take(Eigen::Index i, bool& counts) {
     const Eigen::Index rest = gram.rows() - i - 1;
     const double pivot = gram(i, i);
@@ -98,7 +98,8 @@ double rest_freedom(const Moments& moments, const Explained& part) {
   return moments.freedom - part.rank_before - part.rank;
 }
 
-/// Variance of the residual once everything has been taken out; 0 where nothing is left.
+/// Returns the variance of the residual after everything is removed; 0 if no degree of freedom
+/// remains.
 double rest_variance(const Moments& moments, const Explained& part) {
   const double rest = moments.sum - part.sum_before - part.sum;
   return rest > 1e-14 * moments.sum ? rest / rest_freedom(moments, part) : 0;
@@ -126,7 +127,7 @@ double log_p_together(const std::vector<const Moments*>& moments, const std::vec
     }
     sum += parts[i].sum / variance;
     rank += parts[i].rank;
-    // The kinds' variances are estimated apart; the least certain one counts for all.
+    // The kinds' variances are estimated separately. The least certain one counts for all.
     freedom = std::min(freedom, free);
   }
   return rank > 0 ? log_f_tail(sum / rank, rank, freedom) : 0;

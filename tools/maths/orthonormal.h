@@ -6,8 +6,8 @@
 
 namespace vernier::maths {
 
-/// Columns made orthonormal one after the other; those with less than `least` of their length left are
-/// dropped. `kept`: the ones that stay.
+/// Returns the columns, made orthonormal one after the other. Columns with less than `least` of
+/// their length remaining are dropped. `kept`: the remaining ones.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::vector<std::size_t>* kept);
 
 }  // namespace vernier::maths

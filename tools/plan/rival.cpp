@@ -48,7 +48,7 @@ std::string best_of_effect(const diagnose::Evidence& evidence, const effects::Ef
     throw text::InputError("\"" + effect.id +
                            "\": these rows do not show it at any location (give an add string)");
   const auto value = [&](const diagnose::Scored& item) {
-    constexpr double kPriceOfDegenerate = 6;  // as much evidence as a form that holds a simpler one needs
+    constexpr double kPriceOfDegenerate = 6;  // as much evidence as a form that contains a simpler one needs
     return value_of(item, evidence) - (degenerate(item, list[item.candidate]) ? kPriceOfDegenerate : 0);
   };
   const auto worse = [&](const diagnose::Scored& a, const diagnose::Scored& b) {
@@ -63,7 +63,7 @@ std::string best_of_effect(const diagnose::Evidence& evidence, const effects::Ef
                              effects::choice_at(list[best.candidate].candidate, best.scanned));
 }
 
-/// The coefficients from the projected columns; empty where the model absorbs all of them.
+/// Returns the coefficients from the projected columns; empty if the model absorbs all of them.
 std::vector<double> linear_estimate(const diagnose::Evidence& evidence, const effects::Candidate& candidate) {
   std::vector<double> scanned;
   for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(candidate))

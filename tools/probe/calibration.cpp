@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Feeds that lie closer together than this say nothing about the delay.
+/// Feeds that differ by less than this give no information about the delay.
 constexpr double kLeastFeedSpread = 0.05;
 /// A gap in the azimuths, or a span of the threefold angle, from which lobes cannot be distinguished from an
 /// eccentric centre.
@@ -28,7 +28,7 @@ bool varies(const VectorXd& values) {
   return high - low > kLeastFeedSpread * std::max(std::abs(high), std::abs(low));
 }
 
-/// Columns of the design that the touches can bear.
+/// Columns of the design that the touches can determine.
 struct LeverReach {
   bool delay = false, lobes = false;
 };
@@ -55,7 +55,8 @@ void add(ProbeCalibration& result, const std::string& name, const std::string& u
       {name, unit, factor * result.fit.value(i) + offset, std::abs(factor) * result.fit.std_of(i)});
 }
 
-// Does a model with further parameters explain more than chance? Both were fitted to the same touches.
+// Does a model with additional parameters explain more than chance? Both models must be fitted to
+// the same touches.
 bool explains(const TouchFit& with, const TouchFit& without, double level) {
   const double more = without.sigma * without.sigma * without.dof - with.sigma * with.sigma * with.dof;
   const int extra = without.dof - with.dof;
@@ -64,16 +65,16 @@ bool explains(const TouchFit& with, const TouchFit& without, double level) {
                                     with.dof)) < level;
 }
 
-/// Adds the standard deviation of the delay from touch to touch: the part of the residuals' variance that
-/// grows with the square of the speed (mm/s). `touches`: how many are in one observation.
+/// Adds the standard deviation of the delay from touch to touch: the part of the residuals'
+/// variance that grows with the square of the speed (mm/s). `touches`: number in one observation.
 void add_spread(ProbeCalibration& result, const VectorXd& speed, double touches) {
   if (!result.delay_found) return;
-  // Squares of residuals against 1 and speed^2, weighted by what each scatters (2 variance^2); parameters
-  // took some.
+  // Squares of residuals as a function of 1 and speed^2, weighted by the scatter of each (2
+  // variance^2). The parameters absorbed a part.
   const double lost = static_cast<double>(speed.size()) / std::max(1, result.fit.dof);
   Eigen::Vector2d variance(result.fit.sigma * result.fit.sigma, 0);
   Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
-  constexpr int kRounds = 20;  // of weights and fit in turn, at most
+  constexpr int kRounds = 20;  // of alternating weights and fit, at most
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
@@ -135,7 +136,7 @@ ProbeCalibration calibrate_block(TouchTable& table, const CalibrationSetup& setu
   return result;
 }
 
-// ---- ring and sphere: a centre, a radius and what hangs on feed and direction
+// ---- ring and sphere: a centre, a radius and the parameters of feed and direction
 
 struct RoundTouches {
   bool sphere = false;
@@ -143,7 +144,7 @@ struct RoundTouches {
   double sign = 1;                   // +1: touched from outside
 
   Index first_extra() const { return sphere ? 4 : 3; }
-  // Distance of a touch from the surface that the parameters describe: centre, radius, [delay], [lobes].
+  // Distance of a touch from the surface of the parameters: centre, radius, [delay], [lobes].
   VectorXd residual(const VectorXd& p, const LeverReach& reach) const {
     VectorXd r(x.size());
     for (Index i = 0; i < x.size(); ++i) {
@@ -197,7 +198,7 @@ RoundTouches round_touches(TouchTable& table, const CalibrationSetup& setup) {
     constexpr double kPlane = 0.01;  // of the diameter
     return values.maxCoeff() - values.minCoeff() < kPlane * setup.size_mm;
   };
-  // A machine of two axes, a lathe's X and Z too, touches a sphere in a plane.
+  // A machine of two axes, including X and Z of a lathe, touches a sphere in a plane.
   touches.sphere = setup.artefact == Artefact::kSphere && y && z && !stays(*y) && !stays(*z);
   const bool in_xz = setup.artefact == Artefact::kSphere && z && (!y || stays(*y));
   touches.y = in_xz ? *z : y ? *y : table.need({"y", "Y"}, "recorded position");
@@ -211,7 +212,7 @@ RoundTouches round_touches(TouchTable& table, const CalibrationSetup& setup) {
 void say_plane(const RoundTouches& touches, const CalibrationSetup& setup,
                std::vector<std::string>& findings) {
   if (setup.artefact != Artefact::kSphere || touches.sphere) return;
-  constexpr double kOff_mm = 0.5;  // what a person puts a sphere off by
+  constexpr double kOff_mm = 0.5;  // accuracy of placing a sphere by hand
   findings.push_back(
       fmt::format("The sphere was touched in one plane, taken to go through its centre: {} mm beside it "
                   "would make the effective tip radius {:.1f} um too small.",
@@ -318,9 +319,10 @@ void say_outliers(const TouchFit& fit, const TouchTable& table, std::vector<std:
 
 namespace {
 
-// What no probe has comes from a column in another unit, from wrong rows or from another artefact.
+// A value that no probe has is caused by a column in another unit, by wrong rows or by another
+// artefact.
 void refuse_absurd(const ProbeCalibration& result, const CalibrationSetup& setup, const TouchTable& table) {
-  // What a trigger can be late by; early only by rounding.
+  // Largest possible delay of a trigger; negative only by rounding.
   constexpr double kLeastDelay_ms = -1, kMostDelay_ms = 100;
   const char* const kHint =
       "look at units and columns (--column \"name=meaning[unit]\"), at --size and --artefact";
@@ -336,7 +338,7 @@ void refuse_absurd(const ProbeCalibration& result, const CalibrationSetup& setup
         table.file(), tip->value, setup.size_mm, kHint));
 }
 
-// How the touches were made, where that is stated.
+// Conditions of the touches, if they are given.
 void say_conditions(TouchTable& table, const CalibrationSetup& setup, std::vector<std::string>& findings) {
   if (!setup.clearance_mm && !setup.overtravel_mm) return;
   const VectorXd feed = table.need({"feed", "F"}, "feed along the approach");

@@ -18,7 +18,7 @@ struct CalibrationSetup {
   double size_mm = 0;  // block: distance of its faces; ring, sphere: diameter
   std::optional<double> ball_radius_mm = std::nullopt;  // nominal, of the stylus ball
   double outlier_level = 0.01;
-  /// How the touches were made, where it is stated: invalid touches are reported.
+  /// Conditions of the touches, if they are given: invalid touches are reported.
   std::optional<double> clearance_mm = std::nullopt, overtravel_mm = std::nullopt;
   TouchConditions conditions = {};
 };
@@ -29,22 +29,22 @@ struct Calibrated {
   double value = 0, std = 0;
 };
 
-/// The parameter of that name; null where there is none.
+/// Returns the parameter of that name; null if there is none.
 const Calibrated* find_calibrated(const std::vector<Calibrated>& parameters, const std::string& name);
 
-/// A sentence for each touch that a fit left out, with its line and by how much it is off.
+/// Adds a sentence for each touch that a fit excluded, with its line and its residual.
 void say_outliers(const TouchFit& fit, const TouchTable& table, std::vector<std::string>& findings);
 
-/// What touches of an artefact say about a probe.
+/// Properties of a probe from touches of an artefact.
 ///
-/// A touch at speed v along the approach is recorded late by v * delay - a * delay^2 / 2, and by the
-/// pretravel, which is a constant and, for a probe with three contacts, a lobe p3 cos 3(phi - phi3) of the
-/// azimuth phi of the approach. The constant is one with the radius of the ball: their difference is the
-/// effective tip radius.
+/// A touch at speed v along the approach is recorded late by v * delay - a * delay^2 / 2, and by
+/// the pretravel. The pretravel is a constant and, for a probe with three contacts, a lobe p3 cos
+/// 3(phi - phi3) of the azimuth phi of the approach. The constant cannot be distinguished from the
+/// radius of the ball. Their difference is the effective tip radius.
 struct ProbeCalibration {
   TouchFit fit;
-  /// delay_ms first, where it can be found, with delay_spread (its standard deviation from touch to touch,
-  /// where the scatter grows with the feed); then what the artefact gives
+  /// delay_ms first, if it can be determined, with delay_spread (its standard deviation from touch
+  /// to touch, if the scatter grows with the feed); then the parameters of the artefact
   std::vector<Calibrated> parameters;
   std::optional<double> line_intercept_um, line_slope_um_per_mm_min;  // block: difference against feed
   std::optional<double> line_intercept_std_um, line_slope_std;
@@ -54,17 +54,16 @@ struct ProbeCalibration {
   const Calibrated* find(const std::string& name) const { return find_calibrated(parameters, name); }
 };
 
-/// Reads touches and finds what they determine. Columns: feed[mm/min]; block: upper, lower (mm: recorded
-/// position of the stylus at the upper and the lower face), angle[deg] (of the probe about its axis,
-/// optional); ring, sphere: x, y, z (z not for a ring; a sphere without z was
+/// Reads touches and determines their parameters. Columns: feed[mm/min]; block: upper, lower (mm:
+/// recorded position of the stylus at the upper and the lower face), angle[deg] (of the probe
+/// about its axis, optional); ring, sphere: x, y, z (z not for a ring; a sphere without z was
 /// touched in the plane through its centre), a[mm/s^2] along the approach (optional, negative
-/// while braking), u (optional). Throws InputError. tool. Source of the block's form: NISTIR 6415, 1999,
-/// equations 1 and 2.
-/// A result that no probe can have (a delay outside -1..100 ms, a tip larger than the artefact) is an
-/// InputError too.
+/// while braking), u (optional). Throws InputError. tool. Source of the block's form: NISTIR 6415,
+/// 1999, equations 1 and 2. A result that no probe can have (a delay outside -1..100 ms, a tip
+/// larger than the artefact) is an InputError too.
 ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setup);
 
-/// The same touches by groups.
+/// Calibrations of the same touches by groups.
 struct GroupComparison {
   struct Group {
     std::string value;  // of the column
@@ -72,12 +71,12 @@ struct GroupComparison {
     std::vector<Calibrated> parameters;
   };
   std::vector<Group> groups;  // in the order of the file
-  double chance = 1;          // that groups which are alike differ as much (F test)
+  double chance = 1;          // probability that groups without a difference differ as much (F test)
   std::string words;
 };
 
-/// Calibrates the touches of each value of a column by themselves and compares with all in one. Throws
-/// InputError: no such column, one group only, or a group too small. tool.
+/// Calibrates the touches of each value of a column separately and compares with a calibration of
+/// all. Throws InputError: no such column, one group only, or a group too small. tool.
 GroupComparison compare_groups(const TouchTable& table, const CalibrationSetup& setup,
                                const std::string& column, const ProbeCalibration& all);
 

@@ -13,7 +13,7 @@
 namespace vernier::probe {
 namespace {
 
-/// Axes of a plane, their place among X Y Z, and the words of the plane and of its arcs' centres.
+/// Axes of a plane, their indices in X Y Z, and the words of the plane and of its arcs' centres.
 struct Plane {
   const char* name;
   std::size_t a, b;
@@ -64,7 +64,8 @@ std::string in_plane(const CirclePath& path, const std::array<double, 3>& at) {
   return words;
 }
 
-/// Angles at which the pieces of one sense end, from its start on: pieces of one turn at most.
+/// Returns the angles at which the pieces of one direction end, from its start on: pieces of at
+/// most one turn.
 std::vector<double> pieces(const CirclePath& path, bool ccw) {
   const double from = path.from_deg - path.overshoot_deg, to = path.to_deg + path.overshoot_deg;
   const auto count = static_cast<std::size_t>(std::ceil((to - from) / 360 - 1e-9));
@@ -133,7 +134,7 @@ std::string blocks_of(const CirclePath& path, bool linuxcnc) {
 
 std::string robot_pose(const CirclePath& path, const std::array<double, 3>& at) {
   std::string text = "p[";
-  // To a tenth of a micrometre, and no minus before zero.
+  // To a tenth of a micrometre, without a minus sign before zero.
   for (const double mm : at) text += fmt::format("{:.7f}, ", std::round(mm * 1e4) / 1e7 + 0.0);
   for (std::size_t k = 0; k < 3; ++k)
     text += fmt::format("{:.6f}{}", path.tool_deg[k] * maths::kRadPerDeg, k < 2 ? ", " : "]");
@@ -141,8 +142,8 @@ std::string robot_pose(const CirclePath& path, const std::array<double, 3>& at) 
 }
 
 void robot_sense(const CirclePath& path, bool ccw, std::string& text) {
-  // A movec spans less than a turn and needs a point between; a quarter on either side of it is well
-  // conditioned.
+  // A movec spans less than a turn and needs an intermediate point. With a quarter turn on either
+  // side of it, the arc is well conditioned.
   constexpr double kLongestArcDeg = 180;
   const std::vector<double> ends = pieces(path, ccw);
   const double from = ends.front(), way = ends.back() - from;

@@ -8,7 +8,7 @@
 namespace vernier::probe {
 namespace {
 
-// Mm over mm, of the published touches (NISTIR 6415, see conditions.h).
+// mm per mm, of the published touches (NISTIR 6415, see conditions.h).
 constexpr double kApproachPerFollowing = 5.1 / 1.78;
 
 }  // namespace
@@ -32,7 +32,7 @@ double stopping_way(const TouchConditions& conditions, double feed) {
 std::vector<std::string> broken_conditions(const TouchConditions& conditions, double feed, double clearance,
                                            std::optional<double> overtravel) {
   std::vector<std::string> broken;
-  constexpr double kRounding = 1 + 1e-9;  // a limit that was typed is kept
+  constexpr double kRounding = 1 + 1e-9;  // a limit that a user typed is valid
   const double following = following_error(conditions, feed);
   if (clearance * kRounding < least_approach(conditions, feed))
     broken.push_back(fmt::format(

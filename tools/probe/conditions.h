@@ -6,30 +6,32 @@
 
 namespace vernier::probe {
 
-/// What a touch at speed takes to be a valid one: the machine comes to the surface at constant speed and
-/// stays there until the probe has triggered, and the stylus is not bent further than it bears. Defaults:
-/// NISTIR 6415, 1999, where at 2540 mm/min the axis follows 1.78 mm behind, the approach is 5.1 mm and the
-/// probe is driven 2.5 mm beyond the surface.
+/// Conditions for a valid touch at speed. The machine must reach the surface at constant speed and
+/// keep it until the probe has triggered. The stylus must not be deflected beyond its limit.
+/// Defaults: NISTIR 6415, 1999, where at 2540 mm/min the axis follows 1.78 mm behind, the approach
+/// is 5.1 mm and the probe is driven 2.5 mm beyond the surface.
 struct TouchConditions {
   double gain_per_s = 2540.0 / 60 / 1.78;  // of the position loop: following error = speed / gain
   double delay_s = 6e-3;                   // from contact to the edge that the controller sees
-  double stylus_mm = 6;                    // deflection that the probe bears
+  double stylus_mm = 6;                    // allowed deflection of the probe
 };
 
-/// Speed over the gain of the position loop, mm. feed: mm/min. Any of these: tool.
+/// Returns speed divided by the gain of the position loop, mm. feed: mm/min. All of these
+/// functions: tool.
 double following_error(const TouchConditions& conditions, double feed);
-/// Approach after which the speed is constant to 2 %: the published 5.1 mm over 1.78 mm times the following
-/// error, mm.
+/// Returns the approach after which the speed is constant to 2 %: the published 5.1 mm over 1.78
+/// mm times the following error, mm.
 double least_approach(const TouchConditions& conditions, double feed);
-/// How far beyond the surface the end of the approach has to lie, so that the command has not stopped before
-/// the contact, mm: the following error.
+/// Returns the smallest distance from the surface to the end of the approach, mm: the following
+/// error. With it, the command has not stopped before the contact.
 double least_overtravel(const TouchConditions& conditions, double feed);
-/// Deflection of the stylus by the time the machine stands after a touch, mm: the delay's way and the
-/// following error, which the axis still has to run.
+/// Returns the deflection of the stylus when the machine has stopped after a touch, mm: the path
+/// during the delay, and the following error, which the axis still has to travel.
 double stopping_way(const TouchConditions& conditions, double feed);
 
-/// What is wrong with an approach of `clearance` (mm before the surface) to `overtravel` (mm beyond it; none:
-/// the surface is aimed at by the probe's own size) at a feed, a sentence each. tool.
+/// Returns the violated conditions of an approach from `clearance` (mm before the surface) to
+/// `overtravel` (mm beyond it; no value: the probe's own size defines the target) at a feed, one
+/// sentence each. tool.
 std::vector<std::string> broken_conditions(const TouchConditions& conditions, double feed, double clearance,
                                            std::optional<double> overtravel);
 

@@ -23,7 +23,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// Touches in a frame of their own: origin at their centroid, third axis along the normal or axis.
+/// Touches in their own frame: origin at their centroid, third axis along the normal or axis.
 struct Touches {
   MatrixXd p;  // n x 3, centres of the ball
   std::optional<MatrixXd> n;
@@ -95,7 +95,8 @@ TouchFitOptions options_of(const Touches& touches, const FeatureSetup& setup, st
   return options;
 }
 
-/// A feature in the making: parameters as functions of those of the fit, with their uncertainty carried over.
+/// A feature during the computation: parameters as functions of those of the fit, with propagated
+/// uncertainty.
 struct Maker {
   MeasuredFeature& feature;
   void add(const std::string& name, const std::string& unit,
@@ -118,7 +119,8 @@ struct Maker {
   }
 };
 
-/// Side on which the ball's centres lie: +1 outside, -1 inside, by the normals where there are any.
+/// Returns the side on which the ball's centres are: +1 outside, -1 inside, by the normals if
+/// there are any.
 double side_of(const Touches& touches, const FeatureSetup& setup,
                const std::function<Vector3d(Index)>& outward) {
   if (!touches.n) return setup.inside ? -1 : 1;
@@ -195,7 +197,7 @@ MeasuredFeature fit_line(const Touches& touches, const FeatureSetup& setup) {
   const auto direction = [v, across, flat](const VectorXd& p) -> Vector3d {
     return (v * Vector3d(1, p(across), flat ? 0 : p(3))).normalized();
   };
-  // Towards the material: off the ball's centres by its radius, where normals say on which side it lies.
+  // Towards the material: the ball's centres minus its radius, if normals give the side.
   Vector3d off = Vector3d::Zero();
   if (touches.n) {
     const Vector3d mean = touches.n->colwise().mean().transpose(), d = direction(feature.fit.value);
@@ -310,7 +312,7 @@ struct CylinderModel {
 MeasuredFeature fit_cylinder(const Touches& touches, const FeatureSetup& setup) {
   const Vector3d c = touches.centroid();
   const MatrixXd off = touches.p.rowwise() - c.transpose();
-  // Normals know the axis; else the principal directions and those of the machine are tried.
+  // Normals give the axis. Otherwise the principal directions and those of the machine are tried.
   std::vector<Vector3d> tries;
   if (touches.n) {
     Eigen::SelfAdjointEigenSolver<Matrix3d> e(touches.n->transpose() * *touches.n);
@@ -447,7 +449,8 @@ MeasuredFeature fit_kind(const Touches& touches, const FeatureSetup& setup) {
   throw text::InputError("no such feature");
 }
 
-// Expansion and temperature are the same for all touches: they widen what has a size or a place.
+// Expansion and temperature are the same for all touches. They increase the uncertainty of sizes
+// and positions.
 void widen(MeasuredFeature& feature, const FeatureSetup& setup, double off_reference_K) {
   const double relative = std::hypot(setup.expansion_std_per_K * off_reference_K,
                                      *setup.expansion_per_K * setup.temperature_std_K);
@@ -481,7 +484,7 @@ MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup) {
 }
 
 std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature) {
-  // The columns of a deviation take the place of the recorded point.
+  // The columns of a deviation replace the recorded point.
   std::set<std::string> replaced;
   std::string headings;
   const auto take = [&](const format::ColumnGroup& group, bool written) {
@@ -503,7 +506,7 @@ std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature)
   text += headings + "\n";
   for (std::size_t i = 0; i < csv.rows.size(); ++i) {
     const auto k = static_cast<Index>(i);
-    // An outlier is no observation of this feature.
+    // An outlier is not an observation of this feature.
     if (!feature.fit.kept[i]) continue;
     for (std::size_t c = 0; c < csv.columns.size(); ++c)
       if (!replaced.contains(csv.columns[c].name)) text += csv.rows[i][c] + ",";

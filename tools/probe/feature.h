@@ -13,16 +13,16 @@ namespace vernier::probe {
 
 enum class FeatureKind { kPlane, kLine, kCircle, kSphere, kCylinder, kBlock };
 
-/// What is known before a feature is fitted.
+/// Known data before a feature is fitted.
 struct FeatureSetup {
   FeatureKind kind = FeatureKind::kPlane;
   double ball_radius_mm = 0;  // effective; points are centres of the ball
-  bool inside = false;  // touched from inside (circle, sphere, cylinder), where the rows have no normals
+  bool inside = false;        // touched from inside (circle, sphere, cylinder), if the rows have no normals
   std::array<double, 2> block_size_mm = {0, 0};  // along its own X and Y
   double outlier_level = 0.01;
   std::optional<double> expansion_per_K =
-      std::nullopt;  // of the workpiece; with it sizes are those at 20 degC
-  std::optional<double> temperature_degC = std::nullopt;  // of all rows, where there is no column T
+      std::nullopt;  // of the workpiece; if given, sizes are those at 20 degC
+  std::optional<double> temperature_degC = std::nullopt;  // of all rows, if there is no column T
   double expansion_std_per_K = 1e-6, temperature_std_K = 0.1;
 };
 
@@ -32,26 +32,26 @@ struct MeasuredFeature {
   std::vector<Calibrated> parameters;  // in the order of its kind, mm and deg; size and form last
   double form_mm = 0;                  // range of the kept residuals
   Eigen::MatrixXd points,
-      normals;  // per touch: centre of the ball (at 20 degC where that is known), surface normal
+      normals;                // per touch: centre of the ball (at 20 degC if that is known), surface normal
   Eigen::VectorXd deviation;  // of the touch along its normal from the fitted feature, mm
   std::vector<std::string> findings;
 
   const Calibrated* find(const std::string& name) const { return find_calibrated(parameters, name); }
 };
 
-/// Columns: x, y, z (z not needed for line, circle and block in the plane z = 0), nx ny nz (outward normals;
-/// a block: of the face that is touched), T[degC], u[mm]. Without normals plane and line are those of the
-/// ball's centre.
+/// Columns: x, y, z (z not needed for line, circle and block in the plane z = 0), nx ny nz
+/// (outward normals; for a block: of the touched face), T[degC], u[mm]. Without normals, plane and
+/// line are those of the ball's centre.
 ///
-/// parameters: plane: point (nearest to the centroid), normal, tilt about x and y; line: point, direction,
-/// angle (deg from X, in the plane); circle, sphere, cylinder: centre (a cylinder: nearest to the centroid;
-/// and axis), radius; block: centre, angle. A block is touched at two points or more of a face across X and
-/// of a face across Y; its centre lies half its size inside of both faces, along their common angle. Throws
-/// InputError. tool.
+/// parameters: plane: point (nearest to the centroid), normal, tilt about x and y; line: point,
+/// direction, angle (deg from X, in the plane); circle, sphere, cylinder: centre (a cylinder:
+/// nearest to the centroid; and axis), radius; block: centre, angle. A block needs two or more
+/// points on a face across X and on a face across Y. Its centre is half its size inside both
+/// faces, along their common angle. Throws InputError. tool.
 MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup);
 
-/// The touches as a measurement file: `d` along `nx ny nz` from the fitted feature at `px py pz` (FORMATS
-/// section 2), the other columns as they were, without the recorded point. tool.
+/// Returns the touches as a measurement file: `d` along `nx ny nz` from the fitted feature at `px
+/// py pz` (FORMATS section 2). The other columns are unchanged, without the recorded point. tool.
 std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature);
 
 }  // namespace vernier::probe

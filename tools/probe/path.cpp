@@ -15,7 +15,8 @@
 namespace vernier::probe {
 namespace {
 
-/// A touch: where the approach begins and where it would end, program units, machine X Y Z (turning: X is Z).
+/// A touch: start of the approach and its planned end, program units, machine X Y Z (turning: X is
+/// Z).
 struct Approach {
   double from[3], to[3], feed;
 };
@@ -40,7 +41,8 @@ void check(const ProbePath& path) {
 
 void check_touches(const ProbePath& path, Dialect dialect) {
   std::optional<double> overtravel;
-  // The turning dialect aims at the artefact's own surface; the stylus ball is what reaches beyond it.
+  // The turning dialect uses the artefact's own surface as the target. The stylus ball reaches
+  // beyond it.
   if (dialect != Dialect::kTurning) overtravel = path.overtravel;
   std::vector<std::string> broken;
   for (const double feed : path.feeds)
@@ -53,7 +55,7 @@ void check_touches(const ProbePath& path, Dialect dialect) {
 
 // ---- the turning dialect
 
-// A coordinate as the published points carry it: six decimals, then single precision.
+// A coordinate in the precision of the published points: six decimals, then single precision.
 float point_value(double value) { return std::strtof(fmt::format("{:.6f}", value).c_str(), nullptr); }
 
 void turning_head(const ProbePath& path, std::string& text) {
@@ -140,7 +142,7 @@ std::vector<Approach> sphere_touches(const ProbePath& path) {
   return touches;
 }
 
-// Both faces in turn, so that drift falls out of their difference.
+// Both faces alternately, so that drift cancels in their difference.
 std::vector<Approach> block_touches(const ProbePath& path) {
   std::vector<Approach> touches;
   const double r = path.radius + path.ball_radius;
@@ -154,13 +156,13 @@ std::vector<Approach> block_touches(const ProbePath& path) {
   return touches;
 }
 
-/// What a dialect writes; {x} {y} {z} are coordinates, {f} the feed.
+/// Words of a dialect; {x} {y} {z} are coordinates, {f} the feed.
 struct Words {
   std::vector<std::string> head, tail;
   const char* comment;   // {} is the text
   const char* rapid;     // to a point
   const char* approach;  // to a point at a feed, stops at a touch
-  const char* result;    // says where it touched; empty: the controller does
+  const char* result;    // reports the position of the touch; empty: the controller does that
 };
 
 Words words_of(const ProbePath& path, Dialect dialect) {
@@ -206,7 +208,7 @@ std::string three_axis_program(const ProbePath& path, Dialect dialect) {
     for (const std::string& line : all) text += line + "\n";
   };
   std::vector<std::string> head = words.head;
-  // A program that begins with % has nothing before it.
+  // A program that begins with % must have nothing before it.
   const std::size_t first = head.front() == "%" ? 2 : 0;
   lines({head.begin(), head.begin() + static_cast<std::ptrdiff_t>(first)});
   fmt::format_to(out, fmt::runtime(words.comment), path.title);

@@ -7,7 +7,7 @@
 
 namespace vernier::probe {
 
-/// Controllers that a probing program can be written for.
+/// Controllers for which a probing program can be written.
 enum class Dialect {
   kTurning,   // the dialect of NISTIR 6415: X as a diameter, G70/G94, probe on by M14, "!" comments
   kLinuxcnc,  // G38.2, results into a file by (PROBEOPEN)
@@ -19,27 +19,28 @@ enum class Dialect {
 struct ProbePath {
   bool sphere = true;
   double radius = 0;       // sphere: radius, artefact alone; block: half the distance of its faces
-  double clearance = 0;    // from the surface to where an approach begins
-  double overtravel = 2;   // beyond the surface, where the controller stops at a touch
-  double ball_radius = 0;  // of the stylus; its centre is what moves (not in the turning dialect)
+  double clearance = 0;    // from the surface to the start of an approach
+  double overtravel = 2;   // beyond the surface; for controllers that stop at a touch
+  double ball_radius = 0;  // of the stylus; the program moves its centre (not in the turning dialect)
   double from_deg = -100, to_deg = 100, step_deg = 2.5;  // sphere: of the approach in its plane
   std::vector<double> elevations_deg = {0};  // sphere, three axes: further circles; 90 is the pole
-  std::vector<double> feeds = {100};         // mm/min; in/min where inch
+  std::vector<double> feeds = {100};         // mm/min; in/min if inch
   int repeats = 1;                           // block: touches of each face and feed
   bool inch = false;                         // numbers of the program
   double dwell = 3;                          // turning: after each touch, as written behind G04
   double centre_offset = 1.25;  // turning: from the coordinate's zero to the sphere's axis, program units
   std::string name = "PROBE", title = "PROBE CALIBRATION";
-  std::vector<std::string> comments;  // at the top, one line each
+  std::vector<std::string> comments;  // at the top, one per line
   TouchConditions conditions;
-  bool unchecked = false;  // written even where a touch would not be a valid one
+  bool unchecked = false;  // written even if a touch would not be valid
 };
 
-/// The program. Throws InputError where the path makes no sense (no step, no feed, elevations in two axes).
-/// LimitNotMet where a touch would not be a valid one (broken_conditions), each reason on a line. tool.
-/// Turning dialect: blocks 210, 215, 225, 240, then 50 more for each point, coordinates in single precision
-/// from points of six decimals, as the published program was made: its 324 blocks come out equal (NISTIR
-/// 6415, appendices A1, B).
+/// Returns the program. Throws InputError if the path is not possible (no step, no feed,
+/// elevations in two axes). Throws LimitNotMet if a touch would not be valid (broken_conditions),
+/// each reason on a line. tool.
+/// Turning dialect: blocks 210, 215, 225, 240, then 50 more for each point, coordinates in single
+/// precision from points of six decimals, as in the published program. Its 324 blocks are
+/// reproduced exactly (NISTIR 6415, appendices A1, B).
 std::string probe_program(const ProbePath& path, Dialect dialect);
 
 }  // namespace vernier::probe

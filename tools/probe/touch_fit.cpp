@@ -17,8 +17,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kMostSteps = 100;  // Gauss and Newton's, at most
-// Of a parameter for a difference; of the cost for the end; of the largest singular value.
+constexpr int kMostSteps = 100;  // of Gauss-Newton, at most
+// Step of a parameter for a difference; relative change of the cost at the end; share of the
+// largest singular value.
 constexpr double kStepRelative = 1e-6, kConverged = 1e-12, kSingular = 1e-9;
 
 MatrixXd jacobian(const TouchModel& model, const VectorXd& at) {
@@ -34,7 +35,7 @@ MatrixXd jacobian(const TouchModel& model, const VectorXd& at) {
   return j;
 }
 
-/// What one pass over the kept touches gives.
+/// Result of one pass over the kept touches.
 struct Pass {
   VectorXd value, residual;
   MatrixXd j;  // weighted, rows of outliers zero
@@ -112,7 +113,8 @@ double chi_square(const Pass& pass, const VectorXd& weight) {
   return (weight.array() * pass.residual.array()).square().sum();
 }
 
-// The touch that is least likely to belong to the others, if its chance is below the level.
+// Returns the touch that is least consistent with the others, if its probability is below the
+// level.
 std::optional<TouchOutlier> worst(const Pass& pass, const VectorXd& weight, const TouchFitOptions& options,
                                   int n, int dof) {
   std::optional<TouchOutlier> found;

@@ -8,10 +8,10 @@
 
 namespace vernier::probe {
 
-/// A touch that does not belong to the others.
+/// A touch that is inconsistent with the others.
 struct TouchOutlier {
   std::size_t touch = 0;
-  double residual = 0;  // of the fit that it was left out of, the observation's unit
+  double residual = 0;  // of the fit that excluded it, the observation's unit
   double t = 0;         // externally studentised residual
   double p_value = 0;   // after Bonferroni for the number of observations
 };
@@ -24,7 +24,7 @@ struct TouchFit {
   std::vector<bool> kept;    // per touch
   std::vector<TouchOutlier> outliers;
   double rms = 0;        // of the kept residuals
-  double sigma = 0;      // their standard deviation, degrees of freedom considered
+  double sigma = 0;      // their standard deviation, corrected for degrees of freedom
   double condition = 0;  // smallest over largest singular value of the scaled Jacobian
   int dof = 0;
 
@@ -37,20 +37,21 @@ using TouchModel = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
 struct TouchFitOptions {
   std::size_t per_touch = 1;
   std::optional<Eigen::VectorXd> u;  // standard uncertainty per observation
-  double outlier_level = 0.01;       // chance that a good set loses a touch; 0: none is left out
+  double outlier_level = 0.01;       // probability that a good set loses a touch; 0: none is excluded
 };
 
-/// Gauss-Newton with step halving from `start`; then, one by one, the touch whose deleted residual is least
-/// likely is left out while its chance (Student's t, Bonferroni) is below the level. Covariance: from u,
-/// times chi^2/dof where that exceeds 1; without u from the residual. Throws InputError: fewer observations
-/// than parameters plus one, or parameters that the touches do not determine (`names` of the weakest). tool.
-/// Source of the test: R. D. Cook, S. Weisberg, Residuals and Influence in Regression, 1982, 2.2.
+/// Gauss-Newton with step halving from `start`. Then touches are excluded one by one: the touch
+/// whose deleted residual is least probable, if its probability (Student's t, Bonferroni) is below
+/// the level. Covariance: from u, times chi^2/dof if that exceeds 1; without u from the residual.
+/// Throws InputError: fewer observations than parameters plus one, or parameters that the touches
+/// do not determine (`names` of the weakest). tool. Source of the test: R. D. Cook, S. Weisberg,
+/// Residuals and Influence in Regression, 1982, 2.2.
 TouchFit fit_touches(const TouchModel& model, const Eigen::VectorXd& start, const TouchFitOptions& options,
                      const std::vector<std::string>& names);
 
-/// Centre and radius of the circle or sphere that solves |m|^2 = 2 m c + k best, by normal equations: where a
-/// fit begins. points: a row each, two or three columns, about their middle. Returns centre, then radius.
-/// tool.
+/// Returns centre and radius of the circle or sphere that solves |m|^2 = 2 m c + k best, by normal
+/// equations: the start of a fit. points: one per row, two or three columns, about their middle.
+/// Returns centre, then radius. tool.
 Eigen::VectorXd algebraic_centre(const Eigen::MatrixXd& points);
 
 }  // namespace vernier::probe

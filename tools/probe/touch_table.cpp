@@ -13,7 +13,7 @@
 namespace vernier::probe {
 namespace {
 
-// Units that a name may end with, longest first.
+// Units at the end of a name, longest first.
 constexpr std::pair<const char*, const char*> kSuffixes[] = {
     {"_mm_min", "mm/min"}, {"_mm_s2", "mm/s^2"}, {"_mm_s", "mm/s"}, {"_degC", "degC"}, {"_deg", "deg"},
     {"_um", "um"},         {"_mm", "mm"},        {"_in", "in"},     {"_ms", "ms"},     {"_s", "s"}};
@@ -25,7 +25,7 @@ bool take_suffix(std::string& name, std::string_view suffix) {
   return true;
 }
 
-/// Unit that a name ends with, a word behind it aside; none: empty.
+/// Returns the unit at the end of a name, ignoring a word behind it; empty if there is none.
 std::string unit_in_name(std::string name) {
   take_suffix(name, kPrinted);
   for (const auto& [suffix, unit] : kSuffixes)
@@ -52,9 +52,9 @@ void rename(format::CsvFile& csv, const std::string& words) {
     if (!format::find_unit(found->unit))
       throw text::InputError({csv.file, csv.header_line}, found->unit, "unknown unit");
   }
-  // "mean_lp_um=lower" stays a column in um.
+  // "mean_lp_um=lower" remains a column in um.
   if (found->unit.empty()) found->unit = unit_in_name(from);
-  // A column that had the name already steps back.
+  // A column that already had the name loses it.
   for (format::CsvColumn& column : csv.columns)
     if (column.name == to && &column != &*found) column.name += "_before";
   found->name = to;

@@ -17,9 +17,9 @@ class TouchTable {
   TouchTable(const std::string& text, const std::string& file, const std::vector<std::string>& renames,
              const std::vector<std::string>& where);
 
-  /// The rows that have this in that column (as the file calls it). Throws InputError.
+  /// Returns the rows with this value in that column (named as in the file). Throws InputError.
   TouchTable only(const std::string& column, const std::string& value) const;
-  /// What stands in a column, in the order of the file. Throws InputError: no such column.
+  /// Returns the values of a column, in the order of the file. Throws InputError: no such column.
   std::vector<std::string> values_of(const std::string& column) const;
 
   std::size_t rows() const { return csv_.rows.size(); }
@@ -27,17 +27,17 @@ class TouchTable {
   std::size_t line(std::size_t row) const { return csv_.line[row]; }
   const format::CsvFile& csv() const { return csv_; }
 
-  /// Numbers of the column known under one of the names, in base units (mm, deg, mm/min stays mm/min, s,
-  /// degC); nothing where there is none. A cell that is no number is an InputError. The first name that a
-  /// column has counts; of two columns that differ only by a suffix "_printed" the printed one, and a note
-  /// says so.
+  /// Returns numbers of the column that is known under one of the names, in base units (mm, deg,
+  /// mm/min stays mm/min, s, degC); nullopt if there is no such column. A cell that is not a
+  /// number is an InputError. The first name with a column is used. Of two columns that differ
+  /// only by a suffix "_printed", the printed one is used, and a note reports it.
   std::optional<Eigen::VectorXd> find(const std::vector<std::string>& names);
-  /// The same, where it must be there: `what` says for what.
+  /// The same for a required column: `what` names its purpose.
   Eigen::VectorXd need(const std::vector<std::string>& names, const std::string& what);
-  /// Column u, mm; an InputError where one is not above 0.
+  /// Returns column u, mm. A value that is not above 0 is an InputError.
   std::optional<Eigen::VectorXd> uncertainty();
 
-  /// What was decided while reading.
+  /// Decisions made during reading.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:

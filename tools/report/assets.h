@@ -4,7 +4,8 @@
 
 namespace vernier::report {
 
-/// The bundled plots (tools/report/web, one script) and the style sheet of the reports. tool.
+/// Returns the bundled plots (tools/report/web, one script) and the style sheet of the reports.
+/// tool.
 std::string_view report_script();
 std::string_view report_style();
 

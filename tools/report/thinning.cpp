@@ -68,7 +68,8 @@ std::size_t largest_kind(const Json& observations) {
   return *std::max_element(count.begin(), count.end());
 }
 
-// Counted within each kind: kinds take turns in the list, and a count over all would leave whole kinds out.
+// Counted within each kind. The kinds alternate in the list, and a count over all would omit whole
+// kinds.
 std::vector<std::size_t> observations_to_keep(const Json& detail, std::size_t step) {
   const std::set<std::size_t> worst = worst_rows(detail);
   const Json& observations = detail.at("observations");

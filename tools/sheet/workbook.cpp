@@ -17,10 +17,10 @@
 namespace vernier::sheet {
 namespace {
 
-/// A part that unpacks to more is no survey but a bomb.
+/// A larger unpacked part is not a survey but a decompression bomb.
 constexpr zip_uint64_t kMostBytes = 256u << 20;
-/// A row's cells up to its last one are there: rows of one cell far to the right would make a small file
-/// large.
+/// A row has all cells up to its last one. Rows with one cell far to the right would make a small
+/// file large.
 constexpr std::size_t kMostEmpty = 4u << 20, kMostEmptyForOne = 2;
 constexpr std::size_t kMostRows = 1048576, kMostColumns = 16384;  // of the format itself
 
@@ -58,7 +58,7 @@ class Package {
   zip_t* zip_ = nullptr;
 };
 
-/// The name without its prefix: x:row and row are the same.
+/// Returns the name without its prefix: x:row and row are the same.
 std::string_view local(const pugi::xml_node& node) {
   const std::string_view name = node.name();
   const auto colon = name.find(':');
@@ -71,7 +71,7 @@ pugi::xml_node child(const pugi::xml_node& node, std::string_view name) {
   return {};
 }
 
-/// All text of a string: of runs with their own formatting too, not of phonetic hints.
+/// Returns all text of a string, including runs with their own formatting, without phonetic hints.
 std::string text_of(const pugi::xml_node& node) {
   std::string text;
   for (const pugi::xml_node one : node.children()) {
@@ -124,7 +124,7 @@ class Reader {
     load(document, *text, name);
   }
 
-  /// Which cell styles show a number as a date.
+  /// Reads which cell styles show a number as a date.
   void read_styles(const std::string& text) {
     pugi::xml_document document;
     load(document, text, "xl/styles.xml");
@@ -143,7 +143,7 @@ class Reader {
     return style < is_date_.size() && is_date_[style];
   }
 
-  /// A sheet names its part by a relation.
+  /// A relation gives the part of a sheet.
   std::string part_of(const pugi::xml_node& entry) const {
     std::string id;
     for (const pugi::xml_attribute attribute : entry.attributes())
@@ -194,7 +194,7 @@ class Reader {
     return sheet;
   }
 
-  /// "AB12" is column 27; without a reference it is the next.
+  /// "AB12" is column 27. Without a reference it is the next column.
   static std::size_t column_of(const pugi::xml_node& cell, std::size_t next) {
     const std::string_view reference = cell.attribute("r").value();
     std::size_t column = 0;
@@ -215,7 +215,7 @@ class Reader {
         throw text::InputError({file_, row}, value, "the workbook has no text of this number");
       return strings_[static_cast<std::size_t>(*index)];
     }
-    // Stored with 17 digits, shown and meant with the 15 that a spreadsheet has: 200.00509999999997 is
+    // Stored with 17 digits, but shown with the 15 digits of a spreadsheet: 200.00509999999997 is
     // 200.0051.
     const auto number = type.empty() || type == "n" ? text::parse_number(value) : std::nullopt;
     if (number && shows_date(cell)) return date_text(*number, from_1904_);

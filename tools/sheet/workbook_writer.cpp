@@ -15,7 +15,7 @@
 namespace vernier::sheet {
 namespace {
 
-/// Where the library writes: it knows files only.
+/// A temporary file for the library, which can only write to files.
 class TemporaryFile {
  public:
   TemporaryFile() : path_((std::filesystem::temp_directory_path() / "vernier-XXXXXX").string()) {

@@ -23,10 +23,10 @@ namespace {
 using Index = Eigen::Index;
 namespace fs = std::filesystem;
 
-/// Half a day of a board's ticks; an equation takes about a microsecond of ours.
+/// Half a day of a board's ticks. An equation needs about a microsecond on this computer.
 constexpr double kMostTicks = 4e7;
 
-/// The compiled directories below a folder, opened when a row asks for one.
+/// The compiled directories below a folder, opened when a row needs one.
 class ImageFolder {
  public:
   explicit ImageFolder(std::string directory) : directory_(std::move(directory)) {
@@ -41,7 +41,7 @@ class ImageFolder {
     if (failed) throw text::InputError("\"" + directory_ + "\": " + failed.message());
   }
 
-  /// Throws InputError where no directory holds it.
+  /// Throws InputError if no directory contains it.
   const compile::LoadedImage& image(const std::string& fingerprint, const text::Place& place) {
     const auto found = directories_.find(fingerprint);
     if (found == directories_.end())
@@ -59,7 +59,7 @@ class ImageFolder {
       return;
     const std::string bytes = text::read_file((directory / "machine.vimg").string());
     ImageHeader header;
-    if (bytes.size() < sizeof(header)) return;  // no image, and no row can mean it
+    if (bytes.size() < sizeof(header)) return;  // not an image, and no row can refer to it
     std::memcpy(&header, bytes.data(), sizeof(header));
     directories_.emplace(text::fingerprint_text(header.fingerprint), directory.string());
   }
@@ -69,7 +69,7 @@ class ImageFolder {
   std::map<std::string, std::unique_ptr<compile::LoadedImage>> open_;
 };
 
-/// What the board reads in a row of states bound to the image's machine.
+/// Returns the inputs of the board for a row of states bound to the image's machine.
 CycleInput cycle_input(const model::Machine& machine, const model::States& s, Index row) {
   PlantState told;
   tell_state(machine, s, row, told);
@@ -90,7 +90,8 @@ CycleInput cycle_input(const model::Machine& machine, const model::States& s, In
   return input;
 }
 
-/// A tick between two rows: what moves goes on in a straight line, what is held is that of the first.
+/// Returns a tick between two rows. Continuous quantities are interpolated linearly. Held
+/// quantities are those of the first row.
 CycleInput between(const CycleInput& from, const CycleInput& to, double share) {
   CycleInput mid = from;
   const auto mix = [share](auto& value, const auto& target) {
@@ -125,7 +126,7 @@ class ImageRun {
                              "the image that ran has lags: it needs this column");
     if (remembers) model::require_time_order(rows_);
     std::vector<std::size_t> last(rows_.states.names(rows_.states.clock).size(), rows_.rows());
-    // Clock by clock, since a lag starts anew with each.
+    // Clock by clock, because a lag restarts with each.
     for (std::size_t clock = 0; clock < last.size(); ++clock) {
       compensator_->reset();
       for (std::size_t row = 0; row < rows_.rows(); ++row) {
@@ -139,7 +140,7 @@ class ImageRun {
   }
 
  private:
-  /// The ticks between two rows, so that lags are where they were.
+  /// Executes the ticks between two rows, so that lags have their correct state.
   void walk(std::size_t before, std::size_t after) {
     const model::Column& t = rows_.states.time;
     const double ticks =
@@ -171,10 +172,10 @@ class ImageRun {
   double ticks_ = 0;
 };
 
-/// The correction of one image in the rows of a file that it ran in.
+/// Applies the correction of one image to the rows of a file in which it was active.
 void apply(const compile::LoadedImage& image, const std::string& fingerprint, const model::Machine& machine,
            const std::string& text, model::Measurement& m) {
-  // Bound to the image's machine: its inputs may be columns that this machine does not know.
+  // Bound to the image's machine: its inputs may be columns that this machine does not declare.
   const model::Measurement own =
       model::parse_measurement(text, m.files.front(), image.machine, [](auto&&...) {});
   std::map<std::size_t, Index> row_on_line;

@@ -11,7 +11,7 @@ namespace vernier::simulate {
 /// Axis counts of a mm, and of a degree.
 inline constexpr double kCountsPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
 
-/// Nearest count, held well inside 64 bits.
+/// Returns the nearest count, limited to well below 64 bits.
 inline std::int64_t counts(double value) {
   constexpr double kMost = 4e18;  // below 2^62: sums of two stay within 64 bits
   return std::llround(std::clamp(value, -kMost, kMost));

@@ -15,14 +15,15 @@
 namespace vernier::simulate {
 namespace {
 
-/// Half an hour at 1 kHz: a correction that takes longer to come in has a slew limit that is a mistake.
+/// Half an hour at 1 kHz: if a correction needs longer to reach its full weight, its slew limit is
+/// a mistake.
 constexpr std::size_t kMostPreRoll = 1'800'000;
 
 TimeUs time_of(const model::States& states, std::size_t tick) {
   return TimeUs(counts(1e6 * states.time[static_cast<Eigen::Index>(tick)]));
 }
 
-/// States that stand for a tick each.
+/// States with one state per tick.
 class StatesPath : public TickPath {
  public:
   StatesPath(const model::Machine& machine, const model::States& states)
@@ -39,7 +40,7 @@ class StatesPath : public TickPath {
   const model::States& states_;
 };
 
-/// The path as the plant asks for it: before its begin and after its end the machine stands there.
+/// The path in the form for the plant: before its start and after its end the machine is at rest.
 class PathTrajectory : public Trajectory {
  public:
   explicit PathTrajectory(const TickPath& path) : path_(path) {}
@@ -70,7 +71,7 @@ PlantOptions plant_options(const LoopOptions& options) {
   return plant;
 }
 
-/// One run; the parts of the board live here.
+/// One run, with the parts of the board.
 class Loop {
  public:
   Loop(const ImageView& image, const model::Machine& machine, const TickPath& path,
@@ -132,7 +133,8 @@ class Loop {
     result_.not_active += report.mode != Mode::kActive ? 1 : 0;
   }
 
-  /// What the axis moves by, mm or deg. The analogue chain is that of a linear axis.
+  /// Returns the motion of the axis by the correction, mm or deg. The analogue output is that of a
+  /// linear axis.
   double applied(std::size_t axis, bool& saturated) const {
     const AxisTravel written = plant_.written(static_cast<std::uint32_t>(axis));
     if (machine_.axes[axis].rotary) return static_cast<double>(written.count) / kCountsPerDeg;

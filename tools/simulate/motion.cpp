@@ -12,7 +12,7 @@
 namespace vernier::simulate {
 namespace {
 
-/// Motion below this is the last digit of a path file, not motion; mm or deg.
+/// Smaller motion is the last digit of a path file, not motion; mm or deg.
 constexpr double kRest = 1e-9;
 
 Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
@@ -36,8 +36,8 @@ model::Column hold(const model::Column& rows, const Ticks& ticks) {
   return result;
 }
 
-/// Per axis: what its positions along the rows say about its motion. One entry per segment, `turn` the
-/// position of the last reversal (NaN: none yet).
+/// Motion of an axis as derived from its positions along the rows. One entry per segment, `turn`
+/// the position of the last reversal (NaN: none yet).
 struct Segments {
   model::Column speed, sense, turn;
   model::Column acceleration;  // one per row

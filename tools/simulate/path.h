@@ -12,9 +12,9 @@
 
 namespace vernier::simulate {
 
-/// A path file (FORMATS section 3, `simulate`): `t[s]`, axes, inputs and motion by name. Columns are turned
-/// into numbers when a machine asks for them, so one path serves machines with different inputs; a column
-/// that no machine asks for is ignored.
+/// A path file (FORMATS section 3, `simulate`): `t[s]`, axes, inputs and motion by name. Columns
+/// are converted to numbers when a machine asks for them, so one path serves machines with
+/// different inputs. A column that no machine asks for is ignored.
 class Path {
  public:
   /// Throws InputError: no column t, a malformed or empty time, times that do not increase. tool.
@@ -24,12 +24,12 @@ class Path {
   /// s, strictly increasing.
   const model::Column& time() const { return time_; }
   bool has(const std::string& name) const { return index_of(name).has_value(); }
-  /// A column in the base unit of its dimension. Throws InputError where it is absent, has another dimension,
-  /// or a cell is empty or no number.
+  /// Returns a column in the base unit of its dimension. Throws InputError if it is absent, has
+  /// another dimension, or a cell is empty or not a number.
   model::Column numbers(const std::string& name, format::Dimension dimension) const;
-  /// The column of an input in the unit that the machine declares for it.
+  /// Returns the column of an input in the unit that the machine declares for it.
   model::Column input(const model::Input& input) const;
-  /// The column's cells as they are.
+  /// Returns the column's cells without conversion.
   std::vector<std::string> words(const std::string& name) const;
   const std::string& file() const { return csv_.file; }
 
@@ -44,11 +44,12 @@ class Path {
 /// Reads a path file. tool.
 Path read_path(const std::string& file);
 
-/// Where the ticks of a path lie: tick k at time()[0] + k * period, from the first row to the last.
+/// Times of the ticks of a path: tick k is at time()[0] + k * period, from the first row to the
+/// last.
 struct Ticks {
   model::Column time;                // s
-  std::vector<std::size_t> segment;  // row at or before the tick; never the last row where there are two
-  model::Column fraction;            // 0..1 of the way to the next row
+  std::vector<std::size_t> segment;  // row at or before the tick; never the last row if there are two
+  model::Column fraction;            // 0..1 between this row and the next
   std::size_t count() const { return segment.size(); }
 };
 

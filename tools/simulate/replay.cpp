@@ -11,8 +11,8 @@
 namespace vernier::simulate {
 namespace {
 
-/// Rows of one run, and the ticks between them: values linear, senses held. A tick is made when it is asked
-/// for: a record of hours has ten million.
+/// Rows of one run, and the ticks between them: values linear, directions held. A tick is computed
+/// when it is needed, because a record of hours has ten million.
 class BetweenRows : public TickPath {
  public:
   BetweenRows(const model::Machine& machine, const model::Measurement& m, std::size_t run, double period_s)
@@ -32,7 +32,7 @@ class BetweenRows : public TickPath {
   }
 
   const std::vector<std::size_t>& rows() const { return rows_; }
-  /// Place of a row's correction among those that are kept.
+  /// Index of a row's correction among the stored ones.
   std::vector<Eigen::Index> kept_of_rows() const {
     std::vector<Eigen::Index> kept;
     Eigen::Index next = -1;
@@ -71,7 +71,8 @@ class BetweenRows : public TickPath {
  private:
   double time_at(std::size_t i) const { return m_.states.time[static_cast<Eigen::Index>(rows_[i])]; }
 
-  /// Which rows a tick lies between. Ticks are asked for one after the other, or anew from the begin.
+  /// Finds the rows before and after a tick. Ticks are requested in order, or again from the
+  /// start.
   void place(std::size_t tick) const noexcept {
     const double t = time_at(0) + static_cast<double>(tick) * period_s_;
     if (tick < tick_) before_ = 0;

@@ -18,7 +18,7 @@
 namespace vernier::simulate {
 namespace {
 
-/// Index in the truth of every axis of the image's machine.
+/// Returns the index in the true machine of every axis of the image's machine.
 std::vector<std::size_t> match_axes(const model::Machine& truth, const model::Machine& machine) {
   std::vector<std::size_t> match;
   for (const model::Axis& axis : machine.axes) {

@@ -18,23 +18,25 @@ struct SimulateResult {
   Eigen::Matrix3Xd error_before, error_after;
   double rms_before_um = 0, rms_after_um = 0;  // over ticks and x, y, z
   double max_before_um = 0, max_after_um = 0;  // largest norm
-  /// Angle between the true and the nominal direction of the tool, deg a tick; not aligned, for a rigid
-  /// motion that fits points of a short path turns as it likes.
+  /// Angle between the true and the nominal direction of the tool, deg per tick. It is not
+  /// aligned, because the rotation of a rigid motion is hardly determined by the points of a short
+  /// path.
   model::Column tilt_before, tilt_after;
   /// Ticks in poses where the image's correction of direction is damped (compile.h).
   std::size_t damped = 0;
 };
 
-/// Runs the firmware with `image` on the true machine along a path. Axes and inputs of the two machines are
-/// matched by name. Throws InputError where the image corrects an axis that the truth does not have, or the
-/// path lacks an axis; LimitNotMet where the firmware never becomes Active. tool.
+/// Runs the firmware with `image` on the true machine along a path. Axes and inputs of the two
+/// machines are matched by name. Throws InputError if the image corrects an axis that the true
+/// machine does not have, or if the path lacks an axis. Throws LimitNotMet if the firmware never
+/// becomes Active. tool.
 SimulateResult simulate(const model::Machine& truth, const compile::LoadedImage& image, const Path& path,
                         const LoopOptions& options);
 
-/// The result with FORMATS' keys and more.
+/// Returns the result with the keys of FORMATS and additional ones.
 nlohmann::ordered_json simulate_json(const SimulateResult& result, const model::Machine& machine,
                                      const LoopOptions& options);
-/// Every tick: t, axes, corrections and errors, as CSV of the project's dialect.
+/// Returns every tick as CSV of the project's dialect: t, axes, corrections and errors.
 std::string ticks_csv(const SimulateResult& result, const model::Machine& machine);
 
 }  // namespace vernier::simulate

@@ -12,15 +12,16 @@ struct Place {
   std::size_t line = 0;
 };
 
-/// Bad input of the user: file, line and the offending word, in one message. Commands turn it into exit
-/// status 1. Message form: `machine.xml:12: "alhpa": unknown name`. tool.
+/// Invalid input of the user: file, line and the offending word, in one message. Commands convert
+/// it into exit status 1. Message form: `machine.xml:12: "alhpa": unknown name`. tool.
 class InputError : public std::runtime_error {
  public:
   InputError(const Place& place, const std::string& word, const std::string& what);
   explicit InputError(const std::string& what) : std::runtime_error(what) {}
 };
 
-/// The job ran and its answer is no: a limit that the user set is not met. Exit status 2. tool.
+/// The job was executed and its result is negative: a limit of the user is not met. Exit status 2.
+/// tool.
 class LimitNotMet : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -26,7 +26,7 @@ std::optional<std::string> word_meant(std::string_view word, const std::vector<s
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& one : known) {
     std::size_t apart = letters_apart(word, one);
-    // The beginning of a longer word, typed short.
+    // A prefix of a longer word.
     if (word.size() >= 3 && one.starts_with(word)) apart = std::min<std::size_t>(apart, 1);
     if (apart >= least || apart >= one.size()) continue;
     least = apart;

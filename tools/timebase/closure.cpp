@@ -41,9 +41,9 @@ double best_elsewhere(const Eigen::MatrixXd& series, Index rows) {
 }  // namespace
 
 std::optional<Closure> examine_closure(const Eigen::MatrixXd& points, const Eigen::MatrixXd& series) {
-  // Readings of a clock, and of a run, that a test of repeats asks for.
+  // Minimum number of readings of a clock, and of a run, for a test of repeats.
   constexpr Index kFewest = 12, kShortestRun = 200;
-  // A seventh of the turn: what is further off is no closing any more.
+  // A seventh of the turn: beyond it the path does not close.
   const Index most = series.rows() / 7;
   if (series.rows() < kShortestRun || points.cols() == 0 || !series.allFinite() || !closes(points))
     return std::nullopt;
@@ -55,7 +55,8 @@ std::optional<Closure> examine_closure(const Eigen::MatrixXd& points, const Eige
   if (best.p_value >= 1) return best;
   best.p_value = std::min(1.0, best.p_value * static_cast<double>(most - kFewest + 1));
   best.elsewhere = best_elsewhere(series, best.rows);
-  // What comes again elsewhere nearly as well (half of the rest unexplained) is a period of the path's own.
+  // If another part is nearly as similar (half of the rest unexplained), it is a period of the
+  // path itself.
   if (1 - best.elsewhere < 2 * (1 - best.correlation)) best.p_value = 1;
   return best;
 }

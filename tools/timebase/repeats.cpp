@@ -18,7 +18,8 @@ double rms(const Block& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }
 
-// Concordance of a block at the lags lowest, lowest + 1, ...; NaN where there is nothing to compare with.
+// Concordance of a block at the lags lowest, lowest + 1, ...; NaN if there is nothing to compare
+// with.
 struct LagScan {
   Index lowest = 0;
   std::vector<double> concordance;
@@ -80,7 +81,7 @@ std::optional<RepeatBlock> compare_block(const Eigen::MatrixXd& series, Index fi
   block.implied_difference = rms(*a - expected);
   const Block left = *a - there;
   const double independent = effective_rows(*a, there);
-  // Lags that are not neighbours of one another, as many as were tried.
+  // Number of tested lags that are not neighbours.
   const double tried = std::max(
       1.0, static_cast<double>(scan.concordance.size()) * independent / static_cast<double>(a->size()));
   block.p_agreement = chance_of_agreement(block.correlation, independent);
@@ -108,8 +109,8 @@ Eigen::VectorXd squares_at(const Eigen::MatrixXd& series, Index first, Index row
   return (difference.rowwise() - mean).rowwise().squaredNorm();
 }
 
-// The row where changing from one lag to the other leaves the least, and the stretch that does nearly as
-// well.
+// Finds the row at which a change from one lag to the other gives the smallest residual, and the
+// range that fits nearly as well.
 void place_jump(const Eigen::MatrixXd& series, const RepeatBlock& a, const RepeatBlock& b, LagJump& jump) {
   const auto first = static_cast<Index>(a.first);
   const auto end = std::min<Index>(static_cast<Index>(b.last) + 1,
@@ -124,7 +125,7 @@ void place_jump(const Eigen::MatrixXd& series, const RepeatBlock& a, const Repea
   for (Index i = 0; i + skipped < rows; ++i) costs.push_back(cost += at_before[i] - at_after[i + skipped]);
   const auto least = std::min_element(costs.begin(), costs.end());
   jump.row = a.first + static_cast<std::size_t>(least - costs.begin());
-  // Twice the usual chi^2 step of 4 in units of the variance that the best place leaves.
+  // Twice the usual chi^2 step of 4 in units of the residual variance at the best row.
   const double limit = *least * (1 + 8 / static_cast<double>(rows)) + 1e-12 * at_before.sum();
   const auto within = [&](double value) { return value <= limit; };
   const auto from = std::find_if(costs.begin(), costs.end(), within);
@@ -146,7 +147,7 @@ std::vector<RepeatBlock> compare_repeats(const Eigen::MatrixXd& series, const Ei
     const Index rows = rows_of_block(implied_lag[first], options);
     if (first + rows > series.rows()) break;
     const Eigen::ArrayXd implied = implied_lag.segment(first, rows).array();
-    // At another speed the second pass is no copy row by row.
+    // At another speed the second pass does not repeat row by row.
     if (implied.allFinite() && implied.maxCoeff() - implied.minCoeff() <= options.tolerance) {
       if (auto block = compare_block(series, first, rows, implied.mean(), options)) blocks.push_back(*block);
     }
@@ -157,7 +158,7 @@ std::vector<RepeatBlock> compare_repeats(const Eigen::MatrixXd& series, const Ei
 
 std::vector<std::size_t> trusted_blocks(const std::vector<RepeatBlock>& blocks,
                                         const RepeatOptions& options) {
-  // What agrees by chance is seldom close and does not agree with its neighbour on the lag.
+  // Blocks that agree by chance seldom agree closely, or with their neighbour on the lag.
   constexpr double kAgreement = 0.7;
   std::vector<std::size_t> trusted;
   const auto good = [&](std::size_t i) { return blocks[i].correlation >= kAgreement; };
@@ -171,7 +172,7 @@ std::vector<std::size_t> trusted_blocks(const std::vector<RepeatBlock>& blocks,
 
 namespace {
 
-// Stouffer's joint chance of the blocks of a level, times what there was to choose from.
+// Stouffer's combined probability of the blocks of a level, times the number of choices.
 double joint_chance(const std::vector<RepeatBlock>& all, const RepeatLevel& level,
                     double RepeatBlock::*chance) {
   double z = 0, tried = 1;

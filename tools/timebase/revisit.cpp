@@ -40,7 +40,7 @@ class Neighbours {
   std::vector<Index> order_;
 };
 
-// Where the path goes at a row, per row.
+// Direction of the path at each row.
 Eigen::RowVectorXd heading(const Eigen::MatrixXd& points, Index row) {
   const Index before = std::max<Index>(row - 1, 0), after = std::min<Index>(row + 1, points.rows() - 1);
   return (points.row(after) - points.row(before)) / static_cast<double>(std::max<Index>(after - before, 1));
@@ -52,7 +52,8 @@ double usual_step(const Eigen::MatrixXd& points) {
   return steps.empty() ? 0 : maths::median(steps);
 }
 
-// Poses set one by one are no path: nothing lies between them, and everything is near everything.
+// Poses set one by one are not a path: there are no positions between them, so every pose is a
+// neighbour of every other.
 bool is_path(const Eigen::MatrixXd& points) {
   constexpr double kLongestStep = 0.1;  // of the extent
   if (points.rows() < 2 || points.cols() == 0) return false;
@@ -61,7 +62,7 @@ bool is_path(const Eigen::MatrixXd& points) {
   return step > 0 && step <= kLongestStep * extent;
 }
 
-// Place between the rows of a path that is nearest to a point, about `row`.
+// Position between the rows of a path that is nearest to a point, about `row`.
 double project(const Eigen::MatrixXd& points, Index row, const Eigen::RowVectorXd& point) {
   const Eigen::RowVectorXd along = heading(points, row);
   const double square = along.squaredNorm();
@@ -115,7 +116,8 @@ Eigen::MatrixXd path_points(const model::Measurement& m, const std::vector<std::
 Eigen::VectorXd revisit_lags(const Eigen::MatrixXd& points) {
   Eigen::VectorXd lags = Eigen::VectorXd::Constant(points.rows(), std::nan(""));
   if (!is_path(points)) return lags;
-  // Half a step finds the nearest row of a path with the same spacing; the rest is room for uneven steps.
+  // Half a step finds the nearest row of a path with the same spacing. The rest is a margin for
+  // uneven steps.
   const double radius = 0.8 * usual_step(points);
   const Neighbours neighbours(points);
   for (Index i = 0; i < points.rows(); ++i)

@@ -12,10 +12,11 @@ namespace {
 
 using Index = Eigen::Index;
 
-// Points that a run is thinned to: enough for what is wider than two hundredths of it.
+// Number of points to which a run is reduced: sufficient for features wider than two hundredths of
+// it.
 constexpr Index kPoints = 150;
 
-// Means over a window of so many points' width about each of kPoints places.
+// Means over a window of this number of points' width about each of kPoints positions.
 Eigen::MatrixXd window_means(const Eigen::MatrixXd& series, double width) {
   Eigen::MatrixXd means(kPoints, series.cols());
   const double step = static_cast<double>(series.rows()) / static_cast<double>(kPoints);
@@ -28,15 +29,15 @@ Eigen::MatrixXd window_means(const Eigen::MatrixXd& series, double width) {
   return means;
 }
 
-// What is shorter than four points differs with the sense of motion (ringing); what is longer than a third of
-// the run is what the fit makes of wrong positions (a centre that is none).
+// Features shorter than four points depend on the direction of motion (ringing). Features longer
+// than a third of the run are caused by wrong positions in the fit (a wrong centre).
 Eigen::MatrixXd thin(const Eigen::MatrixXd& series) {
-  constexpr double kShortest = 4, kLongest = kPoints / 3.0;  // points that a lost stretch may have
+  constexpr double kShortest = 4, kLongest = kPoints / 3.0;  // points that a lost block may have
   return window_means(series, kShortest) - window_means(series, kLongest);
 }
 
-// Correlation where point i of the first lies at offset + rate i of the second; -1 where they overlap too
-// little.
+// Correlation if point i of the first is at offset + rate i of the second; -1 if the overlap is
+// too short.
 double correlation_at(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second, double offset,
                       double rate) {
   double ab = 0, aa = 0, bb = 0;
@@ -52,7 +53,7 @@ double correlation_at(const Eigen::MatrixXd& first, const Eigen::MatrixXd& secon
     }
     ++n;
   }
-  constexpr double kLeastOverlap = 0.6;  // of the shorter run, that a match rests on
+  constexpr double kLeastOverlap = 0.6;  // of the shorter run, for a match
   if (static_cast<double>(n) < kLeastOverlap * static_cast<double>(first.rows()) || aa <= 0 || bb <= 0)
     return -1;
   return ab / std::sqrt(aa * bb);
@@ -62,7 +63,8 @@ struct MatchPeak {
   double correlation = -1, offset = 0, rate = 0;
 };
 
-// The best offset at a rate (in thinned points), about where `implied` puts the middle of the first run.
+// The best offset at a rate (in reduced points), about the `implied` position of the middle of the
+// first run.
 MatchPeak search(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second, const PathMap& implied,
                  double rate, const RunMatchOptions& options) {
   MatchPeak best;
@@ -115,8 +117,8 @@ class Surrogates {
 
 double fisher(double r) { return std::atanh(std::clamp(r, -1 + 1e-9, 1 - 1e-9)); }
 
-// Chance of the observed maximum among surrogates: counted, and by the tail of their Gumbel law where that
-// says less than counting can; the larger of both where counting has something to say.
+// Probability of the observed maximum among surrogates: by counting, and by the tail of their
+// Gumbel law if counting cannot resolve it. The larger of both is used if counting gives a result.
 double chance(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second, const PathMap& implied,
               const MatchPeak& observed, const RunMatchOptions& options) {
   const Surrogates surrogates(second);
@@ -128,7 +130,7 @@ double chance(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second, const
         fisher(search(first, surrogates.draw(random), implied, observed.rate, options).correlation);
     sum += z, squares += z * z;
     if (z >= fisher(observed.correlation)) ++above;
-    // Twenty above in however few are enough to know that it is no finding.
+    // Twenty larger maxima, in however few surrogates, are sufficient to reject the finding.
     if (above == 20) return static_cast<double>(above) / (k + 1);
   }
   const double n = options.surrogates, mean = sum / n;
@@ -139,7 +141,7 @@ double chance(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second, const
   return above > 0 ? std::max(tail, (above + 1) / (n + 1)) : tail;
 }
 
-// Points over which the autocorrelation falls below a half.
+// Number of points over which the autocorrelation decreases below a half.
 double decorrelation(const Eigen::MatrixXd& series) {
   const double all = series.squaredNorm();
   for (Index k = 1; k < series.rows() / 2; ++k) {
@@ -165,7 +167,7 @@ std::optional<RunMatch> match_runs(const Eigen::MatrixXd& first, const Eigen::Ma
   if (a.squaredNorm() <= 0 || b.squaredNorm() <= 0) return std::nullopt;
   const double a_step = static_cast<double>(first.rows()) / kPoints,
                b_step = static_cast<double>(second.rows()) / kPoints;
-  // Point k stands for the row (k + 0.5) step - 0.5.
+  // Point k represents the row (k + 0.5) step - 0.5.
   const auto to_points = [&](const PathMap& map) {
     PathMap points = map;
     points.rate = map.rate * a_step / b_step;

@@ -31,7 +31,7 @@ std::vector<RecordSeries> rows_by_run(const model::Measurement& m) {
   return runs;
 }
 
-// Kinds of lengths that nearly every row of the run has, of those rows that have any.
+// Returns the kinds of lengths that nearly every row of the run has, of those rows that have any.
 Eigen::MatrixXd usual_kinds(const Eigen::MatrixXd& all) {
   constexpr double kUsual = 0.95;  // of all steps of a clock: the rest are pauses
   std::vector<Index> keep;
@@ -76,7 +76,7 @@ TimeBlock block_of(const RecordSeries& run, const RepeatBlock& b) {
           b.p_value};
 }
 
-// Chance of the strongest level that is shifted.
+// Probability of the strongest shifted level.
 double chance_of_shift(const std::vector<RepeatBlock>& blocks, const RepeatOptions& options) {
   double best = 1;
   for (const RepeatLevel& level : repeat_levels(blocks, options)) {
@@ -160,28 +160,29 @@ std::string sentence_of_match(const model::Measurement& m, const TimeRunMatch& p
       pair.match.shift);
 }
 
-// Times that a chance was taken; once where there was none.
+// Number of tests; one if there was none.
 double looks(std::size_t count) { return static_cast<double>(std::max<std::size_t>(1, count)); }
 
-// Fisher's joint chance of two independent ones.
+// Fisher's combined probability of two independent ones.
 double joint(double p, double q) {
   const double product = std::max(p * q, 1e-300);
   return product * (1 - std::log(product));
 }
 
-// The strongest of the run matches and of the closures, each after the number of looks. An end that resembles
-// the beginning is short: it supports a match and proves nothing alone.
+// Combines the strongest of the run matches and of the closures, each corrected for the number of
+// tests. An end that is similar to the start is short. It supports a match and is no proof alone.
 void join_chances(TimeBaseFinding& finding, double revisits) {
   double match = 1, closure = 1;
   for (const TimeRunMatch& pair : finding.matches) match = std::min(match, pair.match.p_value);
   for (const TimeClosure& run : finding.closures) closure = std::min(closure, run.closure.p_value);
   match = std::min(1.0, match * looks(finding.matches.size()));
   closure = std::min(1.0, closure * looks(finding.closures.size()));
-  constexpr double kWays = 3;  // that were looked at
+  constexpr double kWays = 3;  // that were tested
   finding.p_value = std::min(1.0, kWays * std::min({revisits, match, joint(match, closure)}));
 }
 
-// What is reported as evidence must be unlikely in itself, if not beyond the limit of the finding.
+// Evidence is reported only if it is improbable by itself, even if it does not reach the limit of
+// the finding.
 constexpr double kWorthTelling = 0.02;
 
 void tell(const model::Measurement& m, TimeBaseFinding& finding) {

@@ -20,7 +20,7 @@ void check(const Series& series) {
     throw text::InputError("a record whose times do not increase cannot be aligned");
 }
 
-/// Cubic through value and slope of both neighbours; t is held within the record.
+/// Cubic through value and slope of both neighbours. t is limited to the record.
 double at(const Series& s, double t) {
   t = std::clamp(t, s.t_s.front(), s.t_s.back());
   const auto next = std::upper_bound(s.t_s.begin() + 1, s.t_s.end() - 1, t);
@@ -45,7 +45,7 @@ double median_step(const Series& s) {
   return maths::median(std::move(steps));
 }
 
-/// Values at even steps from the first time on, mean taken off.
+/// Returns values at even steps from the first time on, without their mean.
 std::vector<double> resampled(const Series& s, double step) {
   std::vector<double> even;
   for (std::size_t i = 0; s.t_s.front() + static_cast<double>(i) * step <= s.t_s.back(); ++i)
@@ -62,8 +62,8 @@ std::vector<double> energies(const std::vector<double>& x) {
   return sum;
 }
 
-/// Correlation of a[i + lag] with b[i] over their overlap, for each lag with an overlap of half the shorter
-/// one.
+/// Correlation of a[i + lag] with b[i] over their overlap, for each lag with an overlap of at
+/// least half the shorter one.
 struct Lagged {
   long lag;
   double correlation;
@@ -96,7 +96,7 @@ std::vector<Lagged> correlations(const std::vector<double>& a, const std::vector
   return all;
 }
 
-/// The best lag, and in `rival` the best of the other tops.
+/// Returns the best lag. `rival` gets the best of the other maxima.
 Lagged best_lag(const std::vector<Lagged>& all, double& rival) {
   if (all.empty()) throw text::InputError("the records have nothing in common: one of them does not move");
   const auto best = std::max_element(
@@ -111,7 +111,8 @@ Lagged best_lag(const std::vector<Lagged>& all, double& rival) {
   return *best;
 }
 
-/// Lags to either side of the best one until the correlation has fallen to nine tenths of it.
+/// Returns the number of lags to either side of the best one until the correlation is nine tenths
+/// of it.
 long width_of(const std::vector<Lagged>& all, const Lagged& best) {
   long width = 1;
   for (const Lagged& one : all)
@@ -124,12 +125,14 @@ long width_of(const std::vector<Lagged>& all, const Lagged& best) {
 /// window.
 class ClockProblem {
  public:
-  /// `slope_step`: slopes are taken over so much to either side, s. Samples of their own: with the noise of
-  /// the sample itself in them they would be correlated with its residual, and the clock biased.
+  /// `slope_step`: distance to either side over which slopes are taken, s. The slopes use other
+  /// samples. If they contained the noise of the sample itself, they would be correlated with its
+  /// residual and the clock would be biased.
   ClockProblem(const Series& reference, const Series& other, double slope_step)
       : reference_(reference), other_(other), slope_step_(slope_step) {}
 
-  /// Improves `fit`, whose clock is taken about `centre` (reference time) to keep offset and rate apart.
+  /// Improves `fit`. Its clock is taken about `centre` (reference time) to decouple offset and
+  /// rate.
   void solve(ClockFit& fit, double centre, double half_width) const {
     double shift = 0;  // t_other of the centre
     shift = (centre - fit.offset_s) / fit.rate;

@@ -5,38 +5,40 @@
 
 namespace vernier::vibration {
 
-/// One quantity over the clock of its instrument: t in s, increasing; as many values.
+/// A quantity over the clock of its instrument: t in s, increasing, and the same number of values.
 struct Series {
   std::vector<double> t_s, value;
 };
 
-/// How the clock of one instrument follows from another's: t_reference = offset + rate * t_other.
+/// Relation between the clocks of two instruments: t_reference = offset + rate * t_other.
 struct ClockFit {
   double offset_s = 0, rate = 1;
   double offset_std_s = 0, rate_std = 0;  // offset at the middle of the overlap; from the residual
-  double correlation = 0;                 // of the two series where they overlap, clocks brought together
-  double rival = 0;  // next best correlation at another lag: close to the first, it is ambiguous
+  double correlation = 0;  // of the two series in their overlap, after the alignment of the clocks
+  double rival =
+      0;  // next best correlation at another lag: if it is close to the first, the result is ambiguous
 };
 
-/// Finds offset and rate of two records of one motion (encoder and accelerometer, both as accelerations;
-/// encoder and ball bar, both as lengths): the lag by cross-correlation of the resampled records, then
-/// offset, rate, gain and mean by least squares in windows that grow from the middle to the whole overlap, so
-/// that a rate of 1e-3 off is followed. Throws InputError: records shorter than 16 samples, times that do not
-/// increase, no common motion (correlation below 0.5). tool.
+/// Finds offset and rate of two records of one motion (encoder and accelerometer, both as
+/// accelerations; encoder and ball bar, both as lengths). Cross-correlation of the resampled
+/// records gives the lag. Least squares then give offset, rate, gain and mean in windows that grow
+/// from the middle to the whole overlap. A rate error of 1e-3 is therefore found. Throws
+/// InputError: records shorter than 16 samples, times that do not increase, no common motion
+/// (correlation below 0.5). tool.
 ClockFit align_clocks(const Series& reference, const Series& other);
 
-/// Place on a sampled path: between samples `sample` and `sample` + 1, `fraction` 0..1 of the way, `distance`
-/// off.
+/// Position on a sampled path: between samples `sample` and `sample` + 1, at the share `fraction`
+/// 0..1, at the distance `distance` from the path.
 struct PathPlace {
   std::size_t sample = 0;
   double fraction = 0, distance = 0;
 };
 
-/// For each point (a column) the nearest place on the path (columns in order of time), for records without a
-/// common clock. Points are in the order of the motion: the search goes from the place of the last one at
-/// most `reach` of the path's length forward (mm), so that a second pass over the same positions is not taken
-/// for the first; the first point is sought on the first `reach`. Throws InputError for a path of less than
-/// two samples. tool.
+/// Returns for each point (a column) the nearest position on the path (columns in order of time),
+/// for records without a common clock. Points are in the order of the motion. The search starts at
+/// the position of the previous point and ends at most `reach` of the path's length further (mm).
+/// A second pass over the same positions is therefore not taken for the first. The first point is
+/// searched on the first `reach`. Throws InputError for a path of less than two samples. tool.
 std::vector<PathPlace> nearest_places(const Eigen::MatrixXd& path, const Eigen::MatrixXd& points,
                                       double reach);
 

@@ -18,10 +18,11 @@ namespace vernier::vibration {
 namespace {
 
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();  // an empty cell
-// Of the corner: a filter of second order forgets 99.9 % in three, and six are left to read.
+// Of the corner: a filter of second order forgets 99.9 % in three periods. Six periods remain for
+// reading.
 constexpr double kSettlingPeriods = 3, kFewestPeriods = 6;
 constexpr double kLedShare = 0.1;  // of the record, at either end
-// Corners tried, and steps of a line between two of them.
+// Number of tested corners, and steps of a line between two of them.
 constexpr std::size_t kCorners = 60, kLineSteps = 200;
 
 /// mm/s^2 in the signal's unit.
@@ -41,8 +42,9 @@ std::vector<double> in_mm_s2(const Signal& signal) {
   return x;
 }
 
-/// The acceleration without its mean, led in and out over a tenth of the record at either end (half a
-/// cosine): a record that repeats itself, as spectral lines take it, must not jump there. mm/s^2.
+/// Returns the acceleration without its mean, tapered over a tenth of the record at either end
+/// (half a cosine). The spectral lines assume a record that repeats itself, so its ends must not
+/// jump. mm/s^2.
 std::vector<double> led_in_and_out(const Signal& signal) {
   std::vector<double> x = in_mm_s2(signal);
   const auto n = static_cast<double>(x.size());
@@ -90,7 +92,7 @@ DisplacementSeries by_power(const Signal& signal, double rate_Hz, std::optional<
   return series;
 }
 
-/// A signal and what was measured of it, by row that has both.
+/// A signal and its measured values, by rows that have both.
 struct Pairing {
   const Signal* signal = nullptr;
   std::vector<std::size_t> sample;
@@ -120,7 +122,7 @@ std::vector<Pairing> pairings_of(const VibrationRecord& record, const std::vecto
   return pairings;
 }
 
-/// Sum of squares about the mean, and of how many; values that are not finite are left out.
+/// Sum of squares about the mean, and the count. Values that are not finite are excluded.
 struct Spread {
   double squares = 0;
   std::size_t count = 0;
@@ -137,8 +139,8 @@ Spread spread_about_mean(const std::vector<double>& values) {
   return spread;
 }
 
-/// rms of measured less computed; infinite where less than half of the rows has a settled filter: a corner is
-/// not to win by having few rows.
+/// Returns the rms of measured minus computed. Infinite if less than half of the rows have a
+/// filter at its final value: a corner must not be selected because it has few rows.
 double disagreement_um(const std::vector<Pairing>& pairings, double rate_Hz,
                        const DisplacementChoice& choice) {
   Spread all;

@@ -34,7 +34,7 @@ std::vector<double> column_values(const format::CsvFile& file, std::size_t colum
   return values;
 }
 
-/// Rate of even times; throws where they are not.
+/// Returns the rate of even times. Throws if they are not even.
 double rate_of(const format::CsvFile& file, const std::vector<double>& t_s) {
   const auto n = static_cast<double>(t_s.size() - 1);
   const double step = (t_s.back() - t_s.front()) / n;

@@ -33,7 +33,7 @@ void check(const AcceleratedPass& pass) {
         "a circular pass needs accelerations of two axes and an angle for each of its samples");
 }
 
-/// The spectrum of x with 0 for its mean and for lines at or below the cut-off.
+/// Returns the spectrum of x with 0 for its mean and for lines at or below the cut-off.
 std::vector<std::complex<double>> kept_spectrum(Fourier& fourier, std::span<const double> x, double cutoff,
                                                 SpectralCut* cut) {
   const auto lines = fourier.forward(x);
@@ -129,7 +129,7 @@ FittedCut fitted_cutoff(const std::vector<AcceleratedPass>& passes, Constants co
     }
   }
   FittedCut best{0, HUGE_VAL};
-  // Even steps of the logarithm of how many lines are kept: the strong ones decide.
+  // Even steps of the logarithm of the number of kept lines: the strong lines decide.
   for (const double cutoff : cuts_between_lines(std::move(powers), steps)) {
     double objective = 0;
     for (const AcceleratedPass& pass : passes)

@@ -6,60 +6,64 @@
 
 namespace vernier::vibration {
 
-/// Spectral lines of a record that are kept: |F|^2/N above a cut-off, in the unit of the samples squared (C.
-/// Walker, PhD thesis, University of Strathclyde 2026, section 4; `facts.json` fft_filter).
+/// Spectral lines of a record that are kept: |F|^2/N above a cut-off, in the squared unit of the
+/// samples (C. Walker, PhD thesis, University of Strathclyde 2026, section 4; `facts.json`
+/// fft_filter).
 struct SpectralCut {
   double cutoff = 0;
   std::size_t kept = 0, lines = 0;  // without the mean value
 };
 
-/// What becomes of the two constants of integration.
+/// Choice of the two constants of integration.
 enum class Constants {
-  kPublished,  // velocity and displacement start at 0: what the mean of either then is stays in
+  kPublished,  // velocity and displacement start at 0; their means are not removed
   kCentred,    // mean velocity and mean displacement of the record are 0
 };
 
-/// The record without the lines at or below `cutoff`, and without its mean. x: n >= 2 samples. tool.
+/// Returns the record without the lines at or below `cutoff`, and without its mean. x: n >= 2
+/// samples. tool.
 std::vector<double> kept_lines(std::span<const double> x, double cutoff, SpectralCut* cut = nullptr);
 
-/// Displacement from acceleration by cumulative trapezoids, twice (equations 4-1, 4-2). x in unit/s^2; result
-/// in that unit. tool.
+/// Returns displacement from acceleration by cumulative trapezoids, twice (equations 4-1, 4-2). x
+/// in unit/s^2; result in that unit. tool.
 std::vector<double> integrate_twice(std::span<const double> x, double rate_Hz, Constants constants);
 
-/// |F|^2/N of the lines above the mean value, from the lowest on. tool.
+/// Returns |F|^2/N of the lines above the mean value, lowest frequency first. tool.
 std::vector<double> line_powers(std::span<const double> x);
 
-/// Displacement from the lines above `cutoff`, each divided by -(2 pi f)^2: what the trapezoids of
-/// integrate_twice approach with Constants::kCentred, without their loss towards half the rate (25 % at 200
-/// Hz of 1 kHz). As theirs, it is that of a record that repeats itself. x in unit/s^2; result in that unit.
-/// tool.
+/// Returns displacement from the lines above `cutoff`, each divided by -(2 pi f)^2. The trapezoids
+/// of integrate_twice with Constants::kCentred approach it, but have a loss towards half the rate
+/// (25 % at 200 Hz of 1 kHz). Both assume a record that repeats itself. x in unit/s^2; result in
+/// that unit. tool.
 std::vector<double> integrate_lines(std::span<const double> x, double rate_Hz, double cutoff,
                                     SpectralCut* cut = nullptr);
 
-/// Cut-offs between lines of these powers, at most `steps`: 1, ..., all but one of them kept, even in the
-/// logarithm of how many. tool.
+/// Returns cut-offs between lines of these powers, at most `steps`. They keep 1, ..., all but one
+/// of the lines, even in the logarithm of their number. tool.
 std::vector<double> cuts_between_lines(std::vector<double> powers, std::size_t steps);
 
-/// Cut-off that lines of white noise alone pass once in `records` records: the floor is the median line over
-/// ln 2 (lines of noise are exponentially distributed), times ln(lines * records). Half the lines at most may
-/// be signal. tool.
+/// Returns the cut-off that lines of white noise alone exceed once in `records` records. The floor
+/// is the median line over ln 2 (lines of noise are exponentially distributed), times ln(lines *
+/// records). At most half the lines may be signal. tool.
 double noise_floor_cutoff(std::span<const double> x, double records = 20);
 
-/// One pass of a ball bar with an accelerometer at the tool: accelerations in mm/s^2, angle of the commanded
-/// position of each sample in rad, and the mean of the ball bar's deviations, um.
+/// One pass of a ball bar with an accelerometer at the tool: accelerations in mm/s^2, angle of the
+/// commanded position of each sample in rad, and the mean of the ball bar's deviations, um.
 struct AcceleratedPass {
   std::vector<double> ax, ay, angle_rad;
   double rate_Hz = 0;
   double mean_ballbar_um = 0;
 };
 
-/// Radial displacement of a pass, um, mean over the record, with lines of both axes kept above the cut-off.
+/// Radial displacement of a pass, um, mean over the record. Lines of both axes above the cut-off
+/// are kept.
 double mean_radial_um(const AcceleratedPass& pass, double cutoff, Constants constants);
 
-/// The cut-off that makes the objective of equation 4-1 least: the sum over passes (clockwise,
-/// counter-clockwise) of |mean(ball bar) - mean(accelerometer)|. The objective changes only where a line is
-/// dropped: it is searched over `steps` cut-offs between the lines of all passes in order of power. Returns
-/// cut-off and objective (um). Throws InputError for records of unequal length or none. tool.
+/// Finds the cut-off that minimises the objective of equation 4-1: the sum over passes (clockwise,
+/// counter-clockwise) of |mean(ball bar) - mean(accelerometer)|. The objective changes only if a
+/// line is removed. The search therefore uses `steps` cut-offs between the lines of all passes in
+/// order of power. Returns cut-off and objective (um). Throws InputError for records of unequal
+/// length or no records. tool.
 struct FittedCut {
   double cutoff = 0, objective_um = 0;
 };

@@ -4,7 +4,8 @@
 
 namespace vernier::workbench {
 
-/// The page of the workbench, its script (tools/workbench/web, one bundle) and its style sheet. tool.
+/// Returns the page of the workbench, its script (tools/workbench/web, one bundle) and its style
+/// sheet. tool.
 std::string_view workbench_page();
 std::string_view workbench_script();
 std::string_view workbench_style();

@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kMark = "# excluded \"", kEndOfReason = "\": ";
 constexpr std::size_t kMostLines = 10'000'000;
 
-/// Splits at line ends, which stay with their line.
+/// Splits at line ends. A line end belongs to its line.
 std::vector<std::string_view> split(std::string_view text) {
   std::vector<std::string_view> lines;
   while (!text.empty()) {
@@ -36,7 +36,7 @@ std::optional<ExcludedRow> read_excluded(std::string_view line, std::size_t numb
                      std::string(line.substr(end + kEndOfReason.size()))};
 }
 
-/// The text with change(line, number) in the place of the lines named.
+/// Returns the text with the named lines replaced by change(line, number).
 std::string changed(const std::string& text, const std::vector<std::size_t>& lines,
                     const std::function<std::string(std::string_view, std::size_t)>& change) {
   std::string result;

@@ -61,7 +61,7 @@ void CommandHistory::save() const {
 void CommandHistory::add(const std::string& typed, const PlannedCommand& command,
                          const nlohmann::ordered_json& result) {
   const std::scoped_lock lock(guard_);
-  // A new step takes the place of those that were undone.
+  // A new step replaces the undone steps.
   while (!entries_.empty() && entries_.back()["undone"].get<bool>()) entries_.erase(entries_.size() - 1);
   entries_.push_back({{"command", typed},
                       {"name", command.name},

@@ -4,7 +4,7 @@
 
 namespace vernier::workbench {
 
-/// s since some moment, never back: for durations. tool.
+/// s since an arbitrary moment, never decreasing: for durations. tool.
 double steady_s();
 /// s since 1970: for dates. tool.
 std::int64_t unix_s();

@@ -11,7 +11,7 @@ namespace vernier::workbench {
 /// Largest body of a request, bytes.
 inline constexpr std::size_t kMostBodyBytes = std::size_t{64} << 20;
 
-/// 32 random bytes as hexadecimal digits, from the system's random numbers. tool.
+/// Returns 32 random bytes as hexadecimal digits, from the system's random numbers. tool.
 std::string new_token();
 
 /// The page and its API on 127.0.0.1. A request is answered only under three conditions. It names this host
@@ -28,7 +28,7 @@ class WorkbenchServer {
 
   std::uint16_t port() const;
   const std::string& token() const;
-  /// The address to open, with the token.
+  /// Returns the address to open, with the token.
   std::string url() const;
   /// Serves until stop(), which any thread may call.
   void serve();

@@ -13,7 +13,7 @@ void add(Json& list, const std::string& name, const std::string& unit, const cha
   list.push_back({{"name", name}, {"unit", unit}, {"what", what}});
 }
 
-/// The same machine with the unknown coefficient as one more static.
+/// Returns the same machine with the unknown coefficient as an additional static.
 model::Machine with_unknown(const model::Machine& machine) {
   model::Machine wider = machine;
   if (!wider.find_static("k")) {

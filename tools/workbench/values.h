@@ -9,11 +9,12 @@
 
 namespace vernier::workbench {
 
-/// The free parameters of a machine with every BaseShift that it has: those of each run, and the plain one.
+/// Returns the free parameters of a machine with all its BaseShifts: those of each run, and the
+/// plain one.
 model::ParameterSet all_parameters(const model::Machine& machine);
 
-/// Sets parameters by name (as in the result of fit); a hidden static too. Throws InputError with a name that
-/// the machine does not have. tool.
+/// Sets parameters by name (as in the result of fit), including hidden statics. Throws InputError
+/// with a name that the machine does not have. tool.
 void set_values(model::Machine& machine, const std::map<std::string, double>& values);
 
 }  // namespace vernier::workbench
