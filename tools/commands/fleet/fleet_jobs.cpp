@@ -132,8 +132,7 @@ void run_jobs(const JobsArguments& arguments) {
 
 void add_jobs(CLI::App& fleet) {
   const auto enqueue = std::make_shared<EnqueueArguments>();
-  CLI::App* command =
-      fleet.add_subcommand("enqueue", "Enter a command for each machine, no machine twice");
+  CLI::App* command = fleet.add_subcommand("enqueue", "Enter a command for each machine, no machine twice");
   command->add_option("BATCH", enqueue->batch, "name of this work, e.g. night-2026-11-23")->required();
   command
       ->add_option("COMMAND", enqueue->command, "shell command; {machine} is replaced by the machine's name")
