@@ -344,7 +344,7 @@ struct VerdictThresholds {
   double structure = 1e-4;
   /// chi^2 per degree of freedom up to which the stated uncertainty may be too small: 1.4 of u.
   double doubtful_uncertainty = 2;
-  /// ... and beyond which that is excluded: nobody states a third of his uncertainty.
+  /// ... and beyond which that is excluded: a stated uncertainty is not three times too small.
   double implausible_uncertainty = 9;
   /// Without u: share of chi^2 that an accepted stepwise model must explain for a named cause.
   double mostly_explained = 0.5;

@@ -44,7 +44,7 @@ std::string first_names(const std::vector<std::string>& names) {
 
 Decision decision_of(const DecisionGroup& group) {
   const std::string names = first_names(group.names);
-  const char* said = group.unseen == group.open ? "not measured: only the prior"
+  const char* said = group.unseen == group.open ? "not measured; stays at nominal +- scale"
                      : group.names.size() > 1
                          ? "not distinguished by these readings: as near to nominal as can be"
                          : "determined in part: the rest as near to nominal as can be";

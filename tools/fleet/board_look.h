@@ -23,7 +23,7 @@ BoardLook look_at(upload::Client& board);
 /// whole correction of every axis is applied. tool.
 std::string not_in_effect(const BoardLook& look, const upload::BoardInfo& info, std::uint64_t fingerprint);
 
-/// Reason why no image can come into effect on this board before somebody changes its state; empty: an image
+/// Reason why no image can come into effect on this board before a user changes its state; empty: an image
 /// can. Reasons: a latched fault, held corrections, or an axis with a weight below 1. tool.
 std::string blocked(const BoardLook& look, const upload::BoardInfo& info);
 

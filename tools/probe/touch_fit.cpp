@@ -101,7 +101,7 @@ class TouchSolver {
     for (Index k = 0; k < at.size(); ++k)
       if (std::abs(pass.svd.matrixV()(k, at.size() - 1)) > 0.3)
         weak += (weak.empty() ? "" : ", ") + names_[static_cast<std::size_t>(k)];
-    throw text::InputError("the touches cannot tell apart: " + weak);
+    throw text::InputError("the touches do not distinguish: " + weak);
   }
 
   const TouchModel& model_;

@@ -8,7 +8,7 @@ const kVerdicts = {
   ambiguous: () => 'One of several effects: these measurements cannot tell which',
   unexplained: () => 'Something is missing, and nothing known explains it',
   instrument: () => 'The measurement is the likelier cause, not the machine',
-  consistent: () => 'Nothing is missing: what is left is noise',
+  consistent: () => 'Nothing is missing: the residual is noise',
 };
 
 const um = (label, value, strong) => ({ label, value: number(value, 4), unit: 'µm', strong });

@@ -17,7 +17,7 @@ function kept() {
   }
 }
 
-/** Reports that go to somebody else: with a head, and for an axis with a tolerance and its verdict (ISO 230-2). */
+/** Reports for customers and auditors: with a head, and for an axis with a tolerance and its verdict (ISO 230-2). */
 export function handoverPanel() {
   const error = el('div', {}),
     links = el('p', { id: 'handover-links' });

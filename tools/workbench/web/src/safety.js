@@ -14,7 +14,7 @@ const kAsks = {
   'measured-range': 'Was it measured where it works?',
   'input-range': 'Were temperatures and inputs in that range?',
   'set-up': 'Would the set-up of the instrument reach an axis?',
-  converged: 'Did the fit come to an end?',
+  converged: 'Did the fit converge?',
   residual: 'Is little left of the readings?',
   outlier: 'Does no single reading stand apart?',
   'check-rows': 'Do held-out rows confirm the model?',
