@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/unit/compile/poses.h"
+#include "tools/compile/orientation.h"
 #include "tools/kinematics/correction.h"
 
 namespace vernier {

@@ -8,6 +8,7 @@
 #include "tests/unit/compile/agreement.h"
 #include "tests/unit/compile/left_over.h"
 #include "tests/unit/effects/candidates.h"
+#include "tools/compile/orientation.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::orientation_test {
