@@ -84,7 +84,7 @@ TEST_F(Manners, HelpIsACommandToo) {
 TEST_F(Manners, HelpFitsEightyColumns) {
   ASSERT_EQ(run("vernier help"), 0);
   std::vector<std::string> commands = {""};
-  std::istringstream list(said_.substr(said_.find("Subcommands:")));
+  std::istringstream list(said_.substr(said_.find("\nMeasure:")));
   for (std::string line; std::getline(list, line);)
     if (line.size() > 3 && line.starts_with("  ") && line[2] != ' ')
       commands.push_back(line.substr(2, line.find(' ', 2) - 2));
