@@ -37,7 +37,7 @@ TEST_F(Manual, HasAPageForEachCommandOfTheHelp) {
   bool commands = false;
   std::size_t count = 0;
   for (std::string line; std::getline(help, line);) {
-    commands = commands || line == "Subcommands:";
+    commands = commands || line == "Measure:";
     if (!commands || line.size() < 3 || line[0] != ' ' || line[2] == ' ') continue;
     const std::string name = line.substr(2, line.find(' ', 2) - 2);
     if (name == "help") continue;
