@@ -97,12 +97,11 @@ const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
 Matrix3d ObservationModel::sight(Eigen::Index row) const {
   Vector3d along = tool_axis();
   if (m_.direction.cols() > 0 && m_.direction.col(row).allFinite()) along = m_.direction.col(row);
-  // The two directions across it must change smoothly with the measured direction, so that noise
-  // does not select them. Eigen's unitOrthogonal() near z computes them from the small components,
-  // which are noise.
-  constexpr double kMostAlongX = 0.8;  // cosine; beyond it y is farther from the direction than x
-  const Vector3d away = std::abs(along.x()) < kMostAlongX ? Vector3d::UnitX() : Vector3d::UnitY();
-  const Vector3d across = along.cross(away).normalized();
+  // The first direction across is horizontal, so that the two are those of a mount's axes. Near z that
+  // would be chosen by noise: there it follows x.
+  constexpr double kNearZ = 0.999;  // cosine of 2.6 deg, far above any noise of a direction
+  const Vector3d about = std::abs(along.z()) < kNearZ ? Vector3d::UnitZ() : Vector3d::UnitX();
+  const Vector3d across = about.cross(along).normalized();
   Matrix3d frame;
   frame << along, across, along.cross(across);
   return frame;

@@ -26,13 +26,7 @@ const kPath = [
         ? `The model leaves ${um(store.compare.rms_um)} beside ${um(store.compare.noise_um)} of noise: ask what is missing.`
         : 'Ask what is missing.',
   ],
-  [
-    'fall',
-    'Watch it fall',
-    'add',
-    () => store.steps.length > 0,
-    () => 'Fit, add what was named, and see the error fall on held-out rows.',
-  ],
+  ['fall', 'Watch it fall', 'add', () => store.steps.length > 0, () => 'Fit, add what was named, and see the error fall on held-out rows.'],
   [
     'safe',
     'Safe to run?',
