@@ -187,7 +187,8 @@ bool is_filler(const LaserText& read, std::size_t number, const std::vector<Lase
 LaserFile read_laser_file(const std::string& text, const std::string& file, const std::string& axis,
                           RunSenses senses) {
   if (text.find('\0') != std::string::npos)
-    throw text::InputError({file, 0}, "", "zero bytes: a file of dynamic capture, or not a text file");
+    throw text::InputError({file, 0}, "",
+                           "the file has bytes of value 0: a file of dynamic capture, or not a text file");
   const LaserText read = LaserReader(text, file).read();
   check_counts(read, file);
   const auto said = [&](const char* key) {

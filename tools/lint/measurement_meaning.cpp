@@ -253,9 +253,11 @@ class Meaning {
       meaning = "deviations instead of positions? vernier import table " + quoted_for_shell(file_) +
                 " --deviation \"X[mm]=x\" … adds them to the positions";
     if (!meaning.empty())
-      findings_.warn(table_.header_line, columns::kPoint.front(),
-                     fmt::format("the measured values spread over {:.4g} of the commanded positions", ratio),
-                     meaning);
+      findings_.warn(
+          table_.header_line, columns::kPoint.front(),
+          fmt::format("the measured values spread over {:.4g} times the range of the commanded positions",
+                      ratio),
+          meaning);
   }
 
   static std::string wrong_heading(const std::string& name, const char* holds, const char* heading,

@@ -201,7 +201,7 @@ TEST(ScrewComp, WhatItCannotExpressIsNamed) {
   EXPECT_EQ(reasons("+k*X"), "");
   EXPECT_EQ(reasons("+k*dirX"), "");
   EXPECT_NE(reasons("+k*Y").find("position of Y"), std::string::npos);
-  EXPECT_NE(reasons("+k*dirZ*10").find("sense of motion of Z"), std::string::npos);
+  EXPECT_NE(reasons("+k*dirZ*10").find("direction of motion of Z"), std::string::npos);
   EXPECT_NE(reasons("+k*X*(T-20)").find("input T"), std::string::npos);
   EXPECT_NE(reasons("+k*vX").find("speed"), std::string::npos);
   EXPECT_NE(reasons("+50*k*dirX*exp(-sinceX/1)").find("since the last reversal"), std::string::npos);

@@ -78,7 +78,7 @@ const Case kCases[] = {
     {"AxisMissing", "X[mm],Y[mm],x[mm]\n1,2,3\n", "\"Z\": the column of this axis is missing"},
     {"AxisInSmallLetters", "X[mm],Y[mm],z[mm],x[mm]\n1,2,3,4\n", "there is z: names have capitals"},
     {"NothingMeasured", "X[mm],Y[mm],Z[mm]\n1,2,3\n", "no measured column"},
-    {"WildCell", along_x("9999"), "s.csv:9: warning: \"9999\": x is "},
+    {"WildCell", along_x("9999"), "s.csv:9: warning: \"9999\": x differs "},
     {"MicronsUnderMillimetres", along_x("", "mm", 1000), "µm under a heading of mm? Write x[um]"},
     {"MillimetresUnderMicrons", along_x("", "um"), "mm under a heading of µm? Write x[mm]"},
     {"CorrectionOfMillimetres", "X[mm],Y[mm],Z[mm],x[mm],correctionX[mm]\n0,0,0,0,12.5\n9,0,0,9,13.5\n",
@@ -101,7 +101,7 @@ const Case kCases[] = {
     {"Micrometres",
      "X[mm],Y[mm],Z[mm],x[mm],y[mm],z[mm]\n0,0,-300,0,0,-300000\n600,400,0,600000,400000,0\n300,100,-9,"
      "300000,100000,-9000\n",
-     "spreads over 1000 of the commanded positions -- the readings are in µm"},
+     "spread over 1000 times the range of the commanded positions -- the readings are in µm"},
     {"Deviations", "X[mm],Y[mm],Z[mm],x[mm]\n0,0,-300,0.001\n600,400,0,0.004\n300,100,-9,0.002\n",
      "deviations instead of positions?"},
     {"InchesInAMillimetreColumn", "X[mm],Y[mm],Z[mm],x[mm]\n0,0,-11,0\n23.6,15,0,599.44\n11,4,-5,279.4\n",
