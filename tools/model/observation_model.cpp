@@ -97,10 +97,11 @@ const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
 Matrix3d ObservationModel::sight(Eigen::Index row) const {
   Vector3d along = tool_axis();
   if (m_.direction.cols() > 0 && m_.direction.col(row).allFinite()) along = m_.direction.col(row);
-  // The first direction across is horizontal, so that the two are those of a mount's axes. Near z that
-  // would be chosen by noise: there it follows x.
-  constexpr double kNearZ = 0.999;  // cosine of 2.6 deg, far above any noise of a direction
-  const Vector3d about = std::abs(along.z()) < kNearZ ? Vector3d::UnitZ() : Vector3d::UnitX();
+  // The first direction across is horizontal, so that the two are those of a mount's axes. Within half a
+  // degree of z noise and errors would choose it: there it follows x.
+  constexpr double kNearZ = 0.01;  // sine: far above noise and errors of a direction
+  const bool near_z = along.head<2>().norm() < kNearZ * std::abs(along.z());
+  const Vector3d about = near_z ? Vector3d::UnitX() : Vector3d::UnitZ();
   const Vector3d across = about.cross(along).normalized();
   Matrix3d frame;
   frame << along, across, along.cross(across);
