@@ -80,7 +80,32 @@ model::States AxisMotion::along(const ProgramMove& move, const std::vector<doubl
   return states;
 }
 
-int AxisMotion::looks(const ProgramMove& move, double from, double to, double deviation_mm) const {
+std::vector<double> AxisMotion::looks(const ProgramMove& move, double from, double to,
+                                      double deviation_mm) const {
+  const int count = even_looks(move, from, to, deviation_mm);
+  std::vector<double> shares;
+  for (int k = 0; k <= count; ++k) shares.push_back(from + (to - from) * k / count);
+  constexpr int kParts = 256;  // of the stretch; each is looked at closely if it meets a sharp one
+  VectorXd last = move.at(from);
+  for (int k = 1; k <= kParts; ++k) {
+    const double begin = from + (to - from) * (k - 1) / kParts, end = from + (to - from) * k / kParts;
+    const VectorXd next = move.at(end);
+    double parts = 0;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const double a = last[static_cast<Index>(i)], b = next[static_cast<Index>(i)];
+      for (const model::Detail::Sharp& sharp : detail_[i].sharp)
+        if (sharp.from <= std::max(a, b) && sharp.to >= std::min(a, b))
+          parts = std::max(parts, std::abs(b - a) / sharp.spacing);
+    }
+    for (int n = 1; n < parts; ++n) shares.push_back(begin + (end - begin) * n / parts);
+    last = next;
+  }
+  std::sort(shares.begin(), shares.end());
+  shares.erase(std::unique(shares.begin(), shares.end()), shares.end());
+  return shares;
+}
+
+int AxisMotion::even_looks(const ProgramMove& move, double from, double to, double deviation_mm) const {
   // Features that a table of stations does not hide between two evaluated positions; their number, and chords
   // for the length.
   constexpr double kStep_mm = 1, kStep_deg = 0.1;
@@ -89,7 +114,7 @@ int AxisMotion::looks(const ProgramMove& move, double from, double to, double de
   double length = 0, turn = 0, bend = 0, detail = 0;
   VectorXd reached =
       VectorXd::Zero(static_cast<Index>(machine_.axes.size()));  // by each axis, along the move
-  VectorXd last = move.at(from), low = last, high = last, way;
+  VectorXd last = move.at(from), way;
   for (int k = 1; k <= kChords; ++k) {
     const VectorXd next = move.at(from + (to - from) * k / kChords), step = next - last;
     double squares = 0;
@@ -105,20 +130,10 @@ int AxisMotion::looks(const ProgramMove& move, double from, double to, double de
     if (k > 1) bend = std::max(bend, (step - way).norm());
     way = step;
     last = next;
-    low = low.cwiseMin(next);
-    high = high.cwiseMax(next);
   }
   for (std::size_t i = 0; i < machine_.axes.size(); ++i)
     detail = std::max(detail, reached[static_cast<Index>(i)] *
                                   std::max(kPerPeriod / detail_[i].period, kPerStation / detail_[i].station));
-  // Of an arc the positions of its chords are its range, to one chord.
-  for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-    const auto axis = static_cast<Index>(i);
-    for (const model::Detail::Sharp& sharp : detail_[i].sharp)
-      if (sharp.from <= high[axis] + reached[axis] / kChords &&
-          sharp.to >= low[axis] - reached[axis] / kChords)
-        detail = std::max(detail, reached[axis] / sharp.spacing);
-  }
   // A chord of n parts of this one has an error of its eighth over n^2.
   const double chords = move.arc ? kChords * std::sqrt(bend / deviation_mm) : 0;
   return static_cast<int>(std::clamp(std::max({length / kStep_mm, turn / kStep_deg, chords, detail}),

@@ -230,8 +230,7 @@ class Translator {
 
   CorrectedStretch stretch(const ProgramMove& move, double from, double to) {
     CorrectedStretch result;
-    const int count = motion_of_.looks(move, from, to, options_.deviation_mm);
-    for (int k = 0; k <= count; ++k) result.shares.push_back(from + (to - from) * k / count);
+    result.shares = motion_of_.looks(move, from, to, options_.deviation_mm);
     motion_of_.set_out(move.at(from), move.at((from + to) / 2));
     result.states = motion_of_.along(move, result.shares);
     if (options_.watch)

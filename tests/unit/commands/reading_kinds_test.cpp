@@ -195,7 +195,8 @@ TEST_P(ReadingKinds, GoFromTheTemplateToTheReport) {
   write_survey();
   if (HasFatalFailure()) return;
   EXPECT_EQ(run("vernier lint machine.xml survey.csv --json lint.json"), 0) << said_;
-  for (const auto& finding : json("lint.json")["findings"]) EXPECT_NE(finding["weight"], "error") << finding;
+  const nlohmann::json lint = json("lint.json");
+  for (const auto& finding : lint["findings"]) EXPECT_NE(finding["weight"], "error") << finding;
   ASSERT_EQ(run("vernier fit machine.xml survey.csv -o fitted.xml --json fit.json --residuals rows.csv"), 0)
       << said_;
   const nlohmann::json fit = json("fit.json");
