@@ -68,12 +68,6 @@ VectorXd times_rows(VectorXd points, const VectorXd& factor) {
   return points;
 }
 
-bool has_symbol(const model::Expr& expr, model::SymbolKind kind, std::size_t index) {
-  return model::any_node(expr, [&](const model::Expr& node) {
-    return node.op == model::Op::kSymbol && node.symbol == model::Symbol{kind, index};
-  });
-}
-
 bool has_free_static(const model::Machine& machine, const model::Expr& expr) {
   return model::any_node(expr, [&](const model::Expr& node) {
     return node.op == model::Op::kSymbol && node.symbol.kind == model::SymbolKind::kStatic &&
@@ -84,7 +78,7 @@ bool has_free_static(const model::Machine& machine, const model::Expr& expr) {
 bool waves_along(const model::Expr& expr, std::size_t axis) {
   return model::any_node(expr, [&](const model::Expr& node) {
     return (node.op == model::Op::kSin || node.op == model::Op::kCos) &&
-           has_symbol(node, model::SymbolKind::kAxis, axis);
+           model::has_symbol(node, {model::SymbolKind::kAxis, axis});
   });
 }
 

@@ -26,6 +26,10 @@ std::optional<ReadingKind> kind_named(std::string_view name) {
   return std::nullopt;
 }
 
+const char* report_unit_of(std::string_view name) {
+  return report_unit_of(kind_named(name).value_or(ReadingKind::kX));
+}
+
 std::string subject_of(ReadingKind kind) {
   std::string subject = entry_of(form_of(kind)).subject;
   if (const auto at = subject.find('%'); at != std::string::npos)

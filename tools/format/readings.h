@@ -124,6 +124,8 @@ constexpr const char* name_of(ReadingKind kind) { return entry_of(kind).name; }
 constexpr bool is_rotation(ReadingKind kind) { return entry_of(form_of(kind)).rotation; }
 /// "mm" or "deg".
 constexpr const char* unit_of(ReadingKind kind) { return is_rotation(kind) ? "deg" : "mm"; }
+/// Unit of a residual in results: "um" or "urad".
+constexpr const char* report_unit_of(ReadingKind kind) { return is_rotation(kind) ? "urad" : "um"; }
 /// The set-up of the instrument does not change the reading.
 constexpr bool is_free_of_setup(ReadingKind kind) { return entry_of(form_of(kind)).free_of_set_up; }
 constexpr bool is_direction(ReadingKind kind) { return form_of(kind) == ReadingForm::kDirection; }
@@ -131,6 +133,8 @@ constexpr bool is_inclination(ReadingKind kind) { return form_of(kind) == Readin
 
 /// The kind of that name; nullopt: no kind has it.
 std::optional<ReadingKind> kind_named(std::string_view name);
+/// The unit in results of the kind of that name; "um" if no kind has it.
+const char* report_unit_of(std::string_view name);
 
 /// Name of the residual of a kind in a sentence: "X error", "rotation error about Z", "length error".
 std::string subject_of(ReadingKind kind);

@@ -138,4 +138,9 @@ bool any_node(const Expr& expr, const Is& is) {
   return found;
 }
 
+/// Does the expression depend on the symbol?
+inline bool has_symbol(const Expr& expr, const Symbol& symbol) {
+  return any_node(expr, [&](const Expr& node) { return node.op == Op::kSymbol && node.symbol == symbol; });
+}
+
 }  // namespace vernier::model

@@ -79,15 +79,15 @@ class SharpStretches {
   static constexpr double kStraight = 2e-5;  // mm or deg: a fiftieth of what any machine is corrected to
 
   /// Does the expression depend on the axis by more than sums, products and sines? Those have
-  /// their own limits.
+  /// their own limits. A divisor that does not change with the axis is a factor.
   bool may_be_sharp(const Expr& expr) const {
-    bool of_axis = false, other = false;
-    walk(expr, [&](const Expr& node) {
-      of_axis = of_axis || (node.op == Op::kSymbol && node.symbol == Symbol{SymbolKind::kAxis, axis_});
-      other = other || (node.op >= Op::kDivide && !is_wave(node));
+    if (any_node(expr, [](const Expr& node) { return node.op == Op::kLag; })) return false;
+    return any_node(expr, [&](const Expr& node) {
+      if (node.op == Op::kDivide) return of_axis(*node.args[1]);
+      return node.op > Op::kDivide && !is_wave(node) && of_axis(node);
     });
-    return of_axis && other && !any_node(expr, [](const Expr& node) { return node.op == Op::kLag; });
   }
+  bool of_axis(const Expr& expr) const { return has_symbol(expr, {SymbolKind::kAxis, axis_}); }
 
   States grid(std::size_t first, std::size_t count) const {
     States states = select_states(at_, std::vector<std::size_t>(count, 0));

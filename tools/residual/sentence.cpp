@@ -10,11 +10,7 @@
 namespace vernier::residual {
 namespace {
 
-bool is_angle(const Finding& f) {
-  const auto kind = format::kind_named(f.observation);
-  return kind && format::is_rotation(*kind);
-}
-std::string unit_of(const Finding& f) { return is_angle(f) ? "urad" : "um"; }
+std::string unit_of(const Finding& f) { return format::report_unit_of(f.observation); }
 
 /// "Y error", "rotation error about X", "length error", "deviation d".
 std::string subject(const Finding& f) {

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const char* unit_of(const residual::ReductionGroup& group) {
-  return group.kind && model::is_rotation(*group.kind) ? "urad" : "um";
+  return format::report_unit_of(group.kind.value_or(model::ObservationKind::kX));
 }
 
 const char* verdict_word(residual::Helped verdict) {

@@ -57,7 +57,7 @@ void add_observations(ordered_json& detail, const model::Measurement& m, const E
     if (at < 0) {
       at = static_cast<int>(kinds.size());
       kinds.push_back(format::name_of(o.kind));
-      units.push_back(format::is_rotation(o.kind) ? "urad" : "um");
+      units.push_back(format::report_unit_of(o.kind));
     }
     const double r = residual[static_cast<Eigen::Index>(i)];
     row.push_back(o.row);
@@ -90,7 +90,7 @@ void add_worst(ordered_json& detail, const model::Measurement& m, const Eigen::V
          {"run", m.states.run_names[m.states.run[o.row]]},
          {"role", m.check[o.row] != 0 ? "check" : "fit"},
          {"kind", format::name_of(o.kind)},
-         {"unit", model::is_rotation(o.kind) ? "urad" : "um"},
+         {"unit", format::report_unit_of(o.kind)},
          {"residual", in_report_unit(o.kind, residual[static_cast<Eigen::Index>(order[k])])}});
   }
 }

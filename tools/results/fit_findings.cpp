@@ -4,24 +4,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <initializer_list>
 
 #include "tools/model/fit_record.h"
 
 namespace vernier::results {
 namespace {
 
+bool is_one_of(const model::FitRecord::Finding& finding, std::initializer_list<const char*> codes) {
+  return std::any_of(codes.begin(), codes.end(), [&](const char* code) { return finding.code == code; });
+}
+
 /// Findings with which no later result holds.
 bool forbids(const model::FitRecord::Finding& finding) {
-  constexpr std::array kForbid = {"not-converged", "absurd", "no-gain"};
-  return std::any_of(kForbid.begin(), kForbid.end(), [&](const char* code) { return finding.code == code; });
+  return is_one_of(finding, {"not-converged", "absurd", "no-gain"});
 }
 
 /// Further findings with which a fit itself does not hold.
 bool contradicts_fit(const model::FitRecord::Finding& finding) {
-  constexpr std::array kContradict = {"something-missing", "disturbed", "not-varied", "not-distinguished"};
-  return std::any_of(kContradict.begin(), kContradict.end(),
-                     [&](const char* code) { return finding.code == code; });
+  return is_one_of(finding, {"something-missing", "disturbed", "not-varied", "not-distinguished"});
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ ordered_json one_column(const model::Measurement& m, const Eigen::VectorXd& resi
       if (group == groups.end()) continue;
       const Sums& sums = group->second;
       readings.push_back({{"reading", format::name_of(kind)},
-                          {"unit", model::is_rotation(kind) ? "urad" : "um"},
+                          {"unit", format::report_unit_of(kind)},
                           {"n", static_cast<std::size_t>(sums.count)},
                           {"mean", sums.sum / sums.count},
                           {"rms", std::sqrt(sums.squares / sums.count)}});

@@ -10,12 +10,6 @@ using Json = nlohmann::ordered_json;
 
 Json name_or_null(const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); }
 
-/// In which a finding about a kind of reading is given.
-const char* report_unit(const std::string& observation) {
-  const auto kind = format::kind_named(observation);
-  return kind && format::is_rotation(*kind) ? "urad" : "um";
-}
-
 Json triple(const Eigen::Vector3d& v) { return Json::array({v[0], v[1], v[2]}); }
 
 }  // namespace
@@ -24,7 +18,7 @@ Json findings_json(const residual::FailurePicture& picture) {
   Json list = Json::array();
   for (const residual::Finding& f : picture.findings)
     list.push_back({{"observation", f.observation},
-                    {"unit", report_unit(f.observation)},
+                    {"unit", format::report_unit_of(f.observation)},
                     {"column", name_or_null(f.column)},
                     {"second_column", name_or_null(f.second_column)},
                     {"shape", residual::kShapeNames[static_cast<std::size_t>(f.shape)]},
