@@ -15,8 +15,8 @@ set(findings "")
 set(banned_symbols "__aeabi_(f|d|i2f|i2d|ui2f|ui2d|l2f|l2d|ul2f|ul2d|cf|cd)|div|malloc|free$|_Zn[wa]|_Zd[la]|__cxa|_Unwind|printf|abort|__gxx|assert")
 # firmware/core has devices behind virtual functions and takes its memory while it is set up; all else holds there too: no floating
 # point, no heap of the library's, no exception, no string, no atomic of 64 bits.
-file(GLOB core_sources ${SOURCE_DIR}/firmware/core/*.cpp)
-file(GLOB core_headers ${SOURCE_DIR}/firmware/core/*.h)
+file(GLOB core_sources ${SOURCE_DIR}/firmware/core/*.cpp ${SOURCE_DIR}/firmware/core/*/*.cpp)
+file(GLOB core_headers ${SOURCE_DIR}/firmware/core/*.h ${SOURCE_DIR}/firmware/core/*/*.h)
 set(core_banned_symbols "__aeabi_(f|d|i2f|i2d|ui2f|ui2d|l2f|l2d|ul2f|ul2d|cf|cd)[a-z0-9]*$|__aeabi_[iu]*div|malloc|free$|__cxa_(throw|allocate|begin)|_Unwind|printf|abort|__gxx|assert|__atomic_|__sync_|basic_string|St6vector")
 # A quotient of 64 bits by a constant is a call on these targets. It may stand where no tick comes by.
 set(core_with_quotients "axis_monitor|feature_inputs|link|service")

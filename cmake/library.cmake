@@ -31,7 +31,7 @@ endfunction()
 # folder and of those generated for it.
 function(vernier_library name)
   cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE;SOURCES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp ${CMAKE_CURRENT_SOURCE_DIR}/*/*.cpp)
   add_library(vernier_${name} STATIC ${sources} ${ARG_SOURCES})
   vernier_unity(vernier_${name})
   target_link_libraries(vernier_${name} PUBLIC vernier_warnings ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})

@@ -5,8 +5,8 @@
 #include "comp/probing/latch.h"
 #include "comp/probing/touch_filter.h"
 #include "comp/probing/workpiece_frame.h"
-#include "firmware/core/cycle.h"
-#include "firmware/core/exchange.h"
+#include "firmware/core/cycle/cycle.h"
+#include "firmware/core/cycle/exchange.h"
 #include "hal/probe_line.h"
 
 namespace vernier {

@@ -5,14 +5,14 @@
 #include <optional>
 #include <span>
 
-#include "firmware/core/cycle.h"
-#include "firmware/core/exchange.h"
-#include "firmware/core/gate.h"
-#include "firmware/core/link.h"
+#include "firmware/core/cycle/cycle.h"
+#include "firmware/core/cycle/exchange.h"
+#include "firmware/core/cycle/runner.h"
+#include "firmware/core/link/gate.h"
+#include "firmware/core/link/link.h"
+#include "firmware/core/link/store_desk.h"
+#include "firmware/core/link/uploader.h"
 #include "firmware/core/probing.h"
-#include "firmware/core/runner.h"
-#include "firmware/core/store_desk.h"
-#include "firmware/core/uploader.h"
 #include "hal/board.h"
 #include "hal/command_link.h"
 #include "hal/slot_store.h"

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <string>
 
-#include "firmware/daemon/board_file.h"
+#include "firmware/daemon/settings/board_file.h"
 
 namespace vernier {
 namespace {

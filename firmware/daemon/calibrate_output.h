@@ -4,7 +4,7 @@
 #include <iosfwd>
 #include <vector>
 
-#include "firmware/daemon/calibration.h"
+#include "firmware/daemon/settings/calibration.h"
 #include "hal/clock.h"
 #include "hal/correction_writer.h"
 #include "hal/support/analogue_scale.h"

@@ -2,8 +2,8 @@
 #include "firmware/daemon/device_trials.h"
 
 #include "hal/linux/analogue_output.h"
-#include "hal/linux/can_axes.h"
-#include "hal/linux/iio_buffer.h"
+#include "hal/linux/can/can_axes.h"
+#include "hal/linux/iio/iio_buffer.h"
 
 namespace vernier {
 namespace {

@@ -15,14 +15,14 @@
 #include <map>
 
 #include "firmware/daemon/device_trials.h"
-#include "firmware/daemon/feature_settings.h"
 #include "firmware/daemon/open_devices.h"
 #include "firmware/daemon/routing.h"
+#include "firmware/daemon/settings/feature_settings.h"
 #include "hal/linux/analogue_output.h"
-#include "hal/linux/can_axes.h"
+#include "hal/linux/can/can_axes.h"
 #include "hal/linux/file_lock.h"
 #include "hal/linux/hardware_watchdog.h"
-#include "hal/linux/iio_buffer.h"
+#include "hal/linux/iio/iio_buffer.h"
 #include "hal/linux/monotonic_clock.h"
 #include "hal/linux/sampled_input.h"
 #include "hal/linux/wake_up.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/daemon/board_file.h"
+#include "firmware/daemon/settings/board_file.h"
 #include "hal/board.h"
 #include "hal/command_link.h"
 

@@ -13,18 +13,18 @@
 #include <string>
 #include <vector>
 
-#include "firmware/core/runner.h"
+#include "firmware/core/cycle/runner.h"
 #include "firmware/core/service.h"
 #include "firmware/daemon/arguments.h"
-#include "firmware/daemon/board_file.h"
-#include "firmware/daemon/board_key.h"
 #include "firmware/daemon/calibrate_output.h"
-#include "firmware/daemon/device_settings.h"
 #include "firmware/daemon/devices.h"
 #include "firmware/daemon/duties.h"
 #include "firmware/daemon/image_file.h"
 #include "firmware/daemon/open_devices.h"
 #include "firmware/daemon/report.h"
+#include "firmware/daemon/settings/board_file.h"
+#include "firmware/daemon/settings/board_key.h"
+#include "firmware/daemon/settings/device_settings.h"
 #include "hal/linux/analogue_output.h"
 #include "hal/linux/file_slot_store.h"
 #include "hal/linux/monotonic_clock.h"

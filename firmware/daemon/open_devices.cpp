@@ -5,16 +5,16 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "firmware/daemon/device_settings.h"
+#include "firmware/daemon/settings/device_settings.h"
 #include "hal/linux/analogue_output.h"
-#include "hal/linux/can_sync.h"
+#include "hal/linux/can/can_sync.h"
+#include "hal/linux/can/isotp_link.h"
 #include "hal/linux/gpio_lines.h"
-#include "hal/linux/iio_buffer.h"
-#include "hal/linux/iio_device.h"
-#include "hal/linux/iio_input.h"
-#include "hal/linux/isotp_link.h"
-#include "hal/linux/modbus_input.h"
-#include "hal/linux/modbus_server.h"
+#include "hal/linux/iio/iio_buffer.h"
+#include "hal/linux/iio/iio_device.h"
+#include "hal/linux/iio/iio_input.h"
+#include "hal/linux/modbus/modbus_input.h"
+#include "hal/linux/modbus/modbus_server.h"
 #include "tables/link_format.h"
 
 namespace vernier {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "firmware/daemon/board_file.h"
+#include "firmware/daemon/settings/board_file.h"
 #include "hal/command_link.h"
 #include "hal/digital_line.h"
 #include "hal/probe_line.h"

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "firmware/core/runner.h"
+#include "firmware/core/cycle/runner.h"
 
 namespace vernier {
 

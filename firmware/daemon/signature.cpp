@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/core/signature.h"
+#include "firmware/core/link/signature.h"
 
 #include <sodium.h>
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "firmware/core/gate.h"
+#include "firmware/core/link/gate.h"
 
 namespace vernier {
 

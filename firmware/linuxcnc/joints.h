@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include "firmware/core/cycle.h"
+#include "firmware/core/cycle/cycle.h"
 #include "firmware/linuxcnc/pins.h"
 #include "hal/axis_reader.h"
 #include "hal/correction_writer.h"

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "firmware/core/wiring.h"
+#include "firmware/core/cycle/wiring.h"
 
 namespace vernier {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <hal.h>
 
-#include "firmware/core/wiring.h"
+#include "firmware/core/cycle/wiring.h"
 
 namespace vernier {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include "firmware/core/runner.h"
+#include "firmware/core/cycle/runner.h"
 #include "firmware/linuxcnc/joints.h"
 #include "hal/digital_line.h"
 #include "hal/input_reader.h"

@@ -17,13 +17,13 @@
 #include <vector>
 
 #include "firmware/daemon/image_file.h"
-#include "firmware/daemon/key_file.h"
+#include "firmware/daemon/settings/key_file.h"
 #include "firmware/linuxcnc/hatch_link.h"
 #include "firmware/linuxcnc/helper_arguments.h"
 #include "firmware/linuxcnc/store_server.h"
 #include "hal/linux/file_lock.h"
 #include "hal/linux/file_slot_store.h"
-#include "hal/linux/modbus_server.h"
+#include "hal/linux/modbus/modbus_server.h"
 
 namespace {
 

@@ -17,8 +17,8 @@
 #include <cstring>
 #include <string>
 
+#include "hal/linux/can/isotp_link.h"
 #include "hal/linux/gpio_lines.h"
-#include "hal/linux/isotp_link.h"
 #include "hal/linux/monotonic_clock.h"
 #include "tables/link_format.h"
 

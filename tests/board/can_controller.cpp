@@ -16,7 +16,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "hal/linux/can_axis_frame.h"
+#include "hal/linux/can/can_axis_frame.h"
 
 namespace {
 

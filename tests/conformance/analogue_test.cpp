@@ -7,8 +7,8 @@
 #include <random>
 
 #include "hal/linux/analogue_output.h"
-#include "hal/linux/iio_device.h"
-#include "hal/linux/iio_input.h"
+#include "hal/linux/iio/iio_device.h"
+#include "hal/linux/iio/iio_input.h"
 #include "hal/sim/analogue_chain.h"
 #include "tests/conformance/linux_devices.h"
 

@@ -10,8 +10,8 @@
 
 #include "firmware/daemon/routing.h"
 #include "hal/linux/analogue_output.h"
-#include "hal/linux/can_axes.h"
-#include "hal/linux/iio_input.h"
+#include "hal/linux/can/can_axes.h"
+#include "hal/linux/iio/iio_input.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/roaming.h"
 #include "tests/conformance/linux_devices.h"

@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "hal/linux/can_axes.h"
+#include "hal/linux/can/can_axes.h"
 #include "tests/conformance/linux_devices.h"
 
 namespace vernier::can_axes_test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sync of a bus on joined sockets: waits until it comes or the time is over, and takes several as one.
-#include "hal/linux/can_sync.h"
+#include "hal/linux/can/can_sync.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Buffered IIO sensors: scans as the kernel lays them out, on a directory laid out as sysfs is with a pipe in
 // the place of the character device.
-#include "hal/linux/iio_buffer.h"
+#include "hal/linux/iio/iio_buffer.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <cmath>
 #include <thread>
 
-#include "firmware/core/feature_inputs.h"
-#include "hal/linux/iio_device.h"
+#include "firmware/core/cycle/feature_inputs.h"
+#include "hal/linux/iio/iio_device.h"
 #include "tests/conformance/linux_devices.h"
 
 namespace vernier::iio_buffer_test {

@@ -17,7 +17,7 @@
 #include <random>
 #include <thread>
 
-#include "hal/linux/modbus_server.h"
+#include "hal/linux/modbus/modbus_server.h"
 #include "tables/link_format.h"
 #include "tools/upload/open_transport.h"
 #include "tools/upload/transport.h"

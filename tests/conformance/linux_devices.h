@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "hal/linux/can_axis_frame.h"
+#include "hal/linux/can/can_axis_frame.h"
 
 namespace vernier {
 

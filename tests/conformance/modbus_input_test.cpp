@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "hal/linux/modbus_input.h"
+#include "hal/linux/modbus/modbus_input.h"
 
 namespace vernier::modbus_input_test {
 namespace {

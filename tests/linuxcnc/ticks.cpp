@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/core/bound_program.h"
+#include "firmware/core/cycle/bound_program.h"
 
 namespace {
 

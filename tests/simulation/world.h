@@ -11,7 +11,7 @@
 
 #include "firmware/core/service.h"
 #include "firmware/core/sign_of_life.h"
-#include "hal/linux/modbus_conversation.h"
+#include "hal/linux/modbus/modbus_conversation.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/roaming.h"
 #include "hal/sim/sim_slot_store.h"

@@ -16,9 +16,9 @@
 #include "tests/support/hidden_survey_noise.h"
 #include "tests/support/hidden_survey_outside.h"
 #include "tests/support/hidden_survey_rivals.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
-#include "tools/model/prediction.h"
 
 namespace vernier::support {
 

@@ -5,10 +5,10 @@
 #include <stdexcept>
 
 #include "tools/maths/decompositions.h"
-#include "tools/model/chain.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/evaluate.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/parameters.h"
-#include "tools/model/prediction.h"
 
 namespace vernier::support {
 

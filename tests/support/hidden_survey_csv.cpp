@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "tests/support/hidden_survey_inputs.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/numbers.h"
 

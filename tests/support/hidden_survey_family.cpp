@@ -12,8 +12,8 @@
 #include <stdexcept>
 
 #include "tests/support/likeness_machines.h"
-#include "tools/model/chain.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/evaluate.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/parameters.h"
 #include "tools/text/files.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::support {

@@ -9,14 +9,14 @@
 #include <numeric>
 
 #include "tools/effects/probe.h"
-#include "tools/fit/noise.h"
+#include "tools/fit/noise/noise.h"
 #include "tools/fit/set_up.h"
 #include "tools/fit/solve.h"
 #include "tools/format/readings.h"
 #include "tools/maths/orthonormal.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/parameters.h"
-#include "tools/model/prediction.h"
 #include "tools/text/error.h"
 
 namespace vernier::check {

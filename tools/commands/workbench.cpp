@@ -16,7 +16,7 @@
 #include "tools/upload/open_transport.h"
 #include "tools/workbench/file_reader.h"
 #include "tools/workbench/image_diff.h"
-#include "tools/workbench/process.h"
+#include "tools/workbench/runs/process.h"
 #include "tools/workbench/server.h"
 
 namespace vernier::commands::workbench_cli {

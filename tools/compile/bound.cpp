@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "tools/compile/calculus.h"
-#include "tools/compile/functions.h"
+#include "tools/compile/symbolic/calculus.h"
+#include "tools/compile/symbolic/functions.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::compile {

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "tools/compile/calculus.h"
 #include "tools/compile/orientation.h"
-#include "tools/compile/ranges.h"
 #include "tools/compile/solve.h"
+#include "tools/compile/symbolic/calculus.h"
+#include "tools/compile/symbolic/ranges.h"
 #include "tools/compile/walk.h"
 #include "tools/maths/factors.h"
 

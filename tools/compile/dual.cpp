@@ -6,8 +6,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "tools/compile/functions.h"
-#include "tools/compile/ranges.h"
+#include "tools/compile/symbolic/functions.h"
+#include "tools/compile/symbolic/ranges.h"
 #include "tools/model/station_table.h"
 
 namespace vernier::compile {

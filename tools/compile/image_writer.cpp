@@ -7,7 +7,7 @@
 
 #include "tables/checksum.h"
 #include "tables/image_format.h"
-#include "tools/compile/ranges.h"
+#include "tools/compile/symbolic/ranges.h"
 
 namespace vernier::compile {
 namespace {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "tools/compile/builder.h"
-#include "tools/compile/functions.h"
 #include "tools/compile/segments.h"
+#include "tools/compile/symbolic/functions.h"
 #include "tools/format/columns.h"
 #include "tools/model/station_table.h"
 

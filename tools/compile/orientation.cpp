@@ -7,10 +7,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tools/compile/calculus.h"
-#include "tools/compile/functions.h"
-#include "tools/compile/ranges.h"
 #include "tools/compile/solve.h"
+#include "tools/compile/symbolic/calculus.h"
+#include "tools/compile/symbolic/functions.h"
+#include "tools/compile/symbolic/ranges.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::compile {

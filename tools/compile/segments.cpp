@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "tools/compile/builder.h"
-#include "tools/compile/functions.h"
+#include "tools/compile/symbolic/functions.h"
 
 namespace vernier::compile {
 namespace {

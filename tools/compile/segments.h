@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "comp/error_table.h"
-#include "tools/compile/functions.h"
-#include "tools/compile/graph.h"
+#include "tools/compile/symbolic/functions.h"
+#include "tools/compile/symbolic/graph.h"
 #include "tools/compile/types.h"
 
 namespace vernier::compile {

@@ -6,8 +6,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "tools/compile/calculus.h"
-#include "tools/compile/functions.h"
+#include "tools/compile/symbolic/calculus.h"
+#include "tools/compile/symbolic/functions.h"
 #include "tools/maths/decompositions.h"
 
 namespace vernier::compile {

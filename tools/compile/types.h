@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "comp/shares.h"
-#include "tools/compile/graph.h"
+#include "tools/compile/symbolic/graph.h"
 
 namespace vernier::compile {
 

@@ -8,7 +8,7 @@
 
 #include "tools/create/machine_plan.h"
 #include "tools/format/columns.h"
-#include "tools/model/work_poses.h"
+#include "tools/model/chain/work_poses.h"
 #include "tools/sheet/workbook_writer.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"

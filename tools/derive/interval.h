@@ -5,7 +5,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "tools/compile/interval.h"
+#include "tools/compile/symbolic/interval.h"
 
 namespace vernier::derive {
 

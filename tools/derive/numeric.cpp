@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 
 #include "tools/derive/interval.h"
-#include "tools/model/chain.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/evaluate.h"
 
 namespace vernier::derive {
 namespace {

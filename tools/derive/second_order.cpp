@@ -7,9 +7,9 @@
 #include <random>
 
 #include "tools/compile/derive.h"
-#include "tools/compile/ranges.h"
+#include "tools/compile/symbolic/ranges.h"
 #include "tools/derive/numeric.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 
 namespace vernier::derive {
 namespace {

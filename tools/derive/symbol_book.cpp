@@ -7,7 +7,7 @@
 #include "tools/derive/numbers.h"
 #include "tools/derive/tidy.h"
 #include "tools/maths/factors.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/station_table.h"
 
 namespace vernier::derive {

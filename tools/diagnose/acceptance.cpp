@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "tools/diagnose/enumerate.h"
-#include "tools/diagnose/scan.h"
+#include "tools/diagnose/propose/enumerate.h"
+#include "tools/diagnose/propose/scan.h"
 #include "tools/maths/decompositions.h"
 
 namespace vernier::diagnose {

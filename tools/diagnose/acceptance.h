@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "tools/diagnose/evidence.h"
+#include "tools/diagnose/propose/evidence.h"
 
 namespace vernier::diagnose {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/diagnose/thresholds.h"
+#include "tools/diagnose/propose/thresholds.h"
 #include "tools/effects/candidate.h"
 #include "tools/fit/fit.h"
-#include "tools/fit/noise.h"
+#include "tools/fit/noise/noise.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/residual/structure.h"

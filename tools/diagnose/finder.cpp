@@ -8,11 +8,11 @@
 #include <limits>
 
 #include "tools/diagnose/acceptance.h"
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
-#include "tools/model/chain.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/evaluate.h"
 
 namespace vernier::diagnose {
 namespace {

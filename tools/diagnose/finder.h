@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "tools/diagnose/enumerate.h"
-#include "tools/diagnose/evidence.h"
-#include "tools/diagnose/pool.h"
-#include "tools/diagnose/products.h"
-#include "tools/diagnose/scan.h"
-#include "tools/diagnose/selection.h"
+#include "tools/diagnose/propose/enumerate.h"
+#include "tools/diagnose/propose/evidence.h"
+#include "tools/diagnose/propose/pool.h"
+#include "tools/diagnose/propose/products.h"
+#include "tools/diagnose/propose/scan.h"
+#include "tools/diagnose/propose/selection.h"
 
 namespace vernier::diagnose {
 

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "tools/fit/fit.h"
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/maths/median.h"
 
 namespace vernier::diagnose {

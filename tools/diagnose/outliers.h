@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/diagnose/thresholds.h"
+#include "tools/diagnose/propose/thresholds.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "tools/diagnose/evidence.h"
-#include "tools/diagnose/pool.h"
+#include "tools/diagnose/propose/evidence.h"
+#include "tools/diagnose/propose/pool.h"
 
 namespace vernier::diagnose {
 

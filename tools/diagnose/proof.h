@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "tools/diagnose/thresholds.h"
-#include "tools/fit/noise.h"
+#include "tools/diagnose/propose/thresholds.h"
+#include "tools/fit/noise/noise.h"
 #include "tools/model/measurement.h"
 
 namespace vernier::diagnose {

@@ -7,7 +7,7 @@
 
 #include "tools/effects/input_class.h"
 #include "tools/effects/insertion.h"
-#include "tools/fit/domain.h"
+#include "tools/fit/coverage/domain.h"
 #include "tools/format/columns.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"

@@ -2,7 +2,7 @@
 #include "tools/effects/fitted_effect.h"
 
 #include "tools/effects/add.h"
-#include "tools/fit/domain.h"
+#include "tools/fit/coverage/domain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/model/rebind.h"

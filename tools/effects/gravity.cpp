@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "tools/maths/factors.h"
-#include "tools/model/chain.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/evaluate.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::effects {

@@ -2,8 +2,8 @@
 #include "tools/effects/places.h"
 #include <cmath>
 
-#include "tools/model/chain.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/evaluate.h"
 
 namespace vernier::effects {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "tools/exchange/table_text.h"
 #include "tools/kinematics/correction.h"
+#include "tools/model/chain/periods.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
-#include "tools/model/periods.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::exchange {

@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "tools/fit/problem.h"
+#include "tools/fit/least_squares/problem.h"
 #include "tools/fit/types.h"
 
 namespace vernier::fit {

@@ -7,16 +7,16 @@
 #include <map>
 #include <set>
 
-#include "tools/fit/levenberg.h"
-#include "tools/fit/problem.h"
+#include "tools/fit/least_squares/levenberg.h"
+#include "tools/fit/least_squares/problem.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/set_up.h"
-#include "tools/fit/statistics.h"
 #include "tools/fit/unseen_turns.h"
 #include "tools/format/units.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
-#include "tools/model/chain_rows.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/chain_rows.h"
+#include "tools/model/chain/evaluate.h"
 
 namespace vernier::fit {
 namespace {

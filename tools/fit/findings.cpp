@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "tools/fit/reading_direction.h"
+#include "tools/fit/coverage/reading_direction.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/median.h"
 

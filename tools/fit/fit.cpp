@@ -9,23 +9,23 @@
 #include <limits>
 #include <memory>
 
-#include "tools/fit/alternatives.h"
 #include "tools/fit/convention.h"
+#include "tools/fit/coverage/alternatives.h"
+#include "tools/fit/coverage/unmeasured.h"
 #include "tools/fit/findings.h"
+#include "tools/fit/least_squares/problem.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/moved.h"
-#include "tools/fit/problem.h"
 #include "tools/fit/sanity.h"
 #include "tools/fit/selection.h"
 #include "tools/fit/set_up.h"
 #include "tools/fit/settle.h"
 #include "tools/fit/solve.h"
-#include "tools/fit/statistics.h"
-#include "tools/fit/unmeasured.h"
 #include "tools/format/readings.h"
 #include "tools/maths/factors.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/evaluate.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/fit_record.h"
-#include "tools/model/prediction.h"
 
 namespace vernier::fit {
 namespace {

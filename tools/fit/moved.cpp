@@ -7,11 +7,11 @@
 #include <cmath>
 #include <vector>
 
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/orthonormal.h"
-#include "tools/model/prediction.h"
+#include "tools/model/chain/prediction.h"
 
 namespace vernier::fit {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "tools/fit/convention.h"
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/format/readings.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/median.h"

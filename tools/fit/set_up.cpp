@@ -5,14 +5,14 @@
 #include <cmath>
 #include <map>
 
-#include "tools/fit/levenberg.h"
-#include "tools/fit/problem.h"
+#include "tools/fit/least_squares/levenberg.h"
+#include "tools/fit/least_squares/problem.h"
 #include "tools/fit/selection.h"
 #include "tools/fit/unseen_turns.h"
 #include "tools/maths/alignment.h"
 #include "tools/maths/factors.h"
-#include "tools/model/chain_rows.h"
-#include "tools/model/prediction.h"
+#include "tools/model/chain/chain_rows.h"
+#include "tools/model/chain/prediction.h"
 
 namespace vernier::fit {
 namespace {

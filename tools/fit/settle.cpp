@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "tools/fit/convention.h"
-#include "tools/fit/noise_estimate.h"
+#include "tools/fit/least_squares/statistics.h"
+#include "tools/fit/noise/noise_estimate.h"
 #include "tools/fit/seen_errors.h"
-#include "tools/fit/statistics.h"
 #include "tools/maths/decompositions.h"
 
 namespace vernier::fit {

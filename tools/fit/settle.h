@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "tools/fit/noise.h"
-#include "tools/fit/problem.h"
+#include "tools/fit/least_squares/problem.h"
+#include "tools/fit/noise/noise.h"
 #include "tools/fit/types.h"
 
 namespace vernier::fit {

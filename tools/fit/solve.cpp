@@ -9,10 +9,10 @@
 
 #include "tools/fit/ceres_solver.h"
 #include "tools/fit/convention.h"
-#include "tools/fit/levenberg.h"
+#include "tools/fit/least_squares/levenberg.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/selection.h"
 #include "tools/fit/set_up.h"
-#include "tools/fit/statistics.h"
 #include "tools/text/words.h"
 
 namespace vernier::fit {

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "tools/fit/noise.h"
-#include "tools/fit/observability.h"
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/observability.h"
+#include "tools/fit/least_squares/statistics.h"
+#include "tools/fit/noise/noise.h"
 #include "tools/model/machine.h"
 #include "tools/model/parameters.h"
 

@@ -8,7 +8,7 @@
 
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
-#include "tools/model/prediction.h"
+#include "tools/model/chain/prediction.h"
 
 namespace vernier::fit {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "tools/fit/problem.h"
+#include "tools/fit/least_squares/problem.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"

@@ -10,7 +10,7 @@
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/halton.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/evaluate.h"
 
 namespace vernier::kinematics {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tools/kinematics/types.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine.h"
 
 namespace vernier::kinematics {

@@ -12,7 +12,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
 #include "tools/format/units.h"
-#include "tools/import/circular.h"
+#include "tools/import/ballbar/circular.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/text/files.h"

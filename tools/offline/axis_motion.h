@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "tools/model/chain/periods.h"
 #include "tools/model/machine.h"
-#include "tools/model/periods.h"
 #include "tools/model/states.h"
 #include "tools/offline/program_arc.h"
 

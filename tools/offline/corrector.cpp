@@ -6,7 +6,7 @@
 
 #include "tools/kinematics/correction.h"
 #include "tools/maths/factors.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/text/error.h"
 
 namespace vernier::offline {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tools/format/units.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 

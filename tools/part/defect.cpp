@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "tools/model/chain_rows.h"
-#include "tools/part/s_part.h"
+#include "tools/model/chain/chain_rows.h"
+#include "tools/part/surface/s_part.h"
 
 namespace vernier::part {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "tools/maths/factors.h"
 #include "tools/part/measured_part.h"
-#include "tools/part/s_part.h"
+#include "tools/part/surface/s_part.h"
 
 namespace vernier::part {
 namespace {

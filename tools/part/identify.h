@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/fit/observability.h"
+#include "tools/fit/least_squares/observability.h"
 #include "tools/part/defect.h"
 #include "tools/part/measured_part.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "tools/part/flank_path.h"
+#include "tools/part/surface/flank_path.h"
 
 namespace vernier::part {
 

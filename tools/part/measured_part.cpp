@@ -7,7 +7,7 @@
 
 #include "tools/format/csv_file.h"
 #include "tools/part/part_column.h"
-#include "tools/part/s_part.h"
+#include "tools/part/surface/s_part.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::part {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "tools/maths/factors.h"
-#include "tools/part/s_part.h"
+#include "tools/part/surface/s_part.h"
 
 namespace vernier::part {
 namespace {

@@ -9,7 +9,7 @@
 #include "tools/maths/factors.h"
 #include "tools/part/envelope.h"
 #include "tools/part/part_json.h"
-#include "tools/part/s_part.h"
+#include "tools/part/surface/s_part.h"
 
 namespace vernier::part {
 namespace {

@@ -10,7 +10,7 @@
 #include "tools/maths/factors.h"
 #include "tools/maths/golden.h"
 #include "tools/part/part_column.h"
-#include "tools/part/s_part.h"
+#include "tools/part/surface/s_part.h"
 
 namespace vernier::part {
 namespace {

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/fit/point_readings.h"
-#include "tools/fit/reach.h"
+#include "tools/fit/coverage/point_readings.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/orthonormal.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/measurement.h"
-#include "tools/model/prediction.h"
 #include "tools/plan/offered_poses.h"
 #include "tools/text/error.h"
 

@@ -9,7 +9,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/maths/halton.h"
-#include "tools/model/work_poses.h"
+#include "tools/model/chain/work_poses.h"
 #include "tools/text/error.h"
 
 namespace vernier::plan {

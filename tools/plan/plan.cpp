@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "tools/fit/fit.h"
-#include "tools/fit/statistics.h"
-#include "tools/model/prediction.h"
+#include "tools/fit/least_squares/statistics.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/rebind.h"
 #include "tools/plan/bystanders.h"
 #include "tools/plan/choice.h"

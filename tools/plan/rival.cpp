@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/diagnose/pool.h"
+#include "tools/diagnose/propose/pool.h"
 #include "tools/effects/add_string.h"
 #include "tools/fit/fit.h"
 #include "tools/maths/decompositions.h"

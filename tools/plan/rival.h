@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/diagnose/evidence.h"
-#include "tools/diagnose/scan.h"
+#include "tools/diagnose/propose/evidence.h"
+#include "tools/diagnose/propose/scan.h"
 #include "tools/effects/candidate.h"
 #include "tools/effects/fitted_effect.h"
 #include "tools/model/machine.h"

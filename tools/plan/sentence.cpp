@@ -10,7 +10,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/maths/median.h"
-#include "tools/model/prediction.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/rebind.h"
 #include "tools/plan/offers.h"
 

@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "tools/diagnose/diagnosis.h"
-#include "tools/fit/domain.h"
+#include "tools/fit/coverage/domain.h"
 #include "tools/fit/fit.h"
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
 #include "tools/model/machine_reader.h"

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "tools/fit/fit.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/set_up.h"
-#include "tools/fit/statistics.h"
 #include "tools/format/columns.h"
 #include "tools/maths/factors.h"
 

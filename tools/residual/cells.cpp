@@ -7,7 +7,7 @@
 
 #include "tools/format/readings.h"
 #include "tools/maths/factors.h"
-#include "tools/model/prediction.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/residual/repeats.h"
 
 namespace vernier::residual {

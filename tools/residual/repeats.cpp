@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/factors.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/maths/chance.h"
 #include "tools/residual/cells.h"
 #include "tools/residual/findings.h"

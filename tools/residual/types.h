@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/model/prediction.h"
+#include "tools/model/chain/prediction.h"
 
 namespace vernier::residual {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-#include "tools/import/diagnostics.h"
+#include "tools/import/ballbar/diagnostics.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::results {

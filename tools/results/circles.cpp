@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tools/maths/factors.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 
 namespace vernier::results {
 namespace {

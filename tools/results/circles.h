@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/import/circular.h"
+#include "tools/import/ballbar/circular.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 

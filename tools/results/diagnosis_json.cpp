@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "tools/effects/candidate.h"
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/results/results.h"
 #include "tools/results/structure_json.h"
 #include "tools/text/assurance.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tools/fit/reach.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/kinematics/at.h"
 
 namespace vernier::results {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/fit/fit.h"
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/format/columns.h"
 #include "tools/results/detail.h"
 #include "tools/results/results.h"

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "tools/fit/coverage/domain.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/fit/decisions.h"
-#include "tools/fit/domain.h"
-#include "tools/fit/reach.h"
 #include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
 #include "tools/results/detail.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tools/fit/fit.h"
-#include "tools/fit/noise.h"
+#include "tools/fit/noise/noise.h"
 
 namespace vernier::results {
 

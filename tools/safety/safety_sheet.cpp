@@ -8,14 +8,14 @@
 #include <cmath>
 #include <numeric>
 
-#include "tools/fit/reach.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/kinematics/correction.h"
 #include "tools/kinematics/jacobian.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/work_poses.h"
 #include "tools/model/fit_record.h"
-#include "tools/model/work_poses.h"
 #include "tools/safety/sources.h"
 #include "tools/text/assurance.h"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 
 namespace vernier::safety {
 namespace {

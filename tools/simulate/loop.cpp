@@ -5,7 +5,7 @@
 #include <chrono>
 #include <memory>
 
-#include "firmware/core/runner.h"
+#include "firmware/core/cycle/runner.h"
 #include "hal/sim/analogue_chain.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/sim_clock.h"

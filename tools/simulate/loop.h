@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "firmware/core/histogram.h"
-#include "firmware/core/mode.h"
+#include "firmware/core/cycle/histogram.h"
+#include "firmware/core/cycle/mode.h"
 #include "hal/sim/trajectory.h"
 #include "tables/image_view.h"
 #include "tools/model/machine.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tools/format/columns.h"
-#include "tools/model/prediction.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/simulate/counts.h"
 
 namespace vernier::simulate {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "tools/compile/compile.h"
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/model/measurement.h"
 #include "tools/simulate/loop.h"
 

@@ -7,11 +7,11 @@
 #include <iterator>
 
 #include "hal/sim/analogue_chain.h"
-#include "tools/compile/functions.h"
 #include "tools/compile/orientation.h"
+#include "tools/compile/symbolic/functions.h"
 #include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/simulate/motion.h"
 #include "tools/text/error.h"
 

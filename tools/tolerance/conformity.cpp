@@ -8,14 +8,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/fit/point_readings.h"
-#include "tools/fit/reach.h"
+#include "tools/fit/coverage/point_readings.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/kinematics/inverse.h"
 #include "tools/maths/decompositions.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/prediction.h"
+#include "tools/model/chain/work_poses.h"
 #include "tools/model/fit_record.h"
-#include "tools/model/prediction.h"
-#include "tools/model/work_poses.h"
 #include "tools/offline/corrector.h"
 #include "tools/text/error.h"
 #include "tools/tolerance/machine_sources.h"

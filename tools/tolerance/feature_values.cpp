@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 
-#include "tools/fit/point_readings.h"
-#include "tools/fit/reach.h"
+#include "tools/fit/coverage/point_readings.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/maths/decompositions.h"
 #include "tools/text/error.h"
 

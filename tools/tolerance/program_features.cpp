@@ -10,7 +10,7 @@
 
 #include "tools/kinematics/inverse.h"
 #include "tools/maths/decompositions.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/offline/part_program.h"
 #include "tools/text/error.h"
 

@@ -10,8 +10,8 @@
 
 #include "comp/probing/latch.h"
 #include "comp/probing/touch_filter.h"
-#include "firmware/core/gate.h"
-#include "firmware/core/uploader.h"
+#include "firmware/core/link/gate.h"
+#include "firmware/core/link/uploader.h"
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
 

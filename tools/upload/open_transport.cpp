@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "hal/linux/isotp_link.h"
+#include "hal/linux/can/isotp_link.h"
 #include "tables/link_format.h"
 #include "tools/text/error.h"
 #include "tools/upload/serial_transport.h"

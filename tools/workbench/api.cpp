@@ -5,7 +5,7 @@
 
 #include "tools/text/error.h"
 #include "tools/text/files.h"
-#include "tools/workbench/file_desk.h"
+#include "tools/workbench/files/file_desk.h"
 
 namespace vernier::workbench {
 namespace {

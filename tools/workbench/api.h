@@ -3,11 +3,11 @@
 #include <string>
 
 #include "tools/workbench/file_reader.h"
-#include "tools/workbench/history.h"
-#include "tools/workbench/jobs.h"
+#include "tools/workbench/files/project.h"
+#include "tools/workbench/files/request.h"
 #include "tools/workbench/live_board.h"
-#include "tools/workbench/project.h"
-#include "tools/workbench/request.h"
+#include "tools/workbench/runs/history.h"
+#include "tools/workbench/runs/jobs.h"
 
 namespace vernier::workbench {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/file_reader.h"
 
-#include "tools/workbench/file_desk.h"
+#include "tools/workbench/files/file_desk.h"
 
 namespace vernier::workbench {
 namespace {

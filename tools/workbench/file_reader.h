@@ -4,9 +4,9 @@
 #include <mutex>
 #include <string>
 
-#include "tools/workbench/conversation.h"
-#include "tools/workbench/project.h"
-#include "tools/workbench/request.h"
+#include "tools/workbench/files/project.h"
+#include "tools/workbench/files/request.h"
+#include "tools/workbench/runs/conversation.h"
 
 namespace vernier::workbench {
 

@@ -6,7 +6,7 @@
 #include "tools/text/error.h"
 #include "tools/upload/live.h"
 #include "tools/upload/open_transport.h"
-#include "tools/workbench/now.h"
+#include "tools/workbench/runs/now.h"
 
 namespace vernier::workbench {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "tests/bench/diagnose/answer.h"
 #include "tests/support/hidden_survey_noise.h"
-#include "tools/diagnose/pool.h"
+#include "tools/diagnose/propose/pool.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine_reader.h"
 

@@ -10,8 +10,8 @@
 #include <cstdlib>
 
 #include "tests/support/term_discovery.h"
-#include "tools/diagnose/scan.h"
-#include "tools/diagnose/selection.h"
+#include "tools/diagnose/propose/scan.h"
+#include "tools/diagnose/propose/selection.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <tuple>
 
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 
 namespace vernier::bench {
 

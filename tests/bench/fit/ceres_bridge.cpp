@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/model/chain_rows.h"
+#include "tools/model/chain/chain_rows.h"
 
 namespace vernier::bench {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "firmware/core/service.h"
-#include "hal/linux/modbus_server.h"
+#include "hal/linux/modbus/modbus_server.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/roaming.h"
 #include "hal/sim/sim_clock.h"

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/fit/point_readings.h"
-#include "tools/fit/reach.h"
+#include "tools/fit/coverage/point_readings.h"
+#include "tools/fit/coverage/reach.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/plan/offered_poses.h"
 
 namespace vernier::bench {

@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "tests/bench/plan/drawn_machine.h"
+#include "tools/fit/coverage/point_readings.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/fit/fit.h"
-#include "tools/fit/point_readings.h"
-#include "tools/fit/reach.h"
 #include "tools/maths/decompositions.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/plan/first_plan.h"
 #include "tools/plan/offered_poses.h"
 

@@ -15,13 +15,13 @@
 
 #include "tests/support/hidden_survey.h"
 #include "tests/support/hidden_survey_family.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/fit/fit.h"
-#include "tools/fit/reach.h"
 #include "tools/maths/alignment.h"
 #include "tools/maths/decompositions.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/text/files.h"
 
 namespace {

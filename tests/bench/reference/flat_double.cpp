@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/bench/reference/flat_double.h"
-#include "tools/compile/functions.h"
+#include "tools/compile/symbolic/functions.h"
 
 #include <fmt/format.h>
 

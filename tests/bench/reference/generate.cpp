@@ -12,7 +12,7 @@
 #include "tests/bench/reference/flat_double.h"
 #include "tests/bench/reference/reference_machine.h"
 #include "tools/compile/print.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/evaluate.h"
 
 namespace vernier::bench {
 

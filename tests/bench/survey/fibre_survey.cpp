@@ -14,8 +14,8 @@
 #include <string>
 
 #include "tools/fit/fit.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/text/files.h"
 
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "comp/verify.h"
-#include "firmware/core/work_budget.h"
+#include "firmware/core/cycle/work_budget.h"
 #include "hal/linux/monotonic_clock.h"
 
 namespace vernier {

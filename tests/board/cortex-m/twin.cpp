@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "firmware/core/runner.h"
+#include "firmware/core/cycle/runner.h"
 #include "tests/board/cortex-m/machine.h"
 
 namespace {

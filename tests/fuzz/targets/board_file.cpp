@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware/daemon/board_file.h"
+#include "firmware/daemon/settings/board_file.h"
 
-#include "firmware/daemon/feature_settings.h"
+#include "firmware/daemon/settings/feature_settings.h"
 #include "tests/fuzz/target.h"
 
 namespace vernier::fuzz {

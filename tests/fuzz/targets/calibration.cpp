@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware/daemon/calibration.h"
+#include "firmware/daemon/settings/calibration.h"
 
-#include "firmware/daemon/key_file.h"
+#include "firmware/daemon/settings/key_file.h"
 #include "tests/fuzz/target.h"
 
 namespace vernier::fuzz {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/column_map.h"
+#include "tools/import/tables/column_map.h"
 
 #include "tests/fuzz/target.h"
 #include "tools/format/csv_file.h"
-#include "tools/import/survey.h"
+#include "tools/import/tables/survey.h"
 
 namespace vernier::fuzz {
 

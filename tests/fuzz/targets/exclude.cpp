@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/fuzz/target.h"
 #include "tools/text/error.h"
-#include "tools/workbench/excluded.h"
+#include "tools/workbench/files/excluded.h"
 
 namespace vernier::fuzz {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <random>
 
-#include "firmware/core/bound_program.h"
+#include "firmware/core/cycle/bound_program.h"
 #include "tables/checksum.h"
 #include "tables/image_view.h"
 #include "tests/fuzz/target.h"

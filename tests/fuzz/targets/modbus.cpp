@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "hal/linux/modbus_conversation.h"
+#include "hal/linux/modbus/modbus_conversation.h"
 #include "tables/link_format.h"
 #include "tests/fuzz/target.h"
 

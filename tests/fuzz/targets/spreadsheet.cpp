@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/fuzz/target.h"
 #include "tools/format/csv_file.h"
-#include "tools/import/sheet_columns.h"
-#include "tools/import/wide_sheet.h"
+#include "tools/import/tables/sheet_columns.h"
+#include "tools/import/tables/wide_sheet.h"
 
 namespace vernier::fuzz {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/trace_reader.h"
+#include "tools/import/ballbar/trace_reader.h"
 
 #include "tests/fuzz/target.h"
 #include "tools/format/csv_file.h"
-#include "tools/import/ballbar_csv.h"
+#include "tools/import/ballbar/ballbar_csv.h"
 
 namespace vernier::fuzz {
 

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "tests/support/machines.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/model/measurement.h"
-#include "tools/model/prediction.h"
 
 namespace {
 

@@ -11,7 +11,7 @@
 
 #include "tools/check/history.h"
 #include "tools/fit/fit.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "tools/compile/compile.h"
-#include "tools/compile/ranges.h"
-#include "tools/model/chain.h"
+#include "tools/compile/symbolic/ranges.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "tools/create/machine_file.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/states.h"
 

@@ -15,11 +15,11 @@
 
 #include "tools/create/machine_plan.h"
 #include "tools/format/readings.h"
+#include "tools/model/chain/prediction.h"
+#include "tools/model/chain/work_poses.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/model/measurement.h"
-#include "tools/model/prediction.h"
-#include "tools/model/work_poses.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"

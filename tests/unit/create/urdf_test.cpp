@@ -10,7 +10,7 @@
 #include <random>
 
 #include "tools/create/machine_file.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/states.h"
 #include "tools/text/error.h"

@@ -10,7 +10,7 @@
 #include "tests/support/machines.h"
 #include "tools/derive/numeric.h"
 #include "tools/derive/second_order.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 

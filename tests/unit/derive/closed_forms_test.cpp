@@ -12,7 +12,7 @@
 #include "tools/derive/error_equation.h"
 #include "tools/derive/second_order.h"
 #include "tools/derive/tidy.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "tools/diagnose/acceptance.h"
-#include "tools/diagnose/evidence.h"
+#include "tools/diagnose/propose/evidence.h"
 #include "tools/effects/add.h"
 #include "tools/effects/add_string.h"
 #include "tools/maths/chance.h"

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "tests/unit/effects/candidates.h"
-#include "tools/diagnose/evidence.h"
+#include "tools/diagnose/propose/evidence.h"
 #include "tools/effects/add.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/model/rebind.h"
 
 namespace vernier::columns_test {

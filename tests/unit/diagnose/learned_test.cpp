@@ -7,8 +7,8 @@
 #include <random>
 
 #include "tools/diagnose/diagnosis.h"
-#include "tools/fit/domain.h"
-#include "tools/model/chain.h"
+#include "tools/fit/coverage/domain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::learned_test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Waves far shorter than the range of the axis: the pitch of a screw, the lines of a scale.
-#include "tools/diagnose/periods.h"
+#include "tools/diagnose/propose/periods.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <random>
 
 #include "tools/diagnose/diagnosis.h"
-#include "tools/diagnose/enumerate.h"
+#include "tools/diagnose/propose/enumerate.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::periods_test {

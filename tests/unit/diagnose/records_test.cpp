@@ -11,8 +11,8 @@
 #include <random>
 
 #include "tools/diagnose/diagnosis.h"
-#include "tools/diagnose/enumerate.h"
-#include "tools/diagnose/periods.h"
+#include "tools/diagnose/propose/enumerate.h"
+#include "tools/diagnose/propose/periods.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::records_test {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "tools/diagnose/selection.h"
+#include "tools/diagnose/propose/selection.h"
 #include "tools/maths/decompositions.h"
 
 namespace vernier::selection_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/diagnose/thresholds.h"
+#include "tools/diagnose/propose/thresholds.h"
 
 #include <gtest/gtest.h>
 

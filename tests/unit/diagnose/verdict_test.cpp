@@ -9,7 +9,7 @@
 #include <random>
 
 #include "tools/diagnose/diagnosis.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::verdict_test {

@@ -7,9 +7,9 @@
 #include "tests/unit/effects/candidates.h"
 #include "tools/effects/add.h"
 #include "tools/effects/add_string.h"
-#include "tools/fit/domain.h"
+#include "tools/fit/coverage/domain.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/model/rebind.h"
 #include "tools/text/error.h"
 

@@ -8,8 +8,8 @@
 
 #include "tests/unit/effects/candidates.h"
 #include "tools/effects/add_string.h"
-#include "tools/model/chain.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/evaluate.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware/core/axis_monitor.h"
+#include "firmware/core/cycle/axis_monitor.h"
 
 #include <gtest/gtest.h>
 

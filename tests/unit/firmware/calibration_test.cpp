@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gain and zero of an output from measured points: the published chain of 8 bits to the digit, uncertainties
 // that cover, refusals, and the stepping itself.
-#include "firmware/daemon/calibration.h"
+#include "firmware/daemon/settings/calibration.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,8 +11,8 @@
 #include <random>
 #include <sstream>
 
-#include "firmware/daemon/board_file.h"
 #include "firmware/daemon/calibrate_output.h"
+#include "firmware/daemon/settings/board_file.h"
 #include "hal/sim/sim_clock.h"
 
 namespace vernier::calibration_test {

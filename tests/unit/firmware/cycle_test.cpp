@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware/core/cycle.h"
+#include "firmware/core/cycle/cycle.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware/core/ed25519.h"
+#include "firmware/core/link/ed25519.h"
 
 #include <gtest/gtest.h>
 #include <sodium.h>
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "firmware/core/sha512.h"
+#include "firmware/core/link/sha512.h"
 
 namespace vernier {
 namespace {

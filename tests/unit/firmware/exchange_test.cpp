@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware/core/exchange.h"
+#include "firmware/core/cycle/exchange.h"
 
 #include <gtest/gtest.h>
 
 #include <thread>
 
-#include "firmware/core/cycle.h"
+#include "firmware/core/cycle/cycle.h"
 
 namespace vernier {
 namespace {

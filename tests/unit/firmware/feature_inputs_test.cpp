@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Features of an accelerometer at the board: against the definitions in double, and in the tick.
-#include "firmware/core/feature_inputs.h"
+#include "firmware/core/cycle/feature_inputs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware/core/histogram.h"
+#include "firmware/core/cycle/histogram.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "firmware/core/cycle.h"
+#include "firmware/core/cycle/cycle.h"
 #include "hal/sim/sim_clock.h"
 #include "tests/unit/firmware/small_machine.h"
 

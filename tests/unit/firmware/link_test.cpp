@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware/core/link.h"
+#include "firmware/core/link/link.h"
 
 #include <gtest/gtest.h>
 

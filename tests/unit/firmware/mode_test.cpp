@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware/core/mode.h"
+#include "firmware/core/cycle/mode.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "firmware/core/feature_inputs.h"
+#include "firmware/core/cycle/feature_inputs.h"
 #include "tests/unit/firmware/upload_rig.h"
 
 namespace {

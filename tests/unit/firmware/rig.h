@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "firmware/core/cycle.h"
+#include "firmware/core/cycle/cycle.h"
 #include "hal/sim/plant.h"
 #include "hal/sim/roaming.h"
 #include "hal/sim/sim_clock.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "firmware/core/runner.h"
+#include "firmware/core/cycle/runner.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <deque>
 
-#include "firmware/core/runner.h"
+#include "firmware/core/cycle/runner.h"
 #include "hal/sim/sim_clock.h"
 #include "tests/unit/firmware/rig.h"
 

@@ -10,15 +10,15 @@
 #include <random>
 
 #include "tests/support/machines.h"
+#include "tools/fit/coverage/point_readings.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/fit/fit.h"
-#include "tools/fit/point_readings.h"
-#include "tools/fit/reach.h"
 #include "tools/maths/alignment.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
-#include "tools/model/prediction.h"
 #include "tools/text/error.h"
 
 namespace vernier::convention_test {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/domain.h"
+#include "tools/fit/coverage/domain.h"
 
 #include <gtest/gtest.h>
 
 #include "tools/fit/fit.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 

@@ -9,14 +9,14 @@
 #include <cmath>
 #include <random>
 
+#include "tools/fit/coverage/reach.h"
+#include "tools/fit/coverage/unmeasured.h"
 #include "tools/fit/fit.h"
-#include "tools/fit/reach.h"
-#include "tools/fit/unmeasured.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/work_poses.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
-#include "tools/model/work_poses.h"
 
 namespace vernier::findings_test {
 

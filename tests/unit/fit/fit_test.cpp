@@ -9,8 +9,8 @@
 #include <random>
 
 #include "tests/support/machines.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 
 namespace vernier::fit_test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/levenberg.h"
+#include "tools/fit/least_squares/levenberg.h"
 
 #include <gtest/gtest.h>
 

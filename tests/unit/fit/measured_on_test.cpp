@@ -7,8 +7,8 @@
 
 #include "tests/support/machines.h"
 #include "tools/fit/fit.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 
 namespace vernier::measured_on_test {
 

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "tools/fit/fit.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 
 namespace vernier::moved_test {
 

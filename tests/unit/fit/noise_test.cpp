@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/noise.h"
+#include "tools/fit/noise/noise.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "tools/fit/fit.h"
-#include "tools/fit/noise_estimate.h"
+#include "tools/fit/noise/noise_estimate.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::noise_test {

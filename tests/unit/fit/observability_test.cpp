@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/observability.h"
+#include "tools/fit/least_squares/observability.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "tools/fit/noise_layout.h"
+#include "tools/fit/noise/noise_layout.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::places_of_rows_test {

@@ -28,15 +28,15 @@ TEST(Includes, EveryWrongDirectionIsDetected) {
   EXPECT_EQ(wrong("hal/clock.h", "#include \"hal/support/output_file.h\"\n"), 1u);
   EXPECT_EQ(wrong("hal/support/a.cpp", "#include \"hal/linux/timer.h\"\n"), 1u);
   EXPECT_EQ(wrong("comp/a.h", "#include \"hal/support/output_file.h\"\n"), 1u);
-  EXPECT_EQ(wrong("firmware/core/cycle.cpp", "#include \"hal/sim/plant.h\"\n"), 1u);
-  EXPECT_EQ(wrong("firmware/core/cycle.cpp", "#include \"tools/model/chain.h\"\n"), 1u);
-  EXPECT_EQ(wrong("firmware/core/cycle.cpp", "#include \"tests/support/a.h\"\n"), 1u);
+  EXPECT_EQ(wrong("firmware/core/cycle/cycle.cpp", "#include \"hal/sim/plant.h\"\n"), 1u);
+  EXPECT_EQ(wrong("firmware/core/cycle/cycle.cpp", "#include \"tools/model/chain/chain.h\"\n"), 1u);
+  EXPECT_EQ(wrong("firmware/core/cycle/cycle.cpp", "#include \"tests/support/a.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"hal/clock.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/model/a.cpp", "#include \"tools/fit/fit.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"tests/support/a.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"tools/commands/command.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/model/a.cpp", "#include \"tools/attic/a.h\"\n"), 1u);
-  EXPECT_EQ(wrong("tools/attic/a.cpp", "#include \"tools/model/chain.h\"\n"), 1u);
+  EXPECT_EQ(wrong("tools/attic/a.cpp", "#include \"tools/model/chain/chain.h\"\n"), 1u);
   EXPECT_EQ(wrong("tools/fit/a.cpp", "  #  include \"fit.h\"\n"), 1u);
 }
 
@@ -55,15 +55,16 @@ TEST(Includes, EveryAllowedDirectionPasses) {
   EXPECT_EQ(wrong("tools/model/a.cpp", "#include \"hal/support/output_file.h\"\n"), 0u);
   EXPECT_EQ(wrong("firmware/daemon/main.cpp", "#include \"hal/linux/board.h\"\n"), 0u);
   EXPECT_EQ(wrong("firmware/linuxcnc/vernier_hal.cpp",
-                  "#include \"hal/linux/file_lock.h\"\n#include \"firmware/daemon/key_file.h\"\n"),
+                  "#include \"hal/linux/file_lock.h\"\n#include \"firmware/daemon/settings/key_file.h\"\n"),
             0u);
   EXPECT_EQ(wrong("firmware/linuxcnc/joints.cpp", "#include \"hal/linux/file_lock.h\"\n"), 1u);
   EXPECT_EQ(wrong("firmware/core/a.cpp", "#include \"firmware/linuxcnc/joints.h\"\n"), 1u);
-  EXPECT_EQ(
-      wrong("tools/simulate/a.cpp", "#include \"firmware/core/cycle.h\"\n#include \"hal/sim/plant.h\"\n"),
-      0u);
-  EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"tools/model/chain.h\"\n#include \"comp/fixed.h\"\n"), 0u);
-  EXPECT_EQ(wrong("tests/unit/comp/a.cpp", "#include \"tools/model/chain.h\"\n"), 0u);
+  EXPECT_EQ(wrong("tools/simulate/a.cpp",
+                  "#include \"firmware/core/cycle/cycle.h\"\n#include \"hal/sim/plant.h\"\n"),
+            0u);
+  EXPECT_EQ(wrong("tools/fit/a.cpp", "#include \"tools/model/chain/chain.h\"\n#include \"comp/fixed.h\"\n"),
+            0u);
+  EXPECT_EQ(wrong("tests/unit/comp/a.cpp", "#include \"tools/model/chain/chain.h\"\n"), 0u);
 }
 
 TEST(Includes, MessageNamesFileLineAndWord) {

@@ -3,9 +3,9 @@
 #include <unistd.h>
 
 #include "tests/unit/import/ballbar_data.h"
-#include "tools/import/b5r_reader.h"
-#include "tools/import/ballbar_file.h"
-#include "tools/import/ballbar_motion.h"
+#include "tools/import/ballbar/b5r_reader.h"
+#include "tools/import/ballbar/ballbar_file.h"
+#include "tools/import/ballbar/ballbar_motion.h"
 #include "tools/text/error.h"
 
 namespace vernier::b5r_reader_test {

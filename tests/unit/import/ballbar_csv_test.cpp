@@ -5,9 +5,9 @@
 #include <map>
 
 #include "tests/unit/import/ballbar_data.h"
-#include "tools/import/b5r_reader.h"
-#include "tools/import/ballbar_csv.h"
-#include "tools/import/ballbar_motion.h"
+#include "tools/import/ballbar/b5r_reader.h"
+#include "tools/import/ballbar/ballbar_csv.h"
+#include "tools/import/ballbar/ballbar_motion.h"
 
 namespace vernier::ballbar_csv_test {
 

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "tests/unit/import/ballbar_data.h"
-#include "tools/import/b5r_reader.h"
-#include "tools/import/ballbar_motion.h"
+#include "tools/import/ballbar/b5r_reader.h"
+#include "tools/import/ballbar/ballbar_motion.h"
 
 namespace vernier::circular_test {
 

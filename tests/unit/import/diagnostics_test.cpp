@@ -5,10 +5,10 @@
 #include <random>
 
 #include "tests/unit/import/ballbar_data.h"
-#include "tools/import/b5r_reader.h"
-#include "tools/import/ballbar_file.h"
-#include "tools/import/diagnostics.h"
-#include "tools/import/printed_diagnostics.h"
+#include "tools/import/ballbar/b5r_reader.h"
+#include "tools/import/ballbar/ballbar_file.h"
+#include "tools/import/ballbar/diagnostics.h"
+#include "tools/import/ballbar/printed_diagnostics.h"
 
 namespace vernier::diagnostics_test {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/printed_results.h"
+#include "tools/import/ballbar/printed_results.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "tests/unit/import/ballbar_data.h"
-#include "tools/import/b5r_reader.h"
-#include "tools/import/ballbar_motion.h"
+#include "tools/import/ballbar/b5r_reader.h"
+#include "tools/import/ballbar/ballbar_motion.h"
 
 namespace vernier::printed_results_test {
 

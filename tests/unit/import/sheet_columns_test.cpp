@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Spreadsheets as people send them: each is read rightly, or refused with the mend.
-#include "tools/import/sheet_columns.h"
+#include "tools/import/tables/sheet_columns.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "tools/import/wide_sheet.h"
+#include "tools/import/tables/wide_sheet.h"
 #include "tools/text/files.h"
 
 namespace vernier::sheet_columns_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/survey.h"
+#include "tools/import/tables/survey.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "tools/model/chain_rows.h"
+#include "tools/model/chain/chain_rows.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/time_repair.h"
+#include "tools/import/ballbar/time_repair.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <random>
 
 #include "tests/unit/import/ballbar_data.h"
-#include "tools/import/b5r_reader.h"
-#include "tools/import/ballbar_csv.h"
-#include "tools/import/ballbar_motion.h"
-#include "tools/import/profile.h"
-#include "tools/import/repair_report.h"
+#include "tools/import/ballbar/b5r_reader.h"
+#include "tools/import/ballbar/ballbar_csv.h"
+#include "tools/import/ballbar/ballbar_motion.h"
+#include "tools/import/ballbar/profile.h"
+#include "tools/import/ballbar/repair_report.h"
 #include "tools/timebase/stretch.h"
 
 namespace vernier::time_repair_test {

@@ -3,11 +3,11 @@
 #include <unistd.h>
 
 #include "tests/unit/import/ballbar_data.h"
-#include "tools/import/ballbar_csv.h"
-#include "tools/import/ballbar_file.h"
-#include "tools/import/ballbar_motion.h"
-#include "tools/import/json_place.h"
-#include "tools/import/trace_reader.h"
+#include "tools/import/ballbar/ballbar_csv.h"
+#include "tools/import/ballbar/ballbar_file.h"
+#include "tools/import/ballbar/ballbar_motion.h"
+#include "tools/import/ballbar/json_place.h"
+#include "tools/import/ballbar/trace_reader.h"
 #include "tools/text/error.h"
 
 namespace vernier::trace_reader_test {

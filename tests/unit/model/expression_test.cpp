@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "tools/model/chain.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/evaluate.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
 

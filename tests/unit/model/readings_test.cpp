@@ -8,11 +8,11 @@
 #include <random>
 
 #include "tests/support/machines.h"
-#include "tools/model/chain.h"
-#include "tools/model/evaluate.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/evaluate.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
-#include "tools/model/prediction.h"
 
 namespace vernier::readings_test {
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "tests/unit/offline/machine.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/text/error.h"
 
 namespace vernier::offline_test {

@@ -5,7 +5,7 @@
 
 #include "tests/unit/offline/machine.h"
 #include "tools/format/csv_file.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 

@@ -9,9 +9,9 @@
 #include <random>
 
 #include "tests/unit/part/part_data.h"
-#include "tools/model/chain.h"
-#include "tools/model/evaluate.h"
-#include "tools/part/s_part.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/evaluate.h"
+#include "tools/part/surface/s_part.h"
 
 namespace vernier::defect_test {
 

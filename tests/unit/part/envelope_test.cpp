@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "tests/unit/part/part_data.h"
-#include "tools/part/s_part.h"
+#include "tools/part/surface/s_part.h"
 
 namespace vernier::envelope_test {
 

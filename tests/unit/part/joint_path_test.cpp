@@ -8,8 +8,8 @@
 #include <cmath>
 #include <random>
 
-#include "tools/part/flank_path.h"
-#include "tools/part/s_part.h"
+#include "tools/part/surface/flank_path.h"
+#include "tools/part/surface/s_part.h"
 
 namespace vernier::joint_path_test {
 

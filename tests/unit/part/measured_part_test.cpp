@@ -7,7 +7,7 @@
 #include "tools/part/identify.h"
 #include "tools/part/measured_part.h"
 #include "tools/part/part_path.h"
-#include "tools/part/s_part.h"
+#include "tools/part/surface/s_part.h"
 
 namespace vernier::measured_part_test {
 

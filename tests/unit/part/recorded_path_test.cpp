@@ -9,8 +9,8 @@
 #include "tests/unit/part/part_data.h"
 #include "tools/part/envelope.h"
 #include "tools/part/part_path.h"
-#include "tools/part/s_part.h"
-#include "tools/part/spline_program.h"
+#include "tools/part/surface/s_part.h"
+#include "tools/part/surface/spline_program.h"
 
 namespace vernier::recorded_test {
 

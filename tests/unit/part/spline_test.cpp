@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/part/spline.h"
+#include "tools/part/surface/spline.h"
 
 #include <gtest/gtest.h>
 

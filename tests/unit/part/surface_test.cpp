@@ -6,8 +6,8 @@
 #include <random>
 
 #include "tests/unit/part/part_data.h"
-#include "tools/part/ruled_surface.h"
-#include "tools/part/s_part.h"
+#include "tools/part/surface/ruled_surface.h"
+#include "tools/part/surface/s_part.h"
 
 namespace vernier::surface_test {
 

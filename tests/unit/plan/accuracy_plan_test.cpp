@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/plan/accuracy_plan.h"
+#include "tools/plan/accuracy/accuracy_plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,13 +7,13 @@
 #include <random>
 
 #include "tests/unit/plan/bridge.h"
-#include "tools/fit/point_readings.h"
-#include "tools/fit/reach.h"
+#include "tools/fit/coverage/point_readings.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/maths/decompositions.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
-#include "tools/plan/accuracy_aim.h"
+#include "tools/plan/accuracy/accuracy_aim.h"
 #include "tools/plan/offered_poses.h"
 #include "tools/text/error.h"
 

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "tools/fit/fit.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/plan/offered_poses.h"
 #include "tools/text/error.h"
 

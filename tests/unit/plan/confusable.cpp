@@ -9,8 +9,8 @@
 #include "tools/diagnose/diagnosis.h"
 #include "tools/effects/add.h"
 #include "tools/effects/add_string.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/model/rebind.h"
 #include "tools/plan/offers.h"
 

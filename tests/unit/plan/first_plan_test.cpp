@@ -7,10 +7,10 @@
 
 #include "tests/unit/plan/bridge.h"
 #include "tools/fit/fit.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/prediction.h"
+#include "tools/model/chain/work_poses.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
-#include "tools/model/work_poses.h"
 #include "tools/plan/sheets.h"
 #include "tools/text/error.h"
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/text/error.h"
 
 namespace vernier::before_after_test {

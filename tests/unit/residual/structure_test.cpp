@@ -13,9 +13,9 @@
 #include <Eigen/QR>
 
 #include "tests/support/machines.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/parameters.h"
-#include "tools/model/prediction.h"
 #include "tools/results/structure_json.h"
 
 namespace vernier::structure_test {

@@ -10,9 +10,9 @@
 
 #include "tests/support/machines.h"
 #include "tools/fit/fit.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/safety/safety_sheet.h"
 #include "tools/safety/sources.h"
 

@@ -11,8 +11,8 @@
 #include <random>
 
 #include "tools/compile/compile.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/simulate/loop.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"

@@ -6,8 +6,8 @@
 
 #include <random>
 
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 #include "tools/text/error.h"
 
 namespace vernier::replay_test {

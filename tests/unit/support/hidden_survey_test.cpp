@@ -8,8 +8,8 @@
 
 #include "tests/support/hidden_survey_key.h"
 #include "tools/fit/fit.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/prediction.h"
 
 namespace vernier::support {
 

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "comp/shares.h"
-#include "firmware/core/signature.h"
+#include "firmware/core/link/signature.h"
 #include "tables/checksum.h"
 #include "tables/slots.h"
 #include "tables/upload_format.h"

@@ -8,8 +8,8 @@
 #include "comp/probing/latch.h"
 #include "comp/probing/touch_filter.h"
 #include "comp/shares.h"
-#include "firmware/core/exchange.h"
-#include "firmware/core/uploader.h"
+#include "firmware/core/cycle/exchange.h"
+#include "firmware/core/link/uploader.h"
 #include "tables/link_format.h"
 #include "tests/unit/tables/golden_listing.h"
 

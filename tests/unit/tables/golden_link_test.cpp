@@ -8,9 +8,9 @@
 
 #include "comp/probing/latch.h"
 #include "comp/probing/touch_filter.h"
-#include "firmware/core/gate.h"
-#include "firmware/core/link.h"
-#include "firmware/core/signature.h"
+#include "firmware/core/link/gate.h"
+#include "firmware/core/link/link.h"
+#include "firmware/core/link/signature.h"
 #include "hal/sim/sim_slot_store.h"
 #include "tests/unit/tables/golden_listing.h"
 #include "tests/unit/tables/golden_machine.h"

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/tolerance/plate.h"
-#include "tools/fit/point_readings.h"
-#include "tools/fit/reach.h"
-#include "tools/model/chain.h"
+#include "tools/fit/coverage/point_readings.h"
+#include "tools/fit/coverage/reach.h"
+#include "tools/model/chain/chain.h"
 #include "tools/text/error.h"
 
 namespace vernier::tolerance_test {

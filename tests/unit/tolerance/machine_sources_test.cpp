@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tools/effects/candidate.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::tolerance_test {

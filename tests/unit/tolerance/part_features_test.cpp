@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/tolerance/plate.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/text/error.h"
 #include "tools/tolerance/placed_part.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/workbench/commands.h"
+#include "tools/workbench/runs/commands.h"
 
 #include "tests/unit/workbench/rig.h"
 #include "tools/text/error.h"
-#include "tools/workbench/process.h"
+#include "tools/workbench/runs/process.h"
 
 namespace vernier::commands_test {
 

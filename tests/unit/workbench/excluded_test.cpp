@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/workbench/excluded.h"
+#include "tools/workbench/files/excluded.h"
 
 #include "tests/unit/workbench/rig.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
-#include "tools/workbench/values.h"
+#include "tools/workbench/files/values.h"
 
 namespace vernier::excluded_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/workbench/jobs.h"
+#include "tools/workbench/runs/jobs.h"
 
 #include <chrono>
 
 #include "tests/unit/workbench/rig.h"
 #include "tools/workbench/api.h"
-#include "tools/workbench/rows.h"
+#include "tools/workbench/files/rows.h"
 
 namespace vernier::jobs_test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/workbench/project.h"
+#include "tools/workbench/files/project.h"
 
 #include <sys/stat.h>
 
 #include "tests/unit/workbench/rig.h"
 #include "tools/text/error.h"
-#include "tools/workbench/history.h"
+#include "tools/workbench/runs/history.h"
 
 namespace vernier::project_test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/workbench/sheets.h"
+#include "tools/workbench/files/sheets.h"
 
 #include "tests/unit/workbench/rig.h"
 #include "tools/fit/fit.h"
 #include "tools/text/error.h"
-#include "tools/workbench/rows.h"
+#include "tools/workbench/files/rows.h"
 
 namespace vernier::sheets_test {
 

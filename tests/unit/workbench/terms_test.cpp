@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/workbench/terms.h"
+#include "tools/workbench/files/terms.h"
 
 #include "tests/unit/workbench/rig.h"
 #include "tools/model/machine_reader.h"
-#include "tools/workbench/dimensions.h"
+#include "tools/workbench/files/dimensions.h"
 
 namespace vernier::terms_test {
 

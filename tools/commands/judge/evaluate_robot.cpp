@@ -13,7 +13,7 @@
 #include "tools/evaluate/robot_path.h"
 #include "tools/format/columns.h"
 #include "tools/maths/factors.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"

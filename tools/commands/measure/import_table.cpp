@@ -6,8 +6,8 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
-#include "tools/import/sheet_import.h"
-#include "tools/import/survey.h"
+#include "tools/import/tables/sheet_import.h"
+#include "tools/import/tables/survey.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"

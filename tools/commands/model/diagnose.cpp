@@ -9,7 +9,7 @@
 #include "tools/commands/survey.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/fit/fit.h"
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/model/machine_reader.h"
 #include "tools/plan/advice.h"
 #include "tools/report/report.h"

@@ -9,8 +9,8 @@
 #include "tools/model/machine_writer.h"
 #include "tools/model/parameters.h"
 #include "tools/text/numbers.h"
-#include "tools/workbench/excluded.h"
-#include "tools/workbench/values.h"
+#include "tools/workbench/files/excluded.h"
+#include "tools/workbench/files/values.h"
 
 namespace vernier::commands::edit_cli {
 namespace {

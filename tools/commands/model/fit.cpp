@@ -5,11 +5,11 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/fit/coverage/domain.h"
 #include "tools/fit/decisions.h"
-#include "tools/fit/domain.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/freedom.h"
-#include "tools/fit/statistics.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/format/units.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/fit_record.h"

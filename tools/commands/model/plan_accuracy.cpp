@@ -5,7 +5,7 @@
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/model/plan_kinds.h"
 #include "tools/kinematics/at.h"
-#include "tools/plan/accuracy_plan.h"
+#include "tools/plan/accuracy/accuracy_plan.h"
 #include "tools/plan/sheets.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/error.h"

@@ -5,7 +5,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
-#include "tools/fit/reach.h"
+#include "tools/fit/coverage/reach.h"
 #include "tools/kinematics/at.h"
 #include "tools/kinematics/correction.h"
 #include "tools/results/fit_findings.h"

@@ -7,9 +7,9 @@
 
 #include "tools/commands/fit_findings.h"
 #include "tools/compile/compile.h"
-#include "tools/model/chain.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/work_poses.h"
 #include "tools/model/machine_reader.h"
-#include "tools/model/work_poses.h"
 #include "tools/results/fit_findings.h"
 #include "tools/results/safety_json.h"
 #include "tools/text/files.h"

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "tools/compile/functions.h"
+#include "tools/compile/symbolic/functions.h"
 #include "tools/model/machine_reader.h"
 #include "tools/simulate/simulate.h"
 #include "tools/text/error.h"

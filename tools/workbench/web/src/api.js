@@ -26,7 +26,7 @@ export const postBlob = async (path, value) => decode(await (await ask('POST', p
 export const putFile = async (name, bytes) => (await ask('PUT', '/api/file', { name, new: '1' }, bytes)).json();
 export const fileAddress = (name) => `/api/file?name=${encodeURIComponent(name)}`;
 
-/** JSON with typed arrays beside it (tools/workbench/blob.h). */
+/** JSON with typed arrays beside it (tools/workbench/files/blob.h). */
 export function decode(buffer) {
   const length = new DataView(buffer).getUint32(0, true);
   const base = 4 + length;

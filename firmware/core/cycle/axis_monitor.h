@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/compensator.h"
+#include "firmware/core/cycle/elapsed.h"
+#include "firmware/core/cycle/health.h"
+#include "hal/axis_reader.h"
+#include "tables/codes.h"
+
+namespace vernier {
+
+/// When a reading is a fault. All in ticks or axis counts.
+struct AxisLimits {
+  std::uint32_t missing_ticks = 3;       // tolerated silence
+  std::int64_t step = 2'000'000;         // most travel in a tick: 2 mm (2 m/s at 1 kHz)
+  std::int64_t frozen_travel = 200'000;  // travel that an unmoving axis may claim: 0.2 mm
+  std::int64_t sense_travel = 1'000;     // travel back that counts as a reversal: 1 um
+  bool rollover = false;                 // whole turns are no travel
+};
+
+/// Watches the readings of one axis. Derives its motion if the controller gives positions only.
+class AxisMonitor {
+ public:
+  AxisMonitor() = default;
+  /// tick: time between two readings; gives_motion: the readings carry the motion state. setup.
+  AxisMonitor(const AxisLimits& limits, TimeUs tick, bool gives_motion) noexcept;
+
+  /// Takes one reading, or a missing one (present false); counts into health. A reading that jumps is a fault
+  /// once and the reference of the next ones. elapsed: since the previous call; with it a late tick gives no
+  /// jump and no wrong speed. realtime.
+  Fault take(bool present, const AxisReading& reading, Health& health, TicksQ8 elapsed = kOneTick) noexcept;
+
+  bool known() const noexcept { return known_; }
+  /// The newest good state; kept while readings are missing.
+  const AxisInput& state() const noexcept { return state_; }
+
+ private:
+  std::int64_t travel_to(AxisPosition position) const noexcept;
+  Fault check(std::int64_t travel, AxisSpeed velocity, Health& health) noexcept;
+  void derive(std::int64_t any_travel) noexcept;
+  bool on_time() const noexcept;
+  std::int64_t most_travel() const noexcept;
+
+  AxisLimits limits_;
+  std::int64_t frozen_speed_sum_ = 0;  // frozen_travel as a sum of counts/s over ticks
+  std::int64_t ticks_per_s_ = 0;
+  bool gives_motion_ = true;
+  bool known_ = false;
+  std::uint32_t missing_ = 0;
+  TicksQ8 elapsed_{0};        // since the last reading
+  std::int64_t claimed_ = 0;  // sum of speeds since the position last changed
+  std::int64_t back_ = 0;     // travel against the direction
+  AxisInput state_;
+};
+
+}  // namespace vernier

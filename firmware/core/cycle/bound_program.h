@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/compensator.h"
+#include "firmware/core/cycle/wiring.h"
+#include "hal/clock.h"
+#include "tables/codes.h"
+#include "tables/image_view.h"
+
+namespace vernier {
+
+/// The axes and inputs of an image, in its order: the wiring of a board made for it.
+Wiring wiring_of(const ImageView& view);
+
+/// A program with the state of its execution and the board's devices that it works on. Made outside the tick,
+/// taken over by Cycle::use in one. Refers to the image's bytes.
+struct BoundProgram {
+  /// A program without work: no image.
+  BoundProgram() noexcept : compensator(Program{}) {}
+  /// Axis i and input i of the image are those of the board. setup.
+  explicit BoundProgram(const ImageView& view) noexcept;
+
+  bool empty() const noexcept { return program.axis_count == 0; }
+
+  Program program;
+  Compensator compensator;
+  ShareProgram shares;                   // of the effects, for a live display
+  View<ShareName> share_names;           // one per share
+  std::uint32_t axis[kMaxAxes] = {};     // board's axis for each of the image
+  std::uint32_t input[kMaxInputs] = {};  // board's input for each of the image
+  bool reads_input[kMaxInputs] = {};     // per input of the image: whether its equation reads it
+  InputMicro reference[kMaxInputs];      // per input of the image: its value before the first reading
+};
+
+/// Finds the image's axes and inputs among the board's by name. bound: made from the same view. offender: the
+/// name that does not fit. setup.
+BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundProgram& bound, Name& offender);
+
+}  // namespace vernier

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/fixed.h"
+#include "comp/quantity.h"
+#include "firmware/core/cycle/quotient.h"
+
+namespace vernier {
+
+/// Time between two readings, in 1/256 of a tick: 256 if both came on time. Less than a tick counts as one
+/// tick: the tick after a late one takes readings that a controller sends at its rate.
+struct TicksQ8 {
+  std::int32_t count = 256;
+};
+constexpr TicksQ8 kOneTick{256};
+/// Far beyond every stop that is no fault (a clock that steps by a second is one); sums of it fit 32 bits.
+constexpr TicksQ8 kMostElapsed{1 << 20};
+
+/// Turns times into ticks without a division in the tick.
+class ElapsedTicks {
+ public:
+  ElapsedTicks() = default;
+  /// tick: 1 us .. 1 s. setup.
+  explicit ElapsedTicks(TimeUs tick) noexcept
+      : per_ns_(static_cast<std::int64_t>(
+            quotient_of((std::uint64_t{256} << kShift) + 500 * static_cast<std::uint64_t>(tick.count),
+                        1000 * static_cast<std::uint64_t>(tick.count)))) {}
+  /// Rounded to the nearest; at least one tick, at most kMostElapsed. realtime.
+  TicksQ8 of(InstantNs time) const noexcept {
+    // Beyond 2^30 ns the limit holds anyway for ticks below a millisecond; above, a second is few ticks.
+    const std::int64_t ns = clamp<std::int64_t>(time.count, 0, std::int64_t{1} << 30);
+    const std::int64_t ticks = (ns * per_ns_ + (std::int64_t{1} << (kShift - 1))) >> kShift;
+    return TicksQ8{static_cast<std::int32_t>(clamp<std::int64_t>(ticks, kOneTick.count, kMostElapsed.count))};
+  }
+
+ private:
+  static constexpr unsigned kShift = 24;
+  std::int64_t per_ns_ = 0;  // 256 / tick in ns, Q24: below 2^23, as a tick is 1 us at least
+};
+
+/// 2^24 / elapsed, rounded down: the factor that converts a travel to the travel of one tick, Q16. Bit by
+/// bit, for targets without a divider. elapsed: 1 .. kMostElapsed. realtime.
+constexpr std::int64_t per_tick_q16(TicksQ8 elapsed) noexcept {
+  std::uint32_t rest = 0, quotient = 0;
+  for (int bit = 24; bit >= 0; --bit) {
+    rest = rest << 1 | (bit == 24 ? 1u : 0u);
+    quotient <<= 1;
+    if (rest >= static_cast<std::uint32_t>(elapsed.count)) {
+      rest -= static_cast<std::uint32_t>(elapsed.count);
+      quotient |= 1;
+    }
+  }
+  return quotient;
+}
+static_assert(per_tick_q16(kOneTick) == 65536);
+static_assert(per_tick_q16(TicksQ8{512}) == 32768 && per_tick_q16(kMostElapsed) == 16);
+
+}  // namespace vernier

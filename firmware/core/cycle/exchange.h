@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+
+#include "comp/probing/workpiece_frame.h"
+#include "firmware/core/cycle/bound_program.h"
+#include "firmware/core/cycle/mode.h"
+#include "tables/records.h"
+
+namespace vernier {
+
+/// A value that one thread writes and others copy, word by word, without a lock. realtime.
+template <class T>
+class AtomicWords {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::uint32_t) == 0);
+  static constexpr std::size_t kWords = sizeof(T) / sizeof(std::uint32_t);
+  using Words = std::array<std::uint32_t, kWords>;
+
+ public:
+  void put(const T& value) noexcept {
+    const auto words = std::bit_cast<Words>(value);
+    for (std::size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_relaxed);
+  }
+  T get() const noexcept {
+    Words words;
+    for (std::size_t i = 0; i < kWords; ++i) words[i] = words_[i].load(std::memory_order_relaxed);
+    return std::bit_cast<T>(words);
+  }
+
+ private:
+  std::array<std::atomic<std::uint32_t>, kWords> words_{};
+};
+
+/// A number that one thread counts up and others read, without an atomic of 64 bits, which small targets do
+/// not have. Its high half is stored before and after the low one. A reader that sees two different halves
+/// reads again, at most once in 2^32 counts.
+class SharedCount {
+ public:
+  /// One writer. A reader that sees the count also sees all earlier writes. realtime.
+  void store(std::uint64_t count) noexcept {
+    const auto high = static_cast<std::uint32_t>(count >> 32);
+    after_.store(high, std::memory_order_release);
+    low_.store(static_cast<std::uint32_t>(count), std::memory_order_release);
+    before_.store(high, std::memory_order_release);
+  }
+  std::uint64_t load() const noexcept {
+    for (;;) {
+      const std::uint32_t high = before_.load(std::memory_order_acquire);
+      const std::uint32_t low = low_.load(std::memory_order_acquire);
+      if (after_.load(std::memory_order_acquire) == high) return std::uint64_t{high} << 32 | low;
+    }
+  }
+
+ private:
+  std::atomic<std::uint32_t> before_{0}, low_{0}, after_{0};
+};
+
+/// The newest value of one writer, whole: a reader that was overtaken reads again. The writer never waits.
+template <class T>
+class Published {
+ public:
+  /// One writer. realtime.
+  void publish(const T& value) noexcept {
+    const std::uint32_t turn = turn_.load(std::memory_order_relaxed);
+    turn_.store(turn + 1, std::memory_order_relaxed);
+    std::atomic_thread_fence(std::memory_order_release);
+    value_.put(value);
+    turn_.store(turn + 2, std::memory_order_release);
+  }
+  /// False if the writer was faster so many times in a row. setup.
+  bool read(T& value, int tries = 1000) const noexcept {
+    for (int i = 0; i < tries; ++i) {
+      const std::uint32_t before = turn_.load(std::memory_order_acquire);
+      if ((before & 1) != 0) continue;
+      const T copy = value_.get();
+      std::atomic_thread_fence(std::memory_order_acquire);
+      if (turn_.load(std::memory_order_relaxed) != before) continue;
+      value = copy;
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  std::atomic<std::uint32_t> turn_{0};
+  AtomicWords<T> value_;
+};
+
+/// The last values of one writer. A reader names the value that it needs and gets it, or the answer that it
+/// is overwritten. The writer never waits and never fails: values that were not read in time are overwritten,
+/// and readers detect this.
+template <class T>
+class History {
+ public:
+  /// size: values that are kept, a power of two. setup.
+  explicit History(std::uint32_t size) : size_(size), values_(new AtomicWords<T>[size]) {}
+
+  /// One writer. realtime.
+  void add(const T& value) noexcept {
+    const std::uint64_t next = count_.load();
+    begun_.store(next + 1);
+    std::atomic_thread_fence(std::memory_order_release);
+    values_[static_cast<std::uint32_t>(next) & (size_ - 1)].put(value);
+    count_.store(next + 1);
+  }
+  /// Values added so far; value i can be read while i < count() <= i + size().
+  std::uint64_t count() const noexcept { return count_.load(); }
+  std::uint32_t size() const noexcept { return size_; }
+  /// Oldest value that is still there.
+  std::uint64_t oldest() const noexcept {
+    const std::uint64_t count = begun_.load();
+    return count > size_ ? count - size_ : 0;
+  }
+  /// False if value `index` is not there yet, or not any more. setup.
+  bool read(std::uint64_t index, T& value) const noexcept {
+    if (index >= count()) return false;
+    const T copy = values_[static_cast<std::uint32_t>(index) & (size_ - 1)].get();
+    std::atomic_thread_fence(std::memory_order_acquire);
+    if (begun_.load() > index + size_) return false;
+    value = copy;
+    return true;
+  }
+
+ private:
+  SharedCount begun_, count_;
+  std::uint32_t size_;
+  std::unique_ptr<AtomicWords<T>[]> values_;
+};
+
+/// Start values of a tick, from which other threads compute the share of each effect.
+struct EquationRecord {
+  std::uint32_t programs = 0, reserved = 0;  // HealthRecord::programs: whose state it is
+  EquationState state;
+};
+
+/// All that passes between the tick and the rest of the daemon. No locks: the tick never waits for anybody.
+struct Exchange {
+  static constexpr std::uint32_t kHistory = 4096;  // ticks, about four seconds
+  static constexpr std::uint32_t kTouches = 256;
+
+  Published<HealthRecord> health;
+  Published<StateRecord> state;
+  Published<EquationRecord> equation;  // ten a second
+  History<TickRecord> ticks;
+  History<TouchRecord> touches;
+  Published<WorkpieceFrame> workpiece;           // written by the links
+  std::atomic<Command> command{Command::kNone};  // taken by the tick
+  std::atomic<std::int32_t> axis_weight[kMaxAxes];
+  std::atomic<BoundProgram*> offered{nullptr};  // to be taken over by the next tick
+  std::atomic<BoundProgram*> retired{nullptr};  // was taken out; the owner may free it
+
+  /// How many ticks and touches it remembers, powers of two; memory is taken here and never again. setup.
+  explicit Exchange(std::uint32_t ticks_kept = kHistory, std::uint32_t touches_kept = kTouches)
+      : ticks(ticks_kept), touches(touches_kept) {
+    for (auto& weight : axis_weight) weight.store(kFullWeight.count);
+    workpiece.publish({});
+  }
+};
+
+}  // namespace vernier

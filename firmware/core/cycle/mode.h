@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/quantity.h"
+#include "firmware/core/cycle/health.h"
+#include "tables/codes.h"
+
+namespace vernier {
+
+/// Ticks without fault before Checking becomes Ready.
+constexpr std::uint32_t kCheckTicks = 100;
+/// Ticks in which the weight goes from zero to full; the slew limits may make it longer.
+constexpr std::int32_t kRampTicks = 256;
+static_assert(kFullWeight.count % kRampTicks == 0);
+
+/// The state machine of the modes. Each tick: before() with the faults of reading, the weight for the
+/// compensator, after() with the result.
+class ModeControl {
+ public:
+  /// complete: every device has answered at least once and now. realtime.
+  void before(Command command, Fault fault, bool complete, Health& health) noexcept;
+  /// at_zero: every correction in the drives is zero; settled: every correction has reached its target.
+  /// realtime.
+  void after(Fault fault, bool at_zero, bool settled, Health& health) noexcept;
+
+  Mode mode() const noexcept { return mode_; }
+  WeightQ16 weight() const noexcept { return weight_; }
+  /// True if the corrections are held at their values. Only in Active.
+  bool holding() const noexcept { return holding_ && mode_ == Mode::kActive; }
+  /// The first fault since the last clearing.
+  Fault latched() const noexcept { return latched_; }
+
+ private:
+  void obey(Command command, Health& health) noexcept;
+  void latch(Fault fault, Health& health) noexcept;
+  void check(Fault fault, bool complete) noexcept;
+  void move_weight() noexcept;
+
+  Mode mode_ = Mode::kBoot;
+  Fault latched_ = Fault::kNone;
+  WeightQ16 weight_;
+  bool engaging_ = false, holding_ = false;
+  std::uint32_t good_ticks_ = 0;
+};
+
+}  // namespace vernier

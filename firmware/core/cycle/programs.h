@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "firmware/core/cycle/exchange.h"
+#include "tables/image_view.h"
+#include "tables/upload_format.h"
+
+namespace vernier {
+
+/// A place for one upload: its header, its image, and its bound program. The bytes are in memory that is
+/// taken when the board is made.
+struct LoadedProgram {
+  UploadHeader header{};
+  std::unique_ptr<std::uint64_t[]> words;
+  ImageView view;
+  BoundProgram bound;                    // the tick's, and the guardian's before and after
+  std::uint32_t axis[kMaxAxes] = {};     // board's axis for each of the image
+  std::atomic<std::uint32_t> number{0};  // of the take-over by the tick; 0: never
+  TimeUs trial_time;                     // of a trial
+  std::atomic<bool> taken{false};
+
+  std::uint8_t* image() noexcept { return reinterpret_cast<std::uint8_t*>(words.get()); }
+  /// Bound again from its image, as if it had never run. setup.
+  void start_anew() noexcept;
+};
+struct GiveBack {
+  void operator()(LoadedProgram* program) const noexcept {
+    program->taken.store(false, std::memory_order_release);
+  }
+};
+/// A place in use; it is free again when this object is destroyed.
+using ProgramRef = std::unique_ptr<LoadedProgram, GiveBack>;
+
+/// State of the trial of an image. The comment of each state names the part that may leave it.
+enum class Trial : std::uint8_t {
+  kNone,        // the store, by run_trial()
+  kRunning,     // the guardian when its time is over; the store when it is to be kept
+  kConfirming,  // the store: it is being written down that the image is kept, however long that takes
+  kKept,        // the guardian: it now goes back to this one
+  kOver,        // the store, when the record says that the image was reverted
+};
+
+/// The programs of a board: the running one, and the one to which the board returns. Three parties use it;
+/// none of them waits for another:
+///   the store checks images and starts them or their trial;
+///   the guardian hands them to the tick and ends trials on time, from memory alone;
+///   the links read the running one.
+class Programs {
+ public:
+  /// One that runs, one that the board goes back to, one that comes in.
+  static constexpr std::uint32_t kFewest = 3;
+
+  /// exchange: outlives this; image_bytes: the largest image. Takes memory for all places. setup.
+  Programs(Exchange& exchange, std::uint32_t places, std::uint32_t image_bytes);
+
+  // ---- the store
+  /// Null if every place is in use.
+  ProgramRef take() noexcept;
+  std::uint32_t image_bytes() const noexcept { return image_bytes_; }
+  /// The confirmed image, when the board starts.
+  void run_confirmed(ProgramRef program) noexcept;
+  /// An image to be tried, for trial_time from when the guardian gets it. Only in Trial::kNone.
+  void run_trial(ProgramRef program, TimeUs trial_time) noexcept;
+  /// Confirms the image on trial: its time stops. False if no image is on trial any more.
+  bool begin_to_keep() noexcept { return change(Trial::kRunning, Trial::kConfirming); }
+  /// It is written down that it is kept, or that could not be done. Only after begin_to_keep().
+  void kept(bool written) noexcept { trial_.store(written ? Trial::kKept : Trial::kRunning); }
+  /// The image on trial is reverted with the guardian's next round.
+  bool give_up() noexcept;
+  /// True if give_up() was called and is not executed yet.
+  bool giving_up() const noexcept { return to_give_up_.load() && trial_.load() == Trial::kRunning; }
+  /// The revert of the last trial is recorded. Only in Trial::kOver.
+  void given_up() noexcept { trial_.store(Trial::kNone); }
+
+  // ---- the guardian
+  /// Hands over the next program and ends a trial whose time is over. now: of the clock of run_trial(). Never
+  /// waits.
+  void guard(TimeUs now) noexcept;
+
+  // ---- the links
+  /// The program that runs, null before there is one; it stays until look_away(). One at a time.
+  const LoadedProgram* look() noexcept;
+  void look_away() noexcept { looked_at_.store(nullptr); }
+
+  Trial trial() const noexcept { return trial_.load(); }
+  /// Remaining time of the trial; `whole` if it has not begun.
+  TimeUs trial_left(TimeUs now, TimeUs whole) const noexcept;
+
+ private:
+  bool change(Trial from, Trial to) noexcept { return trial_.compare_exchange_strong(from, to); }
+  void own(LoadedProgram* program) noexcept;
+  void collect() noexcept;
+  void end_trial(TimeUs now) noexcept;
+  void go_back() noexcept;
+  void offer() noexcept;
+  void free_unused() noexcept;
+  LoadedProgram* other_empty() noexcept { return running_ == &empty_[0] ? &empty_[1] : &empty_[0]; }
+
+  Exchange& exchange_;
+  std::uint32_t places_, image_bytes_;
+  std::unique_ptr<LoadedProgram[]> programs_;
+  std::unique_ptr<bool[]> owned_;  // by the guardian
+  std::atomic<Trial> trial_{Trial::kNone};
+  std::atomic<bool> to_give_up_{false};
+  std::atomic<LoadedProgram*> confirmed_in_{nullptr}, trial_in_{nullptr};
+  std::atomic<const LoadedProgram*> seen_{nullptr}, looked_at_{nullptr};
+  std::uint32_t taken_over_ = 0;
+  SharedCount until_us_;  // of the trial; 0: no trial. Used by the guardian
+  // Used by the guardian. A program is in none, one or several of these.
+  LoadedProgram *running_ = nullptr, *offered_ = nullptr, *wanted_ = nullptr, *kept_ = nullptr,
+                *tried_ = nullptr;
+  LoadedProgram empty_[2];  // removes all corrections if no image can be restored
+};
+
+}  // namespace vernier

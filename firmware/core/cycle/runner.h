@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "firmware/core/cycle/cycle.h"
+#include "firmware/core/cycle/histogram.h"
+#include "hal/clock.h"
+#include "hal/tick_sync.h"
+
+namespace vernier {
+
+/// When overruns are a fault. Now and then one is late on every system; a tick that is left out as a rule is
+/// no tick, however the late ones are spread.
+struct OverrunLimits {
+  std::uint32_t in_a_row = 10;
+  std::uint32_t lost_share_q16 = 65536 / 20;  // of the ticks, that may be left out for ever
+  std::uint32_t lost_at_once = 200;           // limit: a stop of 0.2 s is accepted, two in a second are not
+};
+
+/// How the ticks of a runner went, ns.
+struct TickTimes {
+  Histogram latency;    // of wake-ups, behind the moment that was asked for
+  Histogram execution;  // of a tick: read, step, write
+};
+
+/// Runs a cycle tick by tick on a clock: sleeps until the tick is due, measures how late it woke and how long
+/// it computed. A tick that ends after the next was due is an overrun; the ticks that it covered are left
+/// out.
+class Runner {
+ public:
+  /// The first tick is due one period from now. setup.
+  Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept;
+  /// Each tick starts with a signal of `sync`. A signal earlier than half a period is ignored. If no signal
+  /// comes for `patience` after the tick was due, the clock starts the ticks until the next signal. setup.
+  Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience,
+         const OverrunLimits& overruns = {}) noexcept;
+
+  /// From now on step() is called in the cycle of the controller. It does not wait. Each call is one tick of
+  /// the controller's time, for any delay of its thread, and no tick is skipped. setup.
+  void follow_caller() noexcept { follows_ = true; }
+  /// Sleeps, then one tick; found: a fault from outside of the tick. Its time is counted from the
+  /// construction or set_time(). realtime.
+  TickReport step(Command command, Fault found = Fault::kNone) noexcept;
+  /// The machine file's t of the next tick; for a run that starts in the middle of a machine's day. setup.
+  void set_time(TimeUs time) noexcept { time_ = time; }
+  /// The machine file's t of the next tick.
+  TimeUs time() const noexcept { return time_; }
+  /// The moment at which the last tick read its axes.
+  InstantNs woke() const noexcept { return last_; }
+  /// True if the ticks follow the controller's sync.
+  bool in_step() const noexcept { return in_step_; }
+  /// Times that the sync was lost; only goes up.
+  std::uint64_t lost_syncs() const noexcept { return lost_syncs_; }
+  const TickTimes& times() const noexcept { return times_; }
+  /// The moment at which the next tick is due.
+  InstantNs due() const noexcept { return due_; }
+
+ private:
+  TickReport step_of_caller(Command command, Fault found) noexcept;
+  void schedule(InstantNs ended) noexcept;
+  void count_lost(std::uint32_t ticks) noexcept;
+  bool overran_too_often() const noexcept {
+    return overruns_ >= limits_.in_a_row || lost_level_ > std::uint64_t{limits_.lost_at_once} << 16;
+  }
+  HalFault wait() noexcept;
+  bool wait_for_sync() noexcept;
+
+  Cycle& cycle_;
+  Clock& clock_;
+  TimeUs period_;
+  TickSync* sync_ = nullptr;
+  TimeUs patience_;
+  bool in_step_ = false, follows_ = false;
+  std::uint64_t lost_syncs_ = 0;
+  InstantNs last_;  // wake-up before
+  InstantNs due_;
+  TimeUs time_;
+  ElapsedTicks elapsed_;
+  OverrunLimits limits_;
+  std::uint32_t overruns_ = 0;    // in a row
+  std::uint64_t lost_level_ = 0;  // ticks, Q16: rises with each that is left out, falls with each that ran
+  TickTimes times_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "tables/upload_format.h"
+
+namespace vernier {
+
+using PublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
+
+/// Verifies a signature of 64 bytes of a head, of the bytes after it, and of this key. Ed25519ph, RFC 8032. A
+/// port defines it with its library; a port without a library uses firmware/core/link/signature.cpp. setup.
+bool signature_fits(std::span<const std::uint8_t> head, std::span<const std::uint8_t> rest,
+                    const std::uint8_t* signature, const PublicKey& key);
+
+/// The first `size` bytes of a head that has the signed layout in memory.
+template <class Head>
+std::span<const std::uint8_t> bytes_of_head(const Head& head, std::uint32_t size = sizeof(Head)) {
+  return {reinterpret_cast<const std::uint8_t*>(&head), size};
+}
+
+}  // namespace vernier

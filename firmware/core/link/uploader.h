@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "firmware/core/cycle/programs.h"
+#include "firmware/core/cycle/work_budget.h"
+#include "firmware/core/link/identity.h"
+#include "hal/slot_store.h"
+#include "tables/codes.h"
+#include "tables/image_view.h"
+#include "tables/slots.h"
+
+namespace vernier {
+
+/// A refusal with its details; `fault` is kNone if there was no error.
+struct UploadResult {
+  UploadFault fault = UploadFault::kNone;
+  ImageFault image = ImageFault::kNone;
+  BindFault bind = BindFault::kNone;
+  Name offender;  // the name that does not fit
+};
+/// A line of text in place; longer text is cut.
+struct Line {
+  char text[160] = {};
+  const char* c_str() const noexcept { return text; }
+  operator const char*() const noexcept { return text; }
+};
+/// One line for people: "of another machine: the board has no such axis: W".
+Line describe(const UploadResult& result) noexcept;
+
+/// Which images the store holds, as others see it.
+struct SlotsRecord {
+  std::uint64_t confirmed_fingerprint = 0, trial_fingerprint = 0;  // 0: no image
+  std::uint64_t issued = 0, newest_issued = 0;  // of the confirmed image, and of all that were ever tried
+  std::uint8_t confirmed = kNoSlot, trial = kNoSlot, reserved[2] = {};
+  std::uint32_t security = 0;
+};
+static_assert(sizeof(SlotsRecord) % 8 == 0);
+
+/// Receives, checks, tries, confirms and reverts images. Functions that access the medium may take time and
+/// run in a separate context; the next program is passed to Programs. After a power failure at any time, the
+/// next boot() finds the image that was confirmed before or, once confirm() has returned, the new one.
+class Uploader {
+ public:
+  struct Options {
+    TimeUs tick{1000};
+    BoardIdentity identity;
+    TimeUs trial_time{60'000'000};  // an image on trial is reverted after that
+    std::uint32_t places = Programs::kFewest;
+    WorkBudget budget{};  // measured_work_budget()
+  };
+  /// store, wiring, exchange: outlive the uploader. setup.
+  Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, const Options& options);
+
+  // ---- the store
+  /// Call after power-on. Reverts an image that was on trial, checks the confirmed one, and starts it. The
+  /// result is the reason if no image runs: kNone also if no image was ever confirmed; kStore if no record of
+  /// the store can be read and the state is therefore not known. setup.
+  UploadResult boot();
+  /// As boot(), but runs an image given by the operator who starts the board: it is not signed, and the
+  /// medium is not changed. setup.
+  UploadResult boot_with(std::span<const std::uint8_t> image);
+  /// Writes received data to the medium, checks it and starts its trial. setup.
+  UploadResult finish();
+  /// Keeps the image on trial. setup.
+  UploadResult confirm();
+  /// Gives the image on trial up; the guardian takes it out with its next round. setup.
+  UploadResult revert();
+  /// Records that a trial is over; true if the record is written. If it cannot be written, the next call
+  /// tries again: the present medium gives the same result after a reset. setup.
+  bool look_after_store();
+  /// Bytes of the confirmed upload (header and image), from the medium. kNoReading beyond it. setup.
+  HalFault read_confirmed(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept;
+
+  // ---- the links, while the store is not at work for one of them
+  /// A new upload of `bytes` bytes begins; an unfinished one is dropped. setup.
+  UploadResult begin(std::uint32_t bytes);
+  /// The next piece. offset: bytes before it. A repeated last piece is accepted. setup.
+  UploadResult add(std::uint32_t offset, const std::uint8_t* bytes, std::uint32_t size);
+
+  // ---- anybody
+  /// The store's contents; a trial that is over is not listed, even if the medium does not record the end
+  /// yet.
+  SlotsRecord record() const noexcept;
+  /// True if a confirmed image could not be loaded and no other runs instead.
+  bool image_lost() const noexcept { return image_lost_.load(); }
+  /// Remaining time of the trial; 0 without a trial.
+  TimeUs trial_left(TimeUs now) const noexcept;
+  std::uint32_t capacity() const noexcept { return store_.capacity(); }
+  /// Which program runs.
+  Programs& programs() noexcept { return programs_; }
+  const Programs& programs() const noexcept { return programs_; }
+  /// The state of the medium; for the store, and for tests.
+  const Slots& slots() const noexcept { return slots_; }
+
+ private:
+  /// Checks an upload; an upload that was confirmed has passed the checks of its history already.
+  enum class Origin : std::uint8_t { kStored, kNew };
+  UploadResult load(std::uint8_t slot, LoadedProgram& loaded, Origin origin);
+  UploadResult load_v1(std::uint8_t slot, LoadedProgram& loaded);
+  void read_slots();
+  UploadResult check_signature(const LoadedProgram& loaded, Origin origin) const;
+  UploadResult check_image(LoadedProgram& loaded);
+  bool within_budget(const ImageView& view) const noexcept;
+  UploadResult write_slot(std::uint8_t slot);
+  UploadFault judge_history(const UploadHeader& header) const noexcept;
+  bool store(const SlotChange& change);
+  void publish() noexcept;
+
+  SlotStore& store_;
+  const Wiring& wiring_;
+  Options options_;
+  Slots slots_;
+  Programs programs_;
+  std::unique_ptr<ImageWorkspace> workspace_;
+  Published<SlotsRecord> published_;
+  SlotsRecord record_;
+  std::atomic<bool> image_lost_{false};
+  bool records_lost_ = false;
+  // The links', until finish().
+  ProgramRef coming_;
+  bool receiving_ = false;
+  std::uint32_t expected_ = 0, received_ = 0, last_offset_ = 0;
+};
+
+}  // namespace vernier

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "firmware/core/link/signature.h"
+
+namespace vernier {
+
+/// An error in a board file or a file that it names: "board.toml:12: axis.X: kind: 'lineal' is neither linear
+/// nor rotary".
+struct BoardError {
+  std::string what;
+};
+
+/// The 32 bytes of a public key file (base64 after a header line). Throws BoardError. setup.
+PublicKey read_public_key(const std::string& path);
+
+}  // namespace vernier

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/linux/can/can_socket.h"
+
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace vernier {
+namespace {
+
+bool subscribe(int socket, const std::vector<std::uint32_t>& ids, bool bus_errors) {
+  std::vector<can_filter> filters;
+  for (const std::uint32_t id : ids)
+    filters.push_back({can_identifier(id), CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_EFF_MASK});
+  if (::setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
+                   static_cast<socklen_t>(filters.size() * sizeof(can_filter))) != 0)
+    return false;
+  const can_err_mask_t errors = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
+  return !bus_errors || ::setsockopt(socket, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof(errors)) == 0;
+}
+
+}  // namespace
+
+canid_t can_identifier(std::uint32_t id) noexcept { return id > CAN_SFF_MASK ? (id | CAN_EFF_FLAG) : id; }
+
+int can_failed(const std::string& interface, const char* what, int socket, std::string& error) {
+  error = interface + ": " + what + ": " + std::strerror(errno);
+  if (socket >= 0) ::close(socket);
+  return -1;
+}
+
+bool bind_can(int socket, const std::string& interface, sockaddr_can address, std::string& error) {
+  address.can_family = AF_CAN;
+  address.can_ifindex = static_cast<int>(::if_nametoindex(interface.c_str()));
+  if (address.can_ifindex == 0) return can_failed(interface, "no such interface", socket, error) >= 0;
+  if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) return true;
+  return can_failed(interface, "cannot be used", socket, error) >= 0;
+}
+
+int open_can(const std::string& interface, const std::vector<std::uint32_t>& ids, bool bus_errors,
+             std::string& error) {
+  const int fd = ::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
+  if (fd < 0) return can_failed(interface, "no CAN in this kernel", fd, error);
+  if (!subscribe(fd, ids, bus_errors)) return can_failed(interface, "filters are refused", fd, error);
+  return bind_can(fd, interface, sockaddr_can{}, error) ? fd : -1;
+}
+
+}  // namespace vernier

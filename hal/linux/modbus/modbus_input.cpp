@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/linux/modbus/modbus_input.h"
+
+#include <modbus.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cerrno>
+#include <cmath>
+
+namespace vernier {
+namespace {
+
+constexpr std::int64_t kUsPerS = 1'000'000;
+
+}  // namespace
+
+ModbusLine::ModbusLine(_modbus* context, bool serial, TimeUs wait)
+    : context_(context), serial_(serial), wait_(wait) {
+  modbus_set_response_timeout(context_, static_cast<std::uint32_t>(wait.count / kUsPerS),
+                              static_cast<std::uint32_t>(wait.count % kUsPerS));
+  // An answer that stops in the middle counts as no answer.
+  modbus_set_byte_timeout(context_, static_cast<std::uint32_t>(wait.count / kUsPerS),
+                          static_cast<std::uint32_t>(wait.count % kUsPerS));
+}
+
+ModbusLine::~ModbusLine() {
+  if (open_) modbus_close(context_);
+  modbus_free(context_);
+}
+
+std::shared_ptr<ModbusLine> ModbusLine::rtu(const std::string& device, int baud, char parity, TimeUs wait,
+                                            std::string& error) {
+  modbus_t* const context = modbus_new_rtu(device.c_str(), baud, parity, 8, 1);
+  if (context == nullptr) return error = device + ": " + modbus_strerror(errno), nullptr;
+  std::shared_ptr<ModbusLine> line(new ModbusLine(context, true, wait));
+  if (!line->connected()) return error = device + ": " + modbus_strerror(errno), nullptr;
+  return line;
+}
+
+std::shared_ptr<ModbusLine> ModbusLine::tcp(const std::string& address, int port, TimeUs wait,
+                                            std::string& error) {
+  modbus_t* const context = modbus_new_tcp(address.c_str(), port);
+  if (context == nullptr) return error = address + ": " + modbus_strerror(errno), nullptr;
+  return std::shared_ptr<ModbusLine>(new ModbusLine(context, false, wait));
+}
+
+bool ModbusLine::connected() noexcept {
+  if (!open_) open_ = modbus_connect(context_) == 0;
+  return open_;
+}
+
+bool ModbusLine::read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept {
+  if (!connected()) return false;
+  if (after_silence_) ::usleep(static_cast<useconds_t>(wait_.count));
+  after_silence_ = false;
+  modbus_flush(context_);
+  modbus_set_slave(context_, unit);
+  const int got = kind == Registers::kInput ? modbus_read_input_registers(context_, address, count, values)
+                                            : modbus_read_registers(context_, address, count, values);
+  if (got == count) return true;
+  // An exception is a valid answer. After any other error the line must become quiet, and a connection is
+  // opened again. (So is a serial device that was removed.)
+  const bool exception = errno >= EMBXILFUN && errno <= EMBXGTAR;
+  after_silence_ = serial_ && !exception;
+  if (exception || (serial_ && errno != EBADF && errno != EIO)) return false;
+  modbus_close(context_);
+  open_ = false;
+  return false;
+}
+
+HalFault ModbusInput::take(std::int64_t& micro) noexcept {
+  using Type = ModbusValue::Type;
+  const bool wide = value_.type == Type::kInt32 || value_.type == Type::kFloat32;
+  std::uint16_t words[2] = {};
+  if (!line_->read(value_.unit, value_.kind, value_.address, wide ? 2 : 1, words))
+    return HalFault::kNoReading;
+  const std::uint32_t both = std::uint32_t{words[0]} << 16 | words[1];
+  const double number = value_.type == Type::kInt16    ? static_cast<std::int16_t>(words[0])
+                        : value_.type == Type::kUint16 ? words[0]
+                        : value_.type == Type::kInt32  ? static_cast<std::int32_t>(both)
+                                                       : static_cast<double>(std::bit_cast<float>(both));
+  return scaled(number * kPerUnit, value_.offset, value_.scale, micro) ? HalFault::kNone
+                                                                       : HalFault::kNoReading;
+}
+
+}  // namespace vernier

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/command_link.h"
+#include "hal/linux/modbus/modbus_conversation.h"
+
+struct _modbus;
+
+namespace vernier {
+
+/// A Modbus server over TCP for a few clients, or over a serial line (which libmodbus opens). No client can
+/// block it: it reads and writes what is available. It closes a connection whose request is not complete
+/// within half a second of its first byte, or whose reply is not taken within a second.
+class ModbusServer : public CommandLink {
+ public:
+  /// address: numeric, "127.0.0.1"; port 0 takes any free one. Null with `error` set if it cannot listen.
+  /// setup.
+  static std::unique_ptr<ModbusServer> tcp(const std::string& address, int port, const ModbusLayout& layout,
+                                           std::string& error);
+  /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; unit: 1..247. setup.
+  static std::unique_ptr<ModbusServer> rtu(const std::string& device, int baud, char parity, int unit,
+                                           const ModbusLayout& layout, std::string& error);
+  ~ModbusServer() override;
+  ModbusServer(const ModbusServer&) = delete;
+  ModbusServer& operator=(const ModbusServer&) = delete;
+
+  HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
+  std::uint32_t handles(int* handles, std::uint32_t room) const noexcept override;
+  /// The port that it listens on; 0 on a serial line.
+  int port() const noexcept { return port_; }
+
+ private:
+  struct Client {
+    int fd;
+    ModbusConversation talk;
+  };
+
+  ModbusServer(const ModbusLayout& layout, int unit, InstantNs frame_time)
+      : layout_(layout), unit_(unit), frame_time_(frame_time) {}
+  void accept_clients(InstantNs now);
+  std::vector<Client>::const_iterator first_to_go() const noexcept;
+  bool has_room(InstantNs now) const noexcept;
+  bool serve_client(Client& client, CommandHandler& handler, InstantNs now) noexcept;
+  bool receive(Client& client, InstantNs now) noexcept;
+  bool send(Client& client) noexcept;
+
+  ModbusLayout layout_;
+  int unit_;
+  InstantNs frame_time_;
+  _modbus* line_ = nullptr;  // of a serial line, which is the only client then
+  int listening_ = -1, port_ = 0;
+  std::vector<Client> clients_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/diagnose/propose/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "tools/effects/input_class.h"
+#include "tools/effects/probe.h"
+#include "tools/fit/least_squares/statistics.h"
+#include "tools/fit/noise/noise_estimate.h"
+#include "tools/fit/selection.h"
+#include "tools/fit/solve.h"
+#include "tools/format/columns.h"
+#include "tools/maths/chance.h"
+#include "tools/maths/decompositions.h"
+#include "tools/maths/orthonormal.h"
+#include "tools/model/chain/evaluate.h"
+#include "tools/model/chain/prediction.h"
+
+namespace vernier::diagnose {
+namespace {
+
+/// Holds all free parameters. Only the probes of a machine remain free.
+void hold_all(model::Machine& machine) {
+  for (model::Freedom& one : model::freedoms_of(machine)) one.set_free(false);
+}
+
+/// Returns k, if every k-th row is kept so that the Jacobian has at most `most` numbers.
+std::size_t stride_of(const model::Measurement& all, std::size_t parameters, double most) {
+  const double numbers = static_cast<double>(all.observations.size()) * static_cast<double>(parameters + 60);
+  return numbers <= most ? 1 : static_cast<std::size_t>(std::ceil(numbers / most));
+}
+
+model::Measurement thinned(const model::Measurement& all, std::size_t stride) {
+  if (stride == 1) return all;
+  std::vector<std::size_t> keep;
+  for (std::size_t row = 0; row < all.rows(); row += stride) keep.push_back(row);
+  return model::select_rows(all, keep);
+}
+
+}  // namespace
+
+Evidence::Evidence(const model::Machine& fitted, const model::Measurement& measurement,
+                   const DiagnoseThresholds& thresholds)
+    : thresholds_(thresholds), machine_(fitted) {
+  const model::ParameterSet parameters(fitted, fit::setups_of_fit_rows(measurement));
+  const std::size_t stride = stride_of(measurement, parameters.size(), thresholds.evidence.most_numbers);
+  stride_ = static_cast<double>(stride);
+  measurement_ = thinned(measurement, stride);
+  position_ = model::commanded_states(measurement_).axis;
+  declared_ = fitted.inputs.size();
+  noise_known_ = with_u_ = fit::has_uncertainty(measurement_);
+  take_inputs();
+  const Eigen::VectorXd weights = fit::fit_weights(measurement_);
+  for (std::size_t i = 0; i < measurement_.observations.size(); ++i)
+    if (weights[static_cast<Eigen::Index>(i)] > 0) {
+      observation_.push_back(i);
+      rows_.push_back(measurement_.observations[i].row);
+    }
+  weight_ = weights(observation_);
+  layout_ = fit::noise_layout(measurement_, observation_, thresholds_.layout);
+  place_ = fit::places_of_rows(measurement_, thresholds_.layout);
+  respond();
+  raw_residual_ = residual_;
+  absorb();
+  raw_absorbed_ = absorbed_;
+  split_blocks();
+}
+
+void Evidence::take_inputs() {
+  for (const model::CandidateInput& candidate : measurement_.candidates) {
+    model::Input input;
+    input.name = candidate.name;
+    input.unit = candidate.unit;
+    machine_.inputs.push_back(input);
+    model::Column column = candidate.value;
+    // An empty cell gets the column's mean, which has the least influence.
+    double sum = 0, count = 0;
+    for (const double value : column)
+      if (std::isfinite(value)) {
+        sum += value;
+        ++count;
+      }
+    for (double& value : column)
+      if (!std::isfinite(value)) value = count > 0 ? sum / count : 0;
+    measurement_.states.input.push_back(column);
+  }
+  measurement_.candidates.clear();
+}
+
+double Evidence::reference_of(std::size_t input) const {
+  const model::Input& one = machine_.inputs[input];
+  if (input < declared_) return one.reference;
+  double sum = 0;
+  for (const std::size_t row : rows_) sum += measurement_.states.input[input][static_cast<Eigen::Index>(row)];
+  return effects::usual_reference(one, rows_.empty() ? 0 : sum / static_cast<double>(rows_.size()));
+}
+
+void Evidence::respond() {
+  places_ = effects::all_places(machine_);
+  model::Machine probed = machine_;
+  hold_all(probed);
+  for (const effects::DofPlace& place : places_) effects::add_probe(probed, place);
+  const model::ParameterSet probes(probed, {});
+  const model::Linearisation linear = model::linearise(probed, measurement_, probes);
+  const Eigen::MatrixXd all(linear.jacobian);
+  response_.resize(static_cast<Eigen::Index>(observation_.size()), all.cols());
+  residual_.resize(response_.rows());
+  for (std::size_t i = 0; i < observation_.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i), from = static_cast<Eigen::Index>(observation_[i]);
+    response_.row(at) = weight_[at] * all.row(from);
+    residual_[at] = weight_[at] * (measurement_.observations[observation_[i]].value - linear.predicted[from]);
+  }
+  silence_rounding();
+  find_reach(linear.predicted);
+}
+
+void Evidence::silence_rounding() {
+  double largest[2] = {0, 0};
+  const auto kind = [&](std::size_t place) { return effects::is_angle(machine_, places_[place]) ? 1 : 0; };
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    largest[kind(i)] = std::max(largest[kind(i)], response(i).norm());
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    if (response(i).norm() < thresholds_.evidence.rounding * largest[kind(i)])
+      response_.col(static_cast<Eigen::Index>(i)).setZero();
+}
+
+void Evidence::find_reach(const Eigen::VectorXd& predicted) {
+  // Extent of the model for each length that is read. The own length of a ball bar does not show
+  // it.
+  std::map<model::ObservationKind, std::pair<double, double>> ranges;
+  for (const std::size_t i : observation_) {
+    const model::ObservationKind kind = measurement_.observations[i].kind;
+    if (model::is_rotation(kind)) continue;
+    const double value = predicted[static_cast<Eigen::Index>(i)];
+    auto& range = ranges.try_emplace(kind, value, value).first->second;
+    range = {std::min(range.first, value), std::max(range.second, value)};
+  }
+  for (const auto& [kind, range] : ranges) reach_mm_ = std::hypot(reach_mm_, range.second - range.first);
+}
+
+void Evidence::absorb() {
+  const model::ParameterSet parameters(machine_, fit::setups_of_fit_rows(measurement_));
+  absorbed_.resize(residual_.size(), 0);
+  if (parameters.size() == 0 && noise_.steps.empty()) return;
+  const model::Linearisation linear = model::linearise(machine_, measurement_, parameters);
+  const Eigen::MatrixXd all(linear.jacobian);
+  Eigen::MatrixXd jacobian(residual_.size(), all.cols());
+  for (std::size_t i = 0; i < observation_.size(); ++i)
+    jacobian.row(static_cast<Eigen::Index>(i)) =
+        weight_[static_cast<Eigen::Index>(i)] * all.row(static_cast<Eigen::Index>(observation_[i]));
+  if (!noise_.steps.empty()) {
+    jacobian.conservativeResize(Eigen::NoChange, all.cols() + static_cast<Eigen::Index>(noise_.steps.size()));
+    jacobian.rightCols(static_cast<Eigen::Index>(noise_.steps.size())) =
+        fit::step_columns(layout_, noise_.steps, residual_.size());
+  }
+  whiten(jacobian);
+  Eigen::VectorXd scale = jacobian.colwise().norm();
+  const double tiny = 1e-12 * std::max(scale.maxCoeff(), 1e-300);
+  for (double& s : scale) s = s > tiny ? 1 / s : 0;
+  jacobian *= scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobian.transpose() * jacobian);
+  const Eigen::VectorXd& values = eigen.eigenvalues();
+  const double limit = std::pow(thresholds_.evidence.absorb_cutoff, 2) * values[values.size() - 1];
+  Eigen::Index lost = 0;
+  while (lost < values.size() && values[lost] < limit) ++lost;
+  const Eigen::Index rank = std::min(values.size() - lost, residual_.size());
+  const Eigen::MatrixXd seen = jacobian * (eigen.eigenvectors().rightCols(rank) *
+                                           values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal());
+  // A second factorisation: the eigenvectors give the weak directions with few digits.
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(seen);
+  absorbed_ = qr.householderQ() * Eigen::MatrixXd::Identity(residual_.size(), rank);
+  residual_ -= absorbed_ * (absorbed_.transpose() * residual_);
+}
+
+void Evidence::split_blocks() {
+  std::map<std::size_t, std::vector<std::size_t>> rows_of_run;
+  std::size_t total = 0;
+  for (const std::size_t row : rows_) {
+    auto& rows = rows_of_run[block_of(row)];
+    if (!rows.empty() && rows.back() == row) continue;
+    rows.push_back(row);
+    ++total;
+  }
+  // A run that contains most rows is divided into blocks of successive rows.
+  std::map<std::size_t, std::size_t> parts, first;
+  std::size_t next = 0;
+  for (const auto& [run, rows] : rows_of_run) {
+    const AcceptanceThresholds& cut = thresholds_.acceptance;
+    parts[run] = std::max<std::size_t>(1, rows.size() * cut.blocks_of_one_run / total);
+    if (static_cast<double>(rows.size()) < cut.large_run * static_cast<double>(total)) parts[run] = 1;
+    first[run] = next;
+    next += parts[run];
+  }
+  block_.resize(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const std::size_t run = block_of(rows_[i]);
+    const auto& rows = rows_of_run[run];
+    const auto at =
+        static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), rows_[i]) - rows.begin());
+    block_[i] = static_cast<int>(first[run] + at * parts[run] / rows.size());
+  }
+}
+
+std::vector<std::vector<Eigen::Index>> Evidence::readings_at_one_pose() const {
+  std::map<std::pair<int, int>, std::vector<Eigen::Index>> poses;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const auto kind = static_cast<int>(measurement_.observations[observation_[i]].kind);
+    poses[{kind, place_[rows_[i]]}].push_back(static_cast<Eigen::Index>(i));
+  }
+  std::vector<std::vector<Eigen::Index>> groups;
+  for (auto& [pose, readings] : poses)
+    if (readings.size() > 1) groups.push_back(std::move(readings));
+  return groups;
+}
+
+double Evidence::shared_pose_error(const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted) const {
+  const std::vector<std::vector<Eigen::Index>> groups = readings_at_one_pose();
+  // Squares of the poses' means and of the differences within them. The fitted columns reduce
+  // both.
+  double between = 0, within = 0, freedom_between = 0, freedom_within = 0, count = 0;
+  for (const std::vector<Eigen::Index>& readings : groups) {
+    const auto n = static_cast<double>(readings.size());
+    const Eigen::VectorXd part = residual(readings);
+    const double mean = part.sum() * part.sum() / n;
+    between += mean;
+    within += part.squaredNorm() - mean;
+    double taken_mean = 0, taken = 0;
+    for (const Eigen::MatrixXd* basis : {&absorbed_, &fitted}) {
+      const Eigen::MatrixXd rows = (*basis)(readings, Eigen::all);
+      taken_mean += rows.colwise().sum().squaredNorm() / n;
+      taken += rows.squaredNorm();
+    }
+    freedom_between += 1 - taken_mean;
+    freedom_within += n - 1 - (taken - taken_mean);
+    count += n;
+  }
+  const double least = thresholds_.evidence.pose_freedom;
+  if (freedom_between < least || freedom_within < least || within <= 0) return 0;
+  const double f = (between / freedom_between) / (within / freedom_within);
+  if (maths::log_f_tail(f, freedom_between, freedom_within) > std::log(thresholds_.evidence.pose_chance))
+    return 0;
+  return (f - 1) * static_cast<double>(groups.size()) / count;
+}
+
+void Evidence::weigh_poses(double share) {
+  poses_ = readings_at_one_pose();
+  pose_share_ = share;
+  assume(noise_);
+}
+
+void Evidence::assume(const fit::NoiseModel& noise) {
+  noise_ = noise;
+  noise_known_ = with_u_ || !noise.independent();
+  Eigen::MatrixXd residual = raw_residual_;
+  share_poses(residual);
+  log_determinant_ = vernier::fit::whiten(layout_, noise_, residual);
+  for (const auto& readings : poses_)
+    log_determinant_ += std::log(1 + static_cast<double>(readings.size()) * pose_share_);
+  residual_ = residual;
+  absorb();
+}
+
+fit::NoiseModel Evidence::estimate(const Eigen::MatrixXd& raw, std::vector<fit::NoiseStep> given) const {
+  const auto steps = static_cast<Eigen::Index>(given.size());
+  Eigen::MatrixXd residual = raw_residual_;
+  Eigen::MatrixXd fitted(raw_absorbed_.rows(), steps + raw_absorbed_.cols() + raw.cols());
+  fitted << fit::step_columns(layout_, given, raw_residual_.size()), raw_absorbed_, raw;
+  share_poses(residual);
+  share_poses(fitted);
+  if (steps > 0) {
+    const Eigen::VectorXd heights = maths::least_norm(fitted, Eigen::VectorXd(residual));
+    for (std::size_t k = 0; k < given.size(); ++k) given[k].height = heights[static_cast<Eigen::Index>(k)];
+  }
+  fitted = maths::orthonormal(fitted, 1e-6, nullptr);
+  residual -= fitted * (fitted.transpose() * residual);
+  fit::NoiseModel noise = fit::estimate_noise(layout_, residual, fitted, with_u_, thresholds_.noise);
+  if (steps == 0) return noise;
+  noise.steps.insert(noise.steps.begin(), given.begin(), given.end());
+  Eigen::MatrixXd all(raw.rows(), raw.cols() + steps);
+  all << raw, fit::step_columns(layout_, given, raw.rows());
+  noise.support += (left_in_full(raw) - left_in_full(all)) / (noise.own * noise.own);
+  return noise;
+}
+
+double Evidence::left_in_full(const Eigen::MatrixXd& raw) const {
+  Eigen::MatrixXd fitted(raw_absorbed_.rows(), raw_absorbed_.cols() + raw.cols());
+  fitted << raw_absorbed_, raw;
+  fitted = maths::orthonormal(fitted, 1e-6, nullptr);
+  return (raw_residual_ - fitted * (fitted.transpose() * raw_residual_)).squaredNorm();
+}
+
+Eigen::MatrixXd Evidence::offset_columns() const {
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(raw_residual_.size(), static_cast<Eigen::Index>(layout_.series.size()));
+  for (std::size_t kind = 0; kind < layout_.series.size(); ++kind)
+    for (const Eigen::Index reading : layout_.series[kind].reading)
+      columns(reading, static_cast<Eigen::Index>(kind)) = weight_[reading];
+  return columns;
+}
+
+fit::NoiseModel Evidence::noise_of_file() const {
+  fit::NoiseModel noise = noise_;
+  if (!noise.in_time) noise.time_constant *= stride_;
+  return noise;
+}
+
+void Evidence::share_poses(Eigen::MatrixXd& columns) const {
+  for (const std::vector<Eigen::Index>& readings : poses_) {
+    const auto n = static_cast<double>(readings.size());
+    const double taken = (1 - 1 / std::sqrt(1 + n * pose_share_)) / n;
+    const Eigen::RowVectorXd shift = taken * columns(readings, Eigen::all).colwise().sum();
+    for (const Eigen::Index i : readings) columns.row(i) -= shift;
+  }
+}
+
+void Evidence::whiten(Eigen::MatrixXd& columns) const {
+  share_poses(columns);
+  if (!noise_.independent() || noise_.own != 1) vernier::fit::whiten(layout_, noise_, columns);
+}
+
+std::vector<int> Evidence::parts_of_runs() const {
+  std::map<std::size_t, std::vector<std::size_t>> rows_of_run;
+  for (const std::size_t row : rows_) {
+    auto& rows = rows_of_run[block_of(row)];
+    if (rows.empty() || rows.back() != row) rows.push_back(row);
+  }
+  std::vector<int> parts(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const auto& rows = rows_of_run[block_of(rows_[i])];
+    const auto at =
+        static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), rows_[i]) - rows.begin());
+    parts[i] = static_cast<int>(at * thresholds_.acceptance.parts_of_run / rows.size());
+  }
+  return parts;
+}
+
+std::size_t Evidence::index_of(const effects::DofPlace& place) const {
+  return static_cast<std::size_t>(std::find(places_.begin(), places_.end(), place) - places_.begin());
+}
+
+ColumnMaker::ColumnMaker(const Evidence& evidence)
+    : evidence_(evidence), scratch_(evidence.machine()), own_statics_(scratch_.statics.size()) {}
+
+Eigen::MatrixXd ColumnMaker::raw(const effects::Candidate& candidate, const std::vector<double>& scanned) {
+  scratch_.statics.resize(own_statics_);
+  const std::vector<std::size_t> linear = effects::add_unknowns(scratch_, candidate, scanned);
+  std::vector<char> active(scratch_.statics.size(), 0);
+  for (const std::size_t unknown : linear) active[unknown] = 1;
+  active.resize(scratch_.statics.size() + 6 * scratch_.axes.size(), 0);
+  const std::vector<std::size_t>& rows = evidence_.rows();
+  Eigen::MatrixXd result =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(linear.size()));
+  model::Evaluator evaluate(scratch_, evidence_.measurement().states, active);
+  for (const effects::CandidateTerm& term : candidate.terms) {
+    const model::ValueAndSlopes dual = evaluate(*model::parse_expression_for(scratch_, term.text));
+    const auto answer = evidence_.response(evidence_.index_of(term.place));
+    for (const auto& [key, value] : dual.by) {
+      const auto found = std::find(linear.begin(), linear.end(), key);
+      if (found == linear.end()) continue;
+      auto column = result.col(found - linear.begin());
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        column[at] += answer[at] * value[rows[i]];
+      }
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd ColumnMaker::columns(const effects::Candidate& candidate,
+                                     const std::vector<double>& scanned) {
+  Eigen::MatrixXd result = raw(candidate, scanned);
+  evidence_.whiten(result);
+  return result;
+}
+
+Eigen::MatrixXd Evidence::raw_columns(const effects::Candidate& candidate,
+                                      const std::vector<double>& scanned) const {
+  return ColumnMaker(*this).raw(candidate, scanned);
+}
+
+Eigen::MatrixXd Evidence::columns(const effects::Candidate& candidate,
+                                  const std::vector<double>& scanned) const {
+  return ColumnMaker(*this).columns(candidate, scanned);
+}
+
+Evidence::Range Evidence::range_of(std::size_t axis) const {
+  std::set<double> values;
+  for (const std::size_t row : rows_) values.insert(position_[axis][static_cast<Eigen::Index>(row)]);
+  Range range;
+  if (values.empty()) return range;
+  range.low = *values.begin();
+  range.high = *values.rbegin();
+  range.step = (range.high - range.low) / std::max<double>(1, static_cast<double>(values.size() - 1));
+  double least = range.high - range.low;
+  for (auto next = std::next(values.begin()); next != values.end(); ++next)
+    least = std::min(least, *next - *std::prev(next));
+  for (const double value : values) {
+    const double steps = (value - range.low) / std::max(least, 1e-300);
+    range.even = range.even && std::abs(steps - std::round(steps)) < thresholds_.evidence.even_step;
+  }
+  return range;
+}
+
+std::vector<double> Evidence::places_read(std::size_t axis, int sense, double apart) const {
+  std::vector<double> all;
+  for (const std::size_t row : rows_)
+    if (sense == 0 || sense_of(axis, row) == sense)
+      all.push_back(position_[axis][static_cast<Eigen::Index>(row)]);
+  std::sort(all.begin(), all.end());
+  std::vector<double> kept;
+  for (const double one : all)
+    if (kept.empty() || one - kept.back() > apart) kept.push_back(one);
+  return kept;
+}
+
+int Evidence::sense_of(std::size_t axis, std::size_t row) const {
+  const auto at = static_cast<Eigen::Index>(row);
+  const model::Column& direction = measurement_.states.direction[axis];
+  if (measurement_.has_recorded(format::axis_column(format::AxisQuantity::kSense, machine_.axes[axis].name)))
+    return static_cast<int>(direction[at]);
+  // If not recorded: the motion from the row before, across repeats at one position.
+  for (Eigen::Index before = at; before-- > 0;) {
+    const double step = position_[axis][at] - position_[axis][before];
+    if (step != 0) return step > 0 ? 1 : -1;
+  }
+  return 0;
+}
+
+Evidence::Range Evidence::time_range() const {
+  Range range;
+  bool first = true;
+  for (const std::size_t row : rows_) {
+    const double t = measurement_.states.time[static_cast<Eigen::Index>(row)];
+    range.low = first ? t : std::min(range.low, t);
+    range.high = first ? t : std::max(range.high, t);
+    first = false;
+  }
+  range.step = (range.high - range.low) / std::max<double>(1, static_cast<double>(measurement_.rows()) - 1);
+  return range;
+}
+
+}  // namespace vernier::diagnose

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/propose/thresholds.h"
+#include "tools/effects/candidate.h"
+#include "tools/fit/fit.h"
+#include "tools/fit/noise/noise.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier::diagnose {
+
+/// All data that a search needs of a fitted machine and its rows: the influence of each degree of
+/// freedom on each observation, the residual, and the part that the model's own free parameters
+/// could still absorb.
+class Evidence {
+ public:
+  /// `fitted`: the machine at its best fit. Every logged column becomes an input. tool.
+  Evidence(const model::Machine& fitted, const model::Measurement& measurement,
+           const DiagnoseThresholds& thresholds = {});
+
+  /// Thresholds for every part of the search.
+  const DiagnoseThresholds& thresholds() const { return thresholds_; }
+  const model::Machine& machine() const { return machine_; }  // with every logged column as an input
+  const model::Measurement& measurement() const { return measurement_; }
+  /// Reference value of an input: the declared reference, 20 degC, else a round number near its
+  /// mean.
+  double reference_of(std::size_t input) const;
+  const std::vector<effects::DofPlace>& places() const { return places_; }
+  std::size_t index_of(const effects::DofPlace& place) const;
+
+  /// d reading / d (mm or deg at the location), weighted by 1/u, for the fit observations.
+  auto response(std::size_t place) const { return response_.col(static_cast<Eigen::Index>(place)); }
+  /// Row of each fit observation.
+  const std::vector<std::size_t>& rows() const { return rows_; }
+  /// Commanded position of an axis in each row of the measurement. With a correction included,
+  /// every reading would be a pose of its own.
+  const model::Column& position(std::size_t axis) const { return position_[axis]; }
+  const Eigen::VectorXd& weights() const { return weight_; }
+  /// (measured - model) / u of the fit observations, without the part that the model can absorb.
+  const Eigen::VectorXd& residual() const { return residual_; }
+  /// Orthonormal columns that span what the free parameters can absorb.
+  const Eigen::MatrixXd& absorbed() const { return absorbed_; }
+  bool noise_known() const { return noise_known_; }
+  double chi_square() const { return residual_.squaredNorm(); }
+  double freedom() const { return static_cast<double>(residual_.size() - absorbed_.cols()); }
+
+  /// Columns of a candidate, one per linear unknown, unweighted in its own unit: weighted readings per unit
+  /// of the unknown. `scanned`: values of the other unknowns, in their order.
+  Eigen::MatrixXd columns(const effects::Candidate& candidate, const std::vector<double>& scanned) const;
+
+  /// Runs of the fit rows for leave-out tests: one index per fit observation. If there is only one
+  /// run, blocks of successive rows.
+  const std::vector<int>& blocks() const { return block_; }
+  /// The same with every run divided into parts that are held out in turn.
+  std::vector<int> parts_of_runs() const;
+
+  /// Variance of the error that readings of one kind at one pose share, divided by the variance of
+  /// their differences (one-way analysis of variance, Searle 1992, 3.6). 0 if no pose was read
+  /// more than once, or if the ratio is not significant. `residual`: beside the model and the
+  /// orthonormal columns `fitted`.
+  double shared_pose_error(const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted) const;
+  /// From this call on, readings at one pose share an error of `share` times their own variance
+  /// (generalised least squares). It weights the residual, the columns and the part that the model
+  /// absorbs.
+  void weigh_poses(double share);
+  /// From this call on, the readings' errors are correlated by this model (generalised least
+  /// squares). It whitens the residual, the columns and the part that the model absorbs.
+  void assume(const fit::NoiseModel& noise);
+  const fit::NoiseModel& noise() const { return noise_; }
+  /// log det of the covariance of the readings under that model.
+  double log_determinant() const { return log_determinant_; }
+  /// Correlation of the readings' errors beside the model and columns from `raw_columns`. `given`:
+  /// steps that are assumed, with the heights that they have beside all that.
+  fit::NoiseModel estimate(const Eigen::MatrixXd& raw, std::vector<fit::NoiseStep> given = {}) const;
+  const fit::NoiseLayout& layout() const { return layout_; }
+  /// Sum of squares of the weighted residual beside the model and such columns, without whitening.
+  double left_in_full(const Eigen::MatrixXd& raw) const;
+  /// Columns of a candidate before any whitening.
+  Eigen::MatrixXd raw_columns(const effects::Candidate& candidate, const std::vector<double>& scanned) const;
+  /// Before any whitening: a column for each kind of reading, the influence of one common offset.
+  Eigen::MatrixXd offset_columns() const;
+  /// The noise model for the rows of the file, if only every k-th row was used here.
+  fit::NoiseModel noise_of_file() const;
+  /// Applies that whitening to columns over the fit observations.
+  void whiten(Eigen::MatrixXd& columns) const;
+
+  /// Range of an axis over the fit rows, and the mean step between different values.
+  struct Range {
+    double low = 0, high = 0, step = 0;
+    bool even = true;  // the steps are multiples of one step, or nearly so
+  };
+  Range range_of(std::size_t axis) const;
+  /// Positions at which an axis was read, increasing. Positions within `apart` of each other count
+  /// once. sense +1 or -1: of the rows with that approach direction, 0: of all.
+  std::vector<double> places_read(std::size_t axis, int sense, double apart) const;
+  /// Approach direction of a row: as recorded, else from the rows before. 0 if it is unknown.
+  int sense_of(std::size_t axis, std::size_t row) const;
+  /// Extent of the points that were read, mm; 0 if no lengths were read.
+  double reach_mm() const { return reach_mm_; }
+  Range time_range() const;
+
+ private:
+  void take_inputs();
+  void respond();
+  void silence_rounding();
+  void find_reach(const Eigen::VectorXd& predicted);
+  void absorb();
+  void share_poses(Eigen::MatrixXd& columns) const;
+  void split_blocks();
+  /// Index of the part with which a row may be held out: its block, or its run if there are no
+  /// blocks.
+  std::size_t block_of(std::size_t row) const {
+    return measurement_.states.of(measurement_.states.block, row);
+  }
+  /// Fit observations of one kind at one position, in any run, if there are two or more.
+  std::vector<std::vector<Eigen::Index>> readings_at_one_pose() const;
+
+  DiagnoseThresholds thresholds_;
+  model::Machine machine_;
+  model::Measurement measurement_;
+  std::size_t declared_ = 0;  // inputs of the user's machine; logged columns follow them
+  std::vector<effects::DofPlace> places_;
+  std::vector<std::size_t> observation_, rows_;  // of the fit observations
+  Eigen::MatrixXd response_, absorbed_;
+  Eigen::VectorXd weight_, residual_;
+  std::vector<int> block_;
+  std::vector<model::Column> position_;
+  std::vector<std::vector<Eigen::Index>> poses_;  // observations that share an error
+  std::vector<int> place_;                        // of each row of the measurement
+  double pose_share_ = 0;
+  bool noise_known_ = false, with_u_ = false;
+  double stride_ = 1;  // of the rows that were kept
+  fit::NoiseLayout layout_;
+  fit::NoiseModel noise_;
+  double log_determinant_ = 0, reach_mm_ = 0;
+  Eigen::VectorXd raw_residual_;
+  Eigen::MatrixXd raw_absorbed_;
+};
+
+/// Computes the columns of one candidate after the other (Evidence::columns) on one copy of the
+/// machine. Use one object per thread. tool.
+class ColumnMaker {
+ public:
+  explicit ColumnMaker(const Evidence& evidence);
+  Eigen::MatrixXd raw(const effects::Candidate& candidate, const std::vector<double>& scanned);
+  /// The same, whitened.
+  Eigen::MatrixXd columns(const effects::Candidate& candidate, const std::vector<double>& scanned);
+
+ private:
+  const Evidence& evidence_;
+  model::Machine scratch_;
+  std::size_t own_statics_;
+};
+
+}  // namespace vernier::diagnose

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/diagnose/propose/periods.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "tools/maths/golden.h"
+
+namespace vernier::diagnose {
+namespace {
+
+using Index = Eigen::Index;
+constexpr double kTurn = 2 * std::numbers::pi;
+
+double position(const Evidence& evidence, std::size_t axis, std::size_t reading) {
+  return evidence.position(axis)[static_cast<Index>(evidence.rows()[reading])];
+}
+
+/// The different positions of an axis, and sums of columns over the readings at each.
+struct Positions {
+  Eigen::ArrayXd at;
+  Eigen::MatrixXd sum;
+};
+
+Positions by_position(const Evidence& evidence, std::size_t axis, const Eigen::MatrixXd& columns) {
+  std::map<double, Index> index;
+  for (std::size_t i = 0; i < evidence.rows().size(); ++i) index.emplace(position(evidence, axis, i), 0);
+  Positions result{Eigen::ArrayXd(static_cast<Index>(index.size())),
+                   Eigen::MatrixXd::Zero(static_cast<Index>(index.size()), columns.cols())};
+  Index next = 0;
+  for (auto& [value, at] : index) {
+    at = next++;
+    result.at[at] = value;
+  }
+  for (std::size_t i = 0; i < evidence.rows().size(); ++i)
+    result.sum.row(index[position(evidence, axis, i)]) += columns.row(static_cast<Index>(i));
+  return result;
+}
+
+/// |sum over the positions of column * exp(2 pi i f q)|^2 at one frequency.
+double power_at(const Positions& positions, Index column, double frequency) {
+  const Eigen::ArrayXd phase = kTurn * frequency * positions.at;
+  const Eigen::ArrayXd value = positions.sum.col(column).array();
+  return std::pow((value * phase.cos()).sum(), 2) + std::pow((value * phase.sin()).sum(), 2);
+}
+
+/// The same for every column (one row each) at frequencies first + k * step. Each sine follows
+/// from the previous one by a rotation. That loses one digit in a thousand steps.
+Eigen::MatrixXd powers(const Positions& positions, double first, double step, Index count) {
+  constexpr Index kBlock = 32;  // frequencies in one product
+  const Index size = positions.at.size();
+  const Eigen::ArrayXd turn_cos = (kTurn * step * positions.at).cos(),
+                       turn_sin = (kTurn * step * positions.at).sin();
+  Eigen::ArrayXd now_cos = (kTurn * first * positions.at).cos(),
+                 now_sin = (kTurn * first * positions.at).sin();
+  Eigen::MatrixXd cosines(size, kBlock), sines(size, kBlock), result(positions.sum.cols(), count);
+  for (Index at = 0; at < count; at += kBlock) {
+    const Index width = std::min(kBlock, count - at);
+    for (Index k = 0; k < width; ++k) {
+      cosines.col(k) = now_cos;
+      sines.col(k) = now_sin;
+      const Eigen::ArrayXd next = now_cos * turn_cos - now_sin * turn_sin;
+      now_sin = now_sin * turn_cos + now_cos * turn_sin;
+      now_cos = next;
+    }
+    const Eigen::MatrixXd in = positions.sum.transpose() * cosines.leftCols(width),
+                          quadrature = positions.sum.transpose() * sines.leftCols(width);
+    result.middleCols(at, width) = in.cwiseAbs2() + quadrature.cwiseAbs2();
+  }
+  return result;
+}
+
+/// The frequency between two others where the power is largest.
+double peak_between(const Positions& positions, Index column, double low, double high) {
+  constexpr int kSections = 12;  // of a golden search between two frequencies
+  return maths::golden_peak([&](double frequency) { return power_at(positions, column, frequency); }, low,
+                            high, kSections)
+      .at;
+}
+
+/// Returns the positions of an axis, without repeats. Positions that the shortest searched wave
+/// does not distinguish count once, however often they were read. Each has weight 1.
+Positions stations(const Evidence& evidence, std::size_t axis, double length, int sense = 0) {
+  const double apart = 1 / (4 * evidence.thresholds().fine.most_periods);
+  const std::vector<double> kept = evidence.places_read(axis, sense, apart * length);
+  const auto count = static_cast<Index>(kept.size());
+  return {Eigen::Map<const Eigen::ArrayXd>(kept.data(), count), Eigen::MatrixXd::Ones(count, 1)};
+}
+
+double most_frequency(const Positions& positions, double length, const FinePeriodThresholds& limits) {
+  return std::min(limits.most_periods, limits.per_position * static_cast<double>(positions.at.size())) /
+         length;
+}
+
+/// Returns peaks of a row of powers for refinement: the `most` highest ones, and the slowest of
+/// those within `margin` of the highest.
+std::vector<Index> best_peaks(const Eigen::MatrixXd& power, Index row, double least, double margin,
+                              std::size_t most) {
+  std::vector<Index> peaks;
+  for (Index k = 1; k + 1 < power.cols(); ++k)
+    if (power(row, k) > least && power(row, k) >= power(row, k - 1) && power(row, k) > power(row, k + 1))
+      peaks.push_back(k);
+  if (peaks.size() <= most) return peaks;
+  std::vector<Index> order = peaks;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return power(row, a) > power(row, b); });
+  const double near = power(row, order[0]) - margin;
+  order.resize(most);
+  const Index slowest =
+      *std::find_if(peaks.begin(), peaks.end(), [&](Index k) { return power(row, k) >= near; });
+  if (std::find(order.begin(), order.end(), slowest) == order.end()) order.push_back(slowest);
+  return order;
+}
+
+}  // namespace
+
+std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis, double most) {
+  constexpr double kPerWindow = 5, kFirst = 1.5;  // tested frequencies for each that the range distinguishes
+  const double partly = evidence.thresholds().fine.alias_partly;
+  const Evidence::Range range = evidence.range_of(axis);
+  const double length = range.high - range.low;
+  std::vector<double> found;
+  if (length <= 0) return found;
+  const Positions positions = stations(evidence, axis, length);
+  const double step = 1 / (kPerWindow * length), first = kFirst / length;
+  const auto count = static_cast<Index>(std::ceil((most - first) / step)) + 2;
+  if (count < 3) return found;
+  const Eigen::MatrixXd window = powers(positions, first, step, count);
+  const double all = std::pow(positions.sum.sum(), 2);
+  for (Index k = 1; k + 1 < count; ++k) {
+    // Between two of the steps a peak keeps nine tenths.
+    if (window(0, k) < partly * partly * all || window(0, k) < window(0, k - 1) ||
+        window(0, k) < window(0, k + 1))
+      continue;
+    const double middle = first + static_cast<double>(k) * step;
+    const double peak = peak_between(positions, 0, middle - step, middle + step);
+    if (power_at(positions, 0, peak) > partly * all) found.push_back(peak);
+  }
+  return found;
+}
+
+namespace {
+
+/// The same for given positions.
+double shortest_of(const Evidence& evidence, const Positions& positions, double length) {
+  // Waves that are the same at two positions differ by a frequency at which all positions have the
+  // same phase.
+  constexpr double kPerWindow = 5;  // tested frequencies for each that the range distinguishes
+  const FinePeriodThresholds& limits = evidence.thresholds().fine;
+  const double steps_per_alias = evidence.thresholds().candidates.steps_per_period;
+  const double step = 1 / (kPerWindow * length), first = 1.5 / length;
+  const auto count = static_cast<Index>(
+      std::ceil((steps_per_alias * most_frequency(positions, length, limits) - first) / step));
+  if (count < 3) return 0;
+  const Eigen::MatrixXd window = powers(positions, first, step, count);
+  const double all = std::pow(positions.sum.sum(), 2);
+  for (Index k = 1; k + 1 < count; ++k) {
+    if (window(0, k) < limits.alias_near * all || window(0, k) < window(0, k - 1) ||
+        window(0, k) < window(0, k + 1))
+      continue;
+    const double middle = first + static_cast<double>(k) * step;
+    const double peak = peak_between(positions, 0, middle - step, middle + step);
+    if (power_at(positions, 0, peak) > limits.alias_same * all) return steps_per_alias / peak;
+  }
+  return 0;
+}
+
+}  // namespace
+
+double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
+  const Evidence::Range range = evidence.range_of(axis);
+  const double length = range.high - range.low;
+  if (length <= 0) return 0;
+  const Positions all = stations(evidence, axis, length);
+  const double together = shortest_of(evidence, all, length);
+  // If the stops of the two approach directions are at different positions, together they form a
+  // finer grid. An effect that only this finer grid shows is the difference between the
+  // directions.
+  double apart = 1e300;
+  for (const int sense : {-1, 1}) {
+    const Positions one = stations(evidence, axis, length, sense);
+    std::size_t rows = 0;
+    for (const std::size_t row : evidence.rows()) rows += evidence.sense_of(axis, row) == sense ? 1 : 0;
+    const CandidateThresholds& limits = evidence.thresholds().candidates;
+    if (one.at.size() < static_cast<Index>(limits.comb_positions) ||
+        static_cast<double>(rows) < limits.comb_share * static_cast<double>(evidence.rows().size()))
+      return together;
+    apart = std::min(apart, shortest_of(evidence, one, length));
+  }
+  return std::max(together, apart);
+}
+
+FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::vector<double>& grid,
+                         double shortest) {
+  const FinePeriodThresholds& limits = evidence.thresholds().fine;
+  if (grid.empty()) return {};
+  const Evidence::Range range = evidence.range_of(axis);
+  FinePeriods fine;
+  fine.axis = axis;
+  fine.length = range.high - range.low;
+  fine.step = 1 / (limits.per_range * fine.length);
+  // The two lists overlap, so that a peak between them is in this list.
+  fine.slowest = 1 / grid.front() - 3 * fine.step;
+  fine.fastest = most_frequency(stations(evidence, axis, fine.length), fine.length, limits);
+  if (shortest > 0) fine.fastest = std::min(fine.fastest, 1 / shortest);
+  return fine.fastest > fine.slowest + limits.fewest * fine.step ? fine : FinePeriods{};
+}
+
+Eigen::VectorXd carrier_of(const Evidence& evidence, const effects::Candidate& candidate,
+                           const FinePeriods& fine) {
+  constexpr double kSame = 1e-9;  // relative: the same period except for rounding
+  Eigen::VectorXd carrier;
+  for (const double frequency : {fine.slowest, fine.fastest}) {
+    const Eigen::MatrixXd columns = evidence.columns(candidate, {1 / frequency});
+    if (columns.cols() != 2) return {};
+    Eigen::ArrayXd phase(columns.rows());
+    for (Index i = 0; i < phase.size(); ++i)
+      phase[i] = kTurn * frequency * position(evidence, fine.axis, static_cast<std::size_t>(i));
+    if (carrier.size() == 0)
+      carrier = columns.col(0).array() * phase.sin() + columns.col(1).array() * phase.cos();
+    const double allowed = kSame * carrier.norm();
+    if (!((columns.col(0).array() - carrier.array() * phase.sin()).matrix().norm() <= allowed) ||
+        !((columns.col(1).array() - carrier.array() * phase.cos()).matrix().norm() <= allowed))
+      return {};
+  }
+  return carrier;
+}
+
+std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
+                                                   const std::vector<const FinePeriods*>& of_axis,
+                                                   const Eigen::VectorXd& residual) {
+  std::vector<std::vector<double>> found(of_axis.size());
+  if (of_axis.empty()) return found;
+  const FinePeriods& fine = *of_axis.front();
+  // The columns are weighted like the residual. For a symmetric weighting, weighting the residual
+  // once more is equivalent.
+  Eigen::MatrixXd weighed = residual;
+  evidence.whiten(weighed);
+  Eigen::MatrixXd products(residual.size(), static_cast<Index>(of_axis.size()));
+  for (std::size_t i = 0; i < of_axis.size(); ++i)
+    products.col(static_cast<Index>(i)) = of_axis[i]->carrier.cwiseProduct(weighed.col(0));
+  const Positions positions = by_position(evidence, fine.axis, products);
+  const auto count = static_cast<Index>(std::floor((fine.fastest - fine.slowest) / fine.step)) + 1;
+  const Eigen::MatrixXd power = powers(positions, fine.slowest, fine.step, count);
+  // Power at which the wave explains as much as the highest of so many waves explains of noise.
+  const double variance = residual.squaredNorm() / std::max(1.0, evidence.freedom());
+  const FinePeriodThresholds& limits = evidence.thresholds().fine;
+  for (std::size_t i = 0; i < of_axis.size(); ++i) {
+    const double unit = variance * of_axis[i]->carrier.squaredNorm() / 2;
+    const double least = unit * 2 * std::log(fine.tries());
+    for (const Index k :
+         best_peaks(power, static_cast<Index>(i), least, unit * limits.nearly_as_well, limits.peaks)) {
+      const double middle = fine.slowest + static_cast<double>(k) * fine.step;
+      found[i].push_back(
+          1 / peak_between(positions, static_cast<Index>(i), middle - fine.step, middle + fine.step));
+    }
+  }
+  return found;
+}
+
+}  // namespace vernier::diagnose

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/diagnose/propose/pool.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vernier::diagnose {
+
+namespace {
+
+/// Rank among forms that fit alike, simplest first: at the axis' own degree of freedom, then
+/// across the axis, then anywhere. The steps are far below any evidence.
+double rank_of(const effects::Candidate& candidate, double step) {
+  switch (candidate.choice.form->place) {
+    case effects::PlaceRule::kOwn:
+      return 0;
+    case effects::PlaceRule::kPair:
+    case effects::PlaceRule::kEachAxis:
+      return step;
+    case effects::PlaceRule::kCross:
+    case effects::PlaceRule::kNormal:
+    case effects::PlaceRule::kBase:
+    case effects::PlaceRule::kJoint:
+      return 2 * step;
+    case effects::PlaceRule::kTurn:
+    case effects::PlaceRule::kBaseTurn:
+    case effects::PlaceRule::kLength:
+    case effects::PlaceRule::kBend:
+      return 3 * step;
+    default:
+      return 4 * step;
+  }
+}
+
+/// Is the first unknown that is scanned a period?
+bool has_period(const effects::Candidate& candidate) {
+  auto scanned = effects::scanned_unknowns(candidate);
+  return !scanned.empty() && (*scanned.begin()).kind == effects::UnknownKind::kPeriod;
+}
+
+/// The extension of an axis bends the structure that carries it. A sag of a part that it carries,
+/// or of the other branch, has no load that changes with it.
+bool carries_not(const effects::AxisPlaces& axes, const effects::Choice& choice) {
+  if (choice.form->place != effects::PlaceRule::kSag || !choice.axis || !choice.place) return false;
+  const std::optional<effects::DofPlace>& own = axes.own(*choice.axis);
+  return own && (choice.place->workpiece != own->workpiece || choice.place->transform > own->transform);
+}
+
+}  // namespace
+
+std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
+                                                 const effects::Candidate& candidate) {
+  std::set<std::pair<int, std::size_t>> drivers;
+  model::Machine scratch = machine;
+  effects::add_unknowns(scratch, candidate, {});
+  for (const effects::CandidateTerm& term : candidate.terms)
+    model::walk(*model::parse_expression_for(scratch, term.text), [&](const model::Expr& node) {
+      if (node.op == model::Op::kRunIs) drivers.insert({-1, 0});
+      if (node.op != model::Op::kSymbol) return;
+      const model::SymbolKind kind = node.symbol.kind;
+      if (kind == model::SymbolKind::kStatic || kind == model::SymbolKind::kAxis) return;
+      drivers.insert({static_cast<int>(kind), node.symbol.index});
+    });
+  return drivers;
+}
+
+Pool::Pool(const Evidence& evidence, const Scanner& scanner)
+    : evidence_(evidence),
+      thresholds_(evidence.thresholds().pool),
+      scanner_(scanner),
+      axes_(evidence.machine()) {}
+
+const effects::Candidate& Pool::candidate(std::size_t i) const {
+  return scanner_.candidates()[items_[i].scored.candidate].candidate;
+}
+
+double Pool::penalty(const Scored& scored) const {
+  const ScannedCandidate& item = scanner_.candidates()[scored.candidate];
+  double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) +
+                rank_of(item.candidate, thresholds_.step_of_place);
+  // A jump between runs can follow any slow drift. It is named only if no continuous effect fits
+  // as well.
+  const effects::Choice& choice = item.candidate.choice;
+  // A term without a name is rarer than the causes with a name.
+  const bool nameless = choice.effect == &effects::custom_effect();
+  if (choice.effect->rare || choice.form->rare || !choice.runs.empty() || nameless) cost += thresholds_.rare;
+  if (carries_not(axes_, choice)) cost += 2 * thresholds_.rare;
+  // A scanned unknown counts as many tests as the grid has distinct values, if that exceeds the
+  // penalty of a coefficient.
+  for (std::size_t i = 0; i < item.grid.size(); ++i) {
+    double tries = static_cast<double>(item.grid[i].size()) / thresholds_.points_per_try;
+    if (item.fine.holds(scored.scanned.at(i))) tries += item.fine.tries();
+    cost += std::max(0.0, 2 * std::log(tries) - std::log(static_cast<double>(evidence_.rows().size())));
+  }
+  return cost;
+}
+
+/// One key per effect and location. A second period at the same location has another key.
+std::string Pool::place_key(const Scored& scored) const {
+  const effects::Candidate& candidate = scanner_.candidates()[scored.candidate].candidate;
+  const effects::Choice& c = candidate.choice;
+  std::string key = c.effect->id;
+  if (c.axis) key += fmt::format(" a{}", *c.axis);
+  if (c.axis2) key += fmt::format(" b{}", *c.axis2);
+  for (const std::string& input : c.inputs) key += " " + input;
+  if (c.place) key += fmt::format(" {}.{}.{}", c.place->workpiece, c.place->transform, c.place->dof);
+  if (has_period(candidate))
+    key += fmt::format(" p{}", std::lround(thresholds_.periods_per_e * std::log(scored.scanned[0])));
+  key += c.runs.size() == 1 ? " " + c.runs[0] : "";
+  if (c.effect == &effects::custom_effect()) key += " " + c.term;
+  return key;
+}
+
+void Pool::add(const std::vector<Scored>& scored, const Eigen::MatrixXd& beside) {
+  std::vector<std::size_t> order(scored.size());
+  const double noise = thresholds_.noise_share * evidence_.chi_square() / evidence_.freedom();
+  const double scale = evidence_.noise_known() ? std::max(1.0, noise) : noise;
+  std::vector<double> value(scored.size());
+  for (std::size_t i = 0; i < scored.size(); ++i) {
+    order[i] = i;
+    value[i] =
+        scored[i].gain / scale -
+        static_cast<double>(scored[i].unknowns) * std::log(static_cast<double>(evidence_.rows().size())) -
+        penalty(scored[i]);
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
+  std::map<std::string, std::size_t> of_effect;
+  std::size_t taken = 0;
+  for (const std::size_t i : order) {
+    std::size_t& count = of_effect[scanner_.candidates()[scored[i].candidate].candidate.choice.effect->id];
+    if (taken >= thresholds_.most_at_once && count >= thresholds_.of_each_effect) continue;
+    ++count;
+    ++taken;
+    Item item;
+    item.scored = scored[i];
+    if (value[i] > thresholds_.refined_above) scanner_.refine(item.scored, beside);
+    const std::string key =
+        place_key(item.scored) + " " +
+        scanner_.candidates()[item.scored.candidate].candidate.choice.form->label +
+        (item.scored.scanned.empty() ? "" : fmt::format(" {:.3g}", item.scored.scanned[0]));
+    if (!keys_.insert(key).second) continue;
+    item.columns = scanner_.projected(item.scored, &item.kept);
+    if (item.columns.cols() > 0) items_.push_back(std::move(item));
+  }
+}
+
+Eigen::MatrixXd Pool::columns(const std::vector<std::size_t>& items) const {
+  Eigen::Index count = 0;
+  for (const std::size_t i : items) count += items_[i].columns.cols();
+  Eigen::MatrixXd all(evidence_.residual().size(), count);
+  Eigen::Index at = 0;
+  for (const std::size_t i : items) {
+    all.middleCols(at, items_[i].columns.cols()) = items_[i].columns;
+    at += items_[i].columns.cols();
+  }
+  return all;
+}
+
+SelectionProblem Pool::problem(std::vector<std::size_t>& items) const {
+  items.clear();
+  for (std::size_t i = 0; i < items_.size(); ++i)
+    if (!items_[i].banned) items.push_back(i);
+  return problem_of(items);
+}
+
+SelectionProblem Pool::problem_of(const std::vector<std::size_t>& items) const {
+  SelectionProblem p;
+  Eigen::MatrixXd all = columns(items);
+  std::map<std::string, std::size_t> causes;
+  Eigen::Index at = 0;
+  for (const std::size_t i : items) {
+    const Item& item = items_[i];
+    SelectionEntry entry;
+    entry.first = at;
+    entry.count = item.columns.cols();
+    entry.penalty = penalty(item.scored);
+    entry.scanned = item.scored.scanned.size();
+    entry.cause = causes.emplace(place_key(item.scored), causes.size()).first->second;
+    at += entry.count;
+    p.entries.push_back(entry);
+  }
+  // Unit columns keep the pivots comparable.
+  for (Eigen::Index j = 0; j < all.cols(); ++j) all.col(j).normalize();
+  p.gram = all.transpose() * all;
+  p.moment = all.transpose() * evidence_.residual();
+  p.chi_square = evidence_.chi_square();
+  p.observations = static_cast<double>(evidence_.residual().size());
+  p.freedom = evidence_.freedom();
+  p.noise_known = evidence_.noise_known();
+  p.least_pivot = thresholds_.least_pivot;
+  return p;
+}
+
+bool Pool::same_cause(std::size_t a, std::size_t b) const {
+  const effects::Choice &x = candidate(a).choice, &y = candidate(b).choice;
+  if (is_custom(a) || is_custom(b)) return x.effect == y.effect && x.term == y.term;
+  const bool one_cause =
+      x.effect == y.effect || (!x.effect->cause.empty() && x.effect->cause == y.effect->cause);
+  return one_cause && x.axis == y.axis && x.axis2 == y.axis2 && x.inputs == y.inputs;
+}
+
+bool Pool::same_columns(std::size_t a, std::size_t b) const {
+  const Eigen::MatrixXd x = maths::orthonormal(items_[a].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd y = maths::orthonormal(items_[b].columns, 1e-6, nullptr);
+  if (x.cols() != y.cols()) return false;
+  // Squares of the cosines between the two spans. The smallest of them decides.
+  const double common = (x.transpose() * y).squaredNorm();
+  return static_cast<double>(x.cols()) - common < thresholds_.same_share;
+}
+
+double Pool::common_share(std::size_t item, std::size_t other) const {
+  const Eigen::MatrixXd basis = maths::orthonormal(items_[other].columns, 1e-6, nullptr);
+  return (basis.transpose() * items_[item].columns).squaredNorm() / items_[item].columns.squaredNorm();
+}
+
+double Pool::witnesses(std::size_t item) const {
+  const Eigen::VectorXd square = items_[item].columns.rowwise().squaredNorm();
+  return std::pow(square.sum(), 2) / square.squaredNorm();
+}
+
+bool Pool::contains(std::size_t general, std::size_t special) const {
+  const Eigen::MatrixXd x = maths::orthonormal(items_[general].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd y = maths::orthonormal(items_[special].columns, 1e-6, nullptr);
+  const auto unknowns = [&](std::size_t i) {
+    return items_[i].columns.cols() + static_cast<Eigen::Index>(items_[i].scored.scanned.size());
+  };
+  if (unknowns(general) <= unknowns(special) || x.cols() < y.cols()) return false;
+  // Time may follow a jump between runs closely, but it is not a richer form of the same term.
+  const auto mine = drivers_of(evidence_.machine(), candidate(general)),
+             its = drivers_of(evidence_.machine(), candidate(special));
+  if (!std::includes(mine.begin(), mine.end(), its.begin(), its.end())) return false;
+  return static_cast<double>(y.cols()) - (x.transpose() * y).squaredNorm() < thresholds_.held_share;
+}
+
+bool Pool::same_kind(std::size_t a, std::size_t b) const {
+  // Each input is a separate quantity. Speed is one quantity for all axes.
+  const auto kinds = [&](std::size_t i) {
+    std::set<std::pair<int, std::size_t>> found;
+    for (const auto& [kind, index] : drivers_of(evidence_.machine(), candidate(i))) {
+      const bool mere_count = kind == static_cast<int>(model::SymbolKind::kVisit) ||
+                              kind == static_cast<int>(model::SymbolKind::kSince);
+      if (!mere_count) found.insert({kind, kind == static_cast<int>(model::SymbolKind::kInput) ? index : 0});
+    }
+    return found;
+  };
+  return kinds(a) == kinds(b);
+}
+
+}  // namespace vernier::diagnose

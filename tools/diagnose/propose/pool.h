@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/propose/scan.h"
+#include "tools/diagnose/propose/selection.h"
+
+namespace vernier::diagnose {
+
+/// Returns the quantities on which a term depends besides positions and constants: dir of an axis,
+/// an input, t ...
+std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
+                                                 const effects::Candidate& candidate);
+
+/// The best of all candidates. Their columns are stored side by side, so that sets of them can be
+/// compared.
+class Pool {
+ public:
+  struct Item {
+    Scored scored;
+    Eigen::MatrixXd columns;        // after projection on the complement of what the model absorbs
+    std::vector<std::size_t> kept;  // index of the linear unknown of each column
+    bool banned = false;            // failed an acceptance test
+    std::string why_not;
+  };
+
+  Pool(const Evidence& evidence, const Scanner& scanner);
+
+  /// Adds the most promising candidates: those with the largest gain minus penalty, and the best
+  /// of every effect. Scanned values are refined first.
+  void add(const std::vector<Scored>& scored, const Eigen::MatrixXd& beside);
+
+  /// Removes all entries.
+  void clear() {
+    items_.clear();
+    keys_.clear();
+  }
+
+  /// The entries that are not banned, as a problem of selection. `items`: item of each entry.
+  SelectionProblem problem(std::vector<std::size_t>& items) const;
+  /// The same for given items, banned or not.
+  SelectionProblem problem_of(const std::vector<std::size_t>& items) const;
+
+  std::size_t size() const { return items_.size(); }
+  const Item& operator[](std::size_t i) const { return items_[i]; }
+  const effects::Candidate& candidate(std::size_t i) const;
+  void ban(std::size_t i, std::string why) {
+    items_[i].banned = true;
+    items_[i].why_not = std::move(why);
+  }
+
+  /// Columns of several items side by side.
+  Eigen::MatrixXd columns(const std::vector<std::size_t>& items) const;
+  /// A term from the search, without a name in the catalogue.
+  bool is_custom(std::size_t i) const { return candidate(i).choice.effect == &effects::custom_effect(); }
+  /// Share of the squares of an item's columns that lies in the span of another's.
+  double common_share(std::size_t item, std::size_t other) const;
+  /// Effective number of readings that support an item: squared sum over the sum of squares of its
+  /// columns' squares.
+  double witnesses(std::size_t item) const;
+  /// Do two items have the same effect (or the cause that the catalogue names), driving axis and
+  /// inputs? Then they are the same cause.
+  bool same_cause(std::size_t a, std::size_t b) const;
+  /// Do two items span the same columns (all but a thousandth of their squares)?
+  bool same_columns(std::size_t a, std::size_t b) const;
+  /// Does `general` have more unknowns than `special`, depend on all that `special` depends on,
+  /// and contain its columns (all but 2 % of their squares)?
+  bool contains(std::size_t general, std::size_t special) const;
+  /// Do both depend on the same kinds of quantities (positions, count of rows and travel since a
+  /// reversal do not count)? If their columns are the same too, they are two forms of one term.
+  bool same_kind(std::size_t a, std::size_t b) const;
+  /// Penalty of a candidate for the number of tested candidates (twice the logarithm of their
+  /// number).
+  double penalty(const Scored& scored) const;
+
+ private:
+  std::string place_key(const Scored& scored) const;
+
+  const Evidence& evidence_;
+  const PoolThresholds& thresholds_;
+  const Scanner& scanner_;
+  effects::AxisPlaces axes_;
+  std::vector<Item> items_;
+  std::set<std::string> keys_;
+};
+
+}  // namespace vernier::diagnose

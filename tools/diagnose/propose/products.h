@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/propose/enumerate.h"
+
+namespace vernier::diagnose {
+
+/// A product of recorded quantities at one degree of freedom: k*X*(T-20).
+struct Product {
+  effects::DofPlace place;
+  model::ExprPtr term;
+  std::vector<std::string> inputs, units;
+};
+
+/// Searches beyond the catalogue. If `extend` is empty, returns all products of one or two
+/// recorded quantities at every location. Otherwise returns each of `extend` with one additional
+/// factor.
+std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
+                                                 const std::vector<Product>& extend);
+
+}  // namespace vernier::diagnose

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <vector>
+
+#include "tools/diagnose/propose/evidence.h"
+#include "tools/effects/candidate.h"
+#include "tools/effects/gravity.h"
+
+namespace vernier::diagnose {
+
+/// Selects the gravity functions along a chain that become candidates: those that several axes
+/// drive together, few enough to distinguish. Functions of one axis or of a sum of parallel axes
+/// have forms of their own.
+class Pulls {
+ public:
+  explicit Pulls(const Evidence& evidence);
+
+  /// Does a form need such a function?
+  static bool asks(const effects::EffectForm& form);
+  /// Is such a form possible at this location? For a bend, only variants() tries `toward`.
+  bool admits(const effects::EffectForm& form, const effects::DofPlace& place) const;
+  /// Returns a choice with its location, once for every bar and every mass with a distinct
+  /// function.
+  std::vector<effects::Choice> variants(const effects::Choice& choice) const;
+
+ private:
+  bool is_told(const std::optional<effects::Wave>& wave, bool several) const;
+  void with_masses(const effects::Choice& choice, std::vector<effects::Choice>& list) const;
+  Eigen::VectorXd column(const effects::Wave& wave) const;
+
+  const Evidence& evidence_;
+  const model::Machine& machine_;
+  effects::GravityChain gravity_;
+  effects::AxisPlaces axes_;
+};
+
+}  // namespace vernier::diagnose

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "tools/diagnose/propose/thresholds.h"
+
+namespace vernier::diagnose {
+
+/// A group of columns that enter a model together.
+struct SelectionEntry {
+  Eigen::Index first = 0, count = 1;
+  double penalty = 0;       // of the search: twice the logarithm of the number of tested candidates
+  std::size_t scanned = 0;  // unknowns that were found by scanning, in addition to the coefficients
+  std::size_t cause = 0;    // at most one entry of each cause is selected
+};
+
+/// Selects the groups of columns that explain a residual. It needs only columns and residual, both
+/// after projection on the complement of what the model can absorb.
+struct SelectionProblem {
+  Eigen::MatrixXd gram;     // columns^T columns
+  Eigen::VectorXd moment;   // columns^T residual
+  double chi_square = 0;    // residual^T residual, in units of the uncertainty if that is known
+  double observations = 0;  // for the penalty of a coefficient (BIC)
+  double freedom = 0;       // observations - rank of the model
+  bool noise_known = false;
+  double least_pivot = PoolThresholds().least_pivot;  // share of its square that a column keeps beside others
+  std::vector<SelectionEntry> entries;
+};
+
+struct Selection {
+  std::vector<std::size_t> chosen;  // entries, in the order in which they lower the criterion most
+  double criterion = 0;
+  double chi_square = 0;
+};
+
+/// Extended BIC of a set of entries (Schwarz 1978; Chen and Chen 2008). The likelihood uses the
+/// noise at its best value, but never below the given uncertainty. Infinite if the columns are
+/// linearly dependent.
+Selection evaluate_selection(const SelectionProblem& problem, const std::vector<std::size_t>& chosen);
+
+/// Returns the set with the smallest criterion that forward steps, pairs, exchanges and backward
+/// steps find, at most `most` entries. tool.
+Selection select(const SelectionProblem& problem, std::size_t most);
+
+/// Coefficients of the columns of a set, in its order.
+Eigen::VectorXd coefficients(const SelectionProblem& problem, const std::vector<std::size_t>& chosen);
+
+}  // namespace vernier::diagnose

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "tools/fit/coverage/readings_beside_set_up.h"
+#include "tools/model/fit_record.h"
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier::fit {
+
+/// Finds other terms that explain the fit rows as well as terms of the fitted model, beside a free
+/// set-up. "As well" means within three standard deviations in all. Two kinds are searched:
+/// - for a cyclic error along an axis (a sine or cosine of it with a free static): one with a
+/// longer period in the same degree of freedom, if the measured positions are on a grid or nearly
+/// so (spectral window above 0.7);
+/// - for a rotation (an angle with a free static): a shift in the three lengths of the same
+/// transform, if the rows read no rotation. With one tool and no axis behind the transform both
+/// are the same. tool.
+std::vector<model::FitRecord::Alternative> find_alternatives(const ReadingsBesideSetUp& readings);
+
+/// Returns the model's term minus its alternative at each state, as a motion of the tool point: 3
+/// N, mm. Zero if the machine has no such transform. machine: without BaseShifts. tool.
+Eigen::VectorXd alternative_column(const model::Machine& machine,
+                                   const model::FitRecord::Alternative& alternative,
+                                   const model::States& states);
+
+}  // namespace vernier::fit

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include "tools/fit/least_squares/levenberg.h"
+#include "tools/model/chain/linearizer.h"
+#include "tools/model/chain/prediction.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/model/parameters.h"
+
+namespace vernier::fit {
+
+/// A machine, rows and free parameters as a least-squares problem in the parameters' own units.
+class FitProblem {
+ public:
+  /// Keeps references to `measurement` and `parameters`. Check rows have weight 0.
+  FitProblem(const model::Machine& machine, const model::Measurement& measurement,
+             const model::ParameterSet& parameters);
+
+  /// Holds parameters near `centre`: (value - centre)^T precision (value - centre) is added to the
+  /// cost.
+  void set_priors(const Eigen::SparseMatrix<double>& precision, Eigen::VectorXd centre);
+  void clear_priors() { prior_centre_.resize(0); }
+
+  /// Returns the sum of squared weighted residuals and priors; infinity if the model is undefined
+  /// at this point.
+  double cost(const Eigen::VectorXd& point) const;
+  /// Throws InputError if the model is undefined.
+  NormalEquations equations(const Eigen::VectorXd& point) const;
+  /// Returns cost and gradient without the normal matrix. The cost is infinity if the model is
+  /// undefined.
+  Slope slope(const Eigen::VectorXd& point) const;
+  /// Returns J^T W^2 p''. p'' is the second derivative of the predictions along `step`. It needs
+  /// one more evaluation at a part of the step. Zero if the model is undefined there.
+  Eigen::VectorXd bend(const Eigen::VectorXd& point, const Eigen::VectorXd& step) const;
+  /// Returns the weighted residuals (measured - predicted) / u and, if requested, the weighted
+  /// Jacobian of `predicted`.
+  Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, model::SparseRows* jacobian) const;
+
+  const Eigen::SparseMatrix<double>& prior_precision() const { return prior_precision_; }
+  const Eigen::VectorXd& prior_centre() const { return prior_centre_; }  // empty: no priors
+  const model::Measurement& measurement() const { return measurement_; }
+  const Eigen::VectorXd& weights() const { return weights_; }  // of the readings
+  /// Multiplies the weight of every reading by its share.
+  void weigh(const Eigen::VectorXd& shares) { weights_ = weights_.cwiseProduct(shares); }
+
+ private:
+  model::Machine at(const Eigen::VectorXd& point) const;
+  double prior_cost(const Eigen::VectorXd& point) const;
+
+  model::Machine machine_;
+  const model::Measurement& measurement_;
+  const model::ParameterSet& parameters_;
+  model::Linearizer linearizer_;
+  Eigen::VectorXd weights_, measured_;
+  Eigen::SparseMatrix<double> prior_precision_;
+  Eigen::VectorXd prior_centre_;
+};
+
+}  // namespace vernier::fit

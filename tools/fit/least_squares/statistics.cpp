@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fit/least_squares/statistics.h"
+
+#include <cmath>
+#include <map>
+
+#include "tools/maths/factors.h"
+#include "tools/model/chain/prediction.h"
+
+namespace vernier::fit {
+
+std::vector<double> row_conditions(const model::Measurement& m, std::size_t row) {
+  const auto at = static_cast<Eigen::Index>(row);
+  const model::States& s = m.states;
+  std::vector<double> key;
+  for (std::size_t i = 0; i < s.axis.size(); ++i) key.push_back(model::commanded(m, i, at));
+  for (const auto* columns : {&s.velocity, &s.acceleration, &s.direction, &s.since, &s.input})
+    for (const model::Column& column : *columns) key.push_back(column[at]);
+  for (const model::Column& normal : s.normal) key.push_back(normal[at]);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    key.push_back(std::isnan(m.centre(k, at)) ? 0 : m.centre(k, at));
+    key.push_back(std::isnan(m.nominal_point(k, at)) ? 0 : m.nominal_point(k, at));
+  }
+  key.push_back(s.feed[at]);
+  key.push_back(s.curvature[at]);
+  for (const model::CandidateInput& candidate : m.candidates)
+    key.push_back(std::isnan(candidate.value[at]) ? model::kLongWay : candidate.value[at]);
+  return key;
+}
+
+namespace {
+
+/// Fewer pooled degrees of freedom than this give too little information about the noise (its own
+/// uncertainty would exceed 30 %).
+constexpr std::size_t kLeastRepeatFreedom = 5;
+
+/// Readings at one pose are repeats if the corrections agree to this value, mm or deg. It is below
+/// the resolution of any instrument here.
+constexpr double kCorrectionStep = 1e-4;
+
+struct RepeatPool {
+  double sum = 0, largest = 0;
+  std::size_t count = 0;
+  void add(double value) {
+    sum += value * value;
+    largest = std::max(largest, std::abs(value));
+    ++count;
+  }
+  std::optional<double> rms() const {
+    if (count == 0) return std::nullopt;
+    return std::sqrt(sum / static_cast<double>(count));
+  }
+};
+
+std::optional<double> repeat_noise_um(const model::Measurement& m) {
+  struct PoseReadings {
+    double sum = 0, squares = 0;
+    std::size_t count = 0;
+  };
+  std::map<std::pair<std::vector<double>, int>, PoseReadings> groups;
+  for (const model::Observation& o : m.observations) {
+    if (m.check[o.row] != 0 || model::is_rotation(o.kind)) continue;
+    std::vector<double> key = row_conditions(m, o.row);
+    for (const model::Column& correction : m.correction)
+      key.push_back(std::round(correction[static_cast<Eigen::Index>(o.row)] / kCorrectionStep));
+    PoseReadings& group = groups[{std::move(key), static_cast<int>(o.kind)}];
+    const double value = o.value * maths::kUmPerMm;
+    // A running mean loses fewer digits than sums of squares about the group's first value.
+    ++group.count;
+    const double step = value - group.sum;
+    group.sum += step / static_cast<double>(group.count);
+    group.squares += step * (value - group.sum);
+  }
+  double squares = 0;
+  std::size_t freedom = 0;
+  for (const auto& [key, group] : groups) {
+    squares += group.squares;
+    freedom += group.count - 1;
+  }
+  if (freedom < kLeastRepeatFreedom) return std::nullopt;
+  return std::sqrt(squares / static_cast<double>(freedom));
+}
+
+}  // namespace
+
+Eigen::VectorXd residuals(const model::Machine& machine, const model::Measurement& measurement) {
+  const Eigen::VectorXd predicted = model::predict(machine, measurement);
+  Eigen::VectorXd result(predicted.size());
+  for (std::size_t i = 0; i < measurement.observations.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    result[at] = measurement.observations[i].value - predicted[at];
+  }
+  return result;
+}
+
+RoleStatistics role_statistics(const model::Measurement& m, const Eigen::VectorXd& residual, bool check) {
+  RepeatPool lengths, rotations;
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const model::Observation& o = m.observations[i];
+    if ((m.check[o.row] != 0) != check) continue;
+    const double value = residual[static_cast<Eigen::Index>(i)];
+    if (model::is_rotation(o.kind))
+      rotations.add(value * maths::kUradPerDeg);
+    else
+      lengths.add(value * maths::kUmPerMm);
+  }
+  RoleStatistics result;
+  result.count = lengths.count + rotations.count;
+  result.rms_um = lengths.rms();
+  result.rms_urad = rotations.rms();
+  if (lengths.count > 0) result.max_um = lengths.largest;
+  if (rotations.count > 0) result.max_urad = rotations.largest;
+  return result;
+}
+
+bool has_uncertainty(const model::Measurement& m) {
+  bool any = false;
+  for (const model::Observation& o : m.observations) {
+    if (m.check[o.row] != 0) continue;
+    if (model::uncertainty_of(m, o) <= 0) return false;
+    any = true;
+  }
+  return any;
+}
+
+std::optional<double> noise_um(const model::Measurement& m) {
+  if (!has_uncertainty(m)) return repeat_noise_um(m);
+  RepeatPool pool;
+  for (const model::Observation& o : m.observations)
+    if (m.check[o.row] == 0 && !model::is_rotation(o.kind))
+      pool.add(model::uncertainty_of(m, o) * maths::kUmPerMm);
+  return pool.rms();
+}
+
+NoiseUnit noise_unit(const model::Measurement& m) {
+  const bool with_u = has_uncertainty(m);
+  RepeatPool lengths, angles;
+  for (const model::Observation& o : m.observations)
+    if (m.check[o.row] == 0) {
+      const bool rotation = model::is_rotation(o.kind);
+      const double u = with_u ? model::uncertainty_of(m, o) : 1;
+      (rotation ? angles : lengths).add(u * (rotation ? maths::kArcsecPerDeg : maths::kUmPerMm));
+    }
+  NoiseUnit unit;
+  unit.um = lengths.rms().value_or(unit.um);
+  unit.arcsec = angles.rms().value_or(unit.arcsec);
+  unit.angles_only = angles.rms() && !lengths.rms();
+  return unit;
+}
+
+Eigen::VectorXd fit_weights(const model::Measurement& m) {
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(m.observations.size()));
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const std::size_t row = m.observations[i].row;
+    const double u = model::uncertainty_of(m, m.observations[i]);
+    weights[static_cast<Eigen::Index>(i)] = m.check[row] != 0 ? 0 : u > 0 ? 1 / u : 1;
+  }
+  return weights;
+}
+
+}  // namespace vernier::fit

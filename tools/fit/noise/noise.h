@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tools/fit/noise/noise_layout.h"
+
+namespace vernier::fit {
+
+/// A step: from this row on, all readings of one kind have the same additional error. Or, if the
+/// measured object was set up anew, the error is that component of a shift along each reading's
+/// normal.
+struct NoiseStep {
+  int kind = 0;
+  std::size_t row = 0;
+  double height = 0, std = 0;  // weighted readings
+  int component = -1;          // 0 1 2: of the normal
+  bool of_set_up() const { return component >= 0; }
+  bool operator==(const NoiseStep& other) const {
+    return kind == other.kind && row == other.row && component == other.component;
+  }
+};
+
+/// Correlation of the errors of readings. Components: independent noise, per-pose noise, per-run
+/// (set-up) noise (`run`), and a drift with the clock (Ornstein-Uhlenbeck; a random walk if the
+/// time constant is much longer than the clock's duration). Standard deviations in units of u, or
+/// in mm and deg if no u is given.
+struct NoiseModel {
+  double own = 1, pose = 0, run = 0, drift = 0;
+  double time_constant = 0;   // of the drift, s or rows
+  bool in_time = false;       // else it counts rows, even if time is recorded
+  double support = 0;         // decrease of -2 log likelihood (restricted) relative to independent readings
+  double log_likelihood = 0;  // restricted
+  std::vector<NoiseStep> steps;  // of the instrument: fitted, deterministic
+
+  bool independent() const { return pose <= 0 && run <= 0 && drift <= 0 && steps.empty(); }
+  /// Standard deviation of all components except the independent noise.
+  double shared() const;
+  double total() const;
+  /// Penalty of the model in a criterion of selection, in units of the logarithm of the number of
+  /// readings. A parameter counts 1. A step counts 1 for its height in each kind of reading, and
+  /// `of_place` for its row.
+  double price(double of_place = NoiseThresholds().price_of_place) const;
+};
+
+/// Returns the columns of the steps, one entry per reading: 1 from the step on. tool.
+Eigen::MatrixXd step_columns(const NoiseLayout& layout, const std::vector<NoiseStep>& steps,
+                             Eigen::Index readings);
+
+/// Returns a shift of the measured object at each set-up, three components each. Empty if there is
+/// only one set-up or no reading along a normal. Heights are 0.
+std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout);
+
+/// Transforms the rows of `columns` (weighted readings) to independent rows with variance 1, by a
+/// Kalman filter along each series. The computing time grows with rows times columns. Returns log
+/// det of the covariance. tool.
+double whiten(const NoiseLayout& layout, const NoiseModel& model, Eigen::MatrixXd& columns);
+
+/// Returns the covariance of the weighted readings times `columns`. Computing time: rows times
+/// columns. tool.
+Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& model,
+                                 const Eigen::MatrixXd& columns);
+
+/// Unit of a weighted reading: rms of u of lengths and of rotations; 1 mm and 1 deg if no u is
+/// given.
+struct NoiseUnit {
+  double um = 1000, arcsec = 3600;
+  bool angles_only = false;  // no length was measured
+
+  /// Returns the unit of a reading of that kind.
+  double of(bool rotation) const { return rotation ? arcsec : um; }
+  /// Returns the unit of the components that all kinds share: that of lengths, unless there are no
+  /// lengths.
+  double of_all() const { return of(angles_only); }
+};
+constexpr const char* unit_name(bool rotation) { return rotation ? "arcsec" : "um"; }
+
+/// Returns a description in one sentence for people. tool.
+std::string in_words(const NoiseModel& model, const NoiseUnit& unit);
+
+}  // namespace vernier::fit

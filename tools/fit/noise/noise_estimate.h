@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+
+#include "tools/fit/noise/noise.h"
+#include "tools/fit/noise/noise_thresholds.h"
+
+namespace vernier::fit {
+
+/// Number of readings times the square of the number of fitted columns. Above this limit, a
+/// likelihood evaluation uses only the number of fitted columns.
+inline constexpr double kMostNoiseProducts = 6e7;
+
+/// Restricted maximum likelihood (Patterson and Thompson 1971) of a residual beside the fitted
+/// columns. residual: weighted, first limited to a few robust standard deviations. fitted:
+/// orthonormal columns that were fitted to it. A component is included if the likelihood decreases
+/// by more than chance explains. `with_u`: all components together are not below 1. tool.
+NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
+                          const Eigen::MatrixXd& fitted, bool with_u, const NoiseThresholds& limits = {});
+
+}  // namespace vernier::fit

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tools/import/ballbar/ballbar_file.h"
+
+namespace vernier::importer {
+
+struct BallbarCsvOptions {
+  /// Time between the records of two runs, s, if the instrument does not log it. The default is the time of
+  /// the dwell (5 s) and of the feeds in and out between the runs of the usual program.
+  double pause_s = 9.0;
+};
+
+struct BallbarCsv {
+  std::string text;
+  std::size_t rows = 0, fit_rows = 0, check_rows = 0;
+  std::vector<std::string> run_labels;
+};
+
+/// Measurement file (CSV) of some ball-bar files: positions, motion, clock, length with its centre, run and
+/// role. Samples in start..end are `fit`, those before and after it `check`. An axis is a column if some
+/// file's plane has it. tool.
+BallbarCsv ballbar_csv(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options);
+
+}  // namespace vernier::importer

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tools/import/ballbar/ballbar_file.h"
+#include "tools/import/ballbar/circular.h"
+
+namespace vernier::importer {
+
+/// Where the machine was commanded to be when one reading was taken, on a circle run at constant speed.
+struct CirclePoint {
+  double angle_deg = 0;              // from +A towards +B, 0..360
+  double position_mm[2] = {0, 0};    // along A and B, about the programmed centre
+  double velocity_mm_s[2] = {0, 0};  // the same order
+  double acceleration_mm_s2[2] = {0, 0};
+  int direction[2] = {0, 0};    // direction of the last motion, -1 or +1
+  double since_mm[2] = {0, 0};  // travel of the axis since its last reversal
+};
+
+/// Actual feed of a run, from the samples that it took for its arc: mm/min. tool.
+double actual_feed_mm_min(const BallbarFile& file, const BallbarRun& run);
+
+/// Commanded motion at sample `index` of a run; beyond start..end the angle goes on at the same speed. tool.
+CirclePoint circle_point(const BallbarFile& file, const BallbarRun& run, std::size_t index);
+
+/// The analysed arcs (start..end) of all runs for analyse_circle. tool.
+std::vector<CircularPass> circular_passes(const BallbarFile& file);
+
+}  // namespace vernier::importer

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+
+#include "tools/import/ballbar/ballbar_file.h"
+#include "tools/import/ballbar/circular.h"
+#include "tools/import/ballbar/diagnostics.h"
+
+namespace vernier::importer {
+
+inline constexpr const char* kDiagnosticsAnalysis = "RENISHAW_DIAGNOSTICS";
+
+/// Computed results, with the data and the printed name for each; and remarks on names: why one cannot be
+/// computed, or may differ.
+struct RecomputedResults {
+  std::map<std::string, std::map<std::string, double>> values;
+  std::map<std::string, std::string> why;
+};
+
+/// Mean of the feeds of a test's passes, mm/min; `nullopt` if a pass has no feed. tool.
+std::optional<double> mean_feed_mm_min(const CircularResult& circle);
+
+/// The file's own model curve as samples of a test: its SIMULATION series, both on the grid of the clockwise
+/// run, a sample in the middle of each step. tool. Source: found by recomputing
+/// (tests/data/ballbar/README.md).
+std::vector<DiagnosticsSample> model_curve(const BallbarFile& file);
+
+/// The diagnostics that a file prints: the linear ones, cyclic errors and their effects from the model curve
+/// of the file, values at the ends, shares and ranks from these, roundness about its centre and the others
+/// from the readings. tool.
+RecomputedResults recompute_diagnostics(const BallbarFile& file, const BallbarAnalysis& analysis,
+                                        const CircularResult& circle);
+
+}  // namespace vernier::importer

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/import/ballbar/ballbar_file.h"
+
+namespace vernier::importer {
+
+/// Data that a file of Ballbar Trace does not contain and the operator must give.
+struct TraceSetup {
+  std::string axis_a = "X", axis_b = "Y";
+  double length_mm = 100;
+  double radius_mm = 100;  // of the programmed circle
+  double feed_mm_min = 0;  // actual; the speed is taken as constant
+  double start_deg = 180;  // angle of the first reading, from +A towards +B
+  double sample_rate_hz = 200;
+  int direction_of_zero = +1;  // direction of "Direction": 0
+};
+
+/// A circle of a path: its plane, first axis first ("YZ"), and the angle of its first reading.
+struct TraceCircle {
+  std::string plane;
+  double start_deg = 180;
+};
+
+/// Reads the files of a test whose path has several circles about one centre (XY, YZ, ZX), one after the
+/// other: one BallbarFile per circle. The runs of all files, in their order, are assigned to the circles in
+/// their order. Each circle gets the same number of runs (two if both directions of a circle follow each
+/// other), labelled with their plane. With one circle it takes all runs of each file, one BallbarFile each.
+/// Throws InputError if the runs do not divide evenly, and as read_ballbar_trace. tool.
+std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& paths, const TraceSetup& setup,
+                                            const std::vector<TraceCircle>& circles);
+
+/// Reads a file of Renishaw Ballbar Trace (JSON: Runs[].Direction 0 or 1, Runs[].Readings, ErrorUnits). All
+/// readings are in the arc, none is overshoot. Throws InputError with file, line and word. tool.
+BallbarFile read_ballbar_trace(const std::string& path, const TraceSetup& setup);
+
+}  // namespace vernier::importer

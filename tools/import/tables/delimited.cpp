@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/tables/delimited.h"
+
+#include <algorithm>
+
+#include "tools/text/csv.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+char separator_in(const std::string& line, bool decimal_comma) {
+  for (const char c : {'\t', ';', ','})
+    if (line.find(c) != std::string::npos && !(c == ',' && decimal_comma)) return c;
+  return ' ';
+}
+
+class Lines {
+ public:
+  Lines(const std::string& text, const std::string& file) : text_(text), file_(file) {
+    if (text.starts_with("\xEF\xBB\xBF")) at_ = 3;
+  }
+  bool next(std::string& line) {
+    if (at_ >= text_.size()) return false;
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    line = text_.substr(at_, end - at_);
+    at_ = end + 1;
+    ++number_;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.find('\0') != std::string::npos)
+      throw text::InputError(place(), "", "a zero byte: this is not a text file");
+    return true;
+  }
+  text::Place place() const { return {file_, number_}; }
+
+ private:
+  const std::string& text_;
+  const std::string& file_;
+  std::size_t at_ = 0, number_ = 0;
+};
+
+}  // namespace
+
+char separator_of(const std::string& name, const text::Place& place) {
+  if (name == "auto") return 0;
+  if (name == "comma") return ',';
+  if (name == "semicolon") return ';';
+  if (name == "tab") return '\t';
+  if (name == "space") return ' ';
+  throw text::InputError(place, name, "a separator is comma, semicolon, tab, space or auto");
+}
+
+DelimitedFile parse_delimited(const std::string& text, const std::string& file,
+                              const DelimitedFormat& format) {
+  DelimitedFile result;
+  result.file = file;
+  Lines lines(text, result.file);
+  char separator = format.separator;
+  std::string line;
+  while (lines.next(line)) {
+    const text::Place place = lines.place();
+    const std::string bare = text::trimmed(line);
+    if (place.line <= format.skip || bare.empty()) continue;
+    if (!format.comment.empty() && bare.starts_with(format.comment)) continue;
+    if (separator == 0) separator = separator_in(line, format.decimal_comma);
+    std::vector<std::string> fields = text::fields_of(line, {separator, true}, place);
+    if (format.header && result.header.empty()) {
+      result.header = std::move(fields);
+      result.header_line = place.line;
+      continue;
+    }
+    const std::size_t wanted = format.header         ? result.header.size()
+                               : result.rows.empty() ? fields.size()
+                                                     : result.rows.front().size();
+    if (fields.size() != wanted)
+      throw text::InputError(
+          place, bare.substr(0, 40),
+          std::to_string(fields.size()) + " fields where the lines above have " + std::to_string(wanted));
+    result.rows.push_back(std::move(fields));
+    result.line.push_back(place.line);
+  }
+  if (result.rows.empty()) throw text::InputError({file, 0}, "", "no rows of data");
+  return result;
+}
+
+}  // namespace vernier::importer

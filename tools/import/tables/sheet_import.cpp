@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/tables/sheet_import.h"
+
+#include <fmt/format.h>
+
+#include "tools/import/tables/wide_sheet.h"
+#include "tools/text/error.h"
+
+namespace vernier::importer {
+namespace {
+
+SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
+  if (!words.separator.empty()) wishes.format.separator = separator_of(words.separator);
+  if (!words.decimal.empty()) {
+    if (words.decimal != "comma" && words.decimal != "point")
+      throw text::InputError("\"" + words.decimal + "\": a decimal sign is comma or point");
+    wishes.format.decimal_comma = words.decimal == "comma";
+  }
+  if (!words.comment.empty()) wishes.format.comment = words.comment == "none" ? "" : words.comment;
+  if (words.skip) wishes.format.skip = *words.skip;
+  if (!words.sheet.empty()) wishes.format.sheet = words.sheet;
+  if (!words.axes.empty()) wishes.axes = words.axes;
+  if (!words.unit.empty()) {
+    const auto unit = sheet::unit_meant(words.unit);
+    if (!unit) throw text::InputError("--unit " + words.unit + ": unknown unit");
+    wishes.unit = *unit;
+  }
+  for (const std::string& one : words.constants) {
+    ColumnMap map;
+    add_constant(map, one);
+    wishes.constants.push_back(map.columns.front());
+  }
+  return wishes;
+}
+
+}  // namespace
+
+SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
+                           SheetWishes wishes) {
+  SheetReading result;
+  result.wishes = wishes_of(words, std::move(wishes));
+  result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
+  result.table = sheet::parts_of_sheet(result.sheet);
+  result.runs = unfold_runs(result.sheet, result.table);
+  for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
+  for (const std::string& one : words.deviations) assign_deviation(result.wishes, one);
+  for (const std::string& heading : words.left) {
+    SheetColumn column;
+    column.use = SheetColumn::Use::kLeft;
+    result.wishes.assignments.push_back({heading, column, {}});
+  }
+  result.columns = columns_of_sheet(result.sheet, result.table, result.wishes);
+  return result;
+}
+
+std::string how_read(const sheet::Sheet& sheet) {
+  if (sheet.workbook) return "workbook, sheet \"" + sheet.sheet + "\"";
+  return fmt::format("{}, columns separated by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
+                     sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point",
+                     sheet.decimal_doubtful ? " (it could separate thousands as well: give --decimal)" : "");
+}
+
+std::string becomes(const SheetColumn& column) {
+  const std::string unit = column.unit.empty() ? "" : "[" + column.unit + "]";
+  switch (column.use) {
+    case SheetColumn::Use::kColumn:
+      return column.name + unit + (column.words ? " (words)" : "");
+    case SheetColumn::Use::kDeviation:
+      if (column.to_target)
+        return fmt::format("target of {}: position {} this, {}", column.name, column.turned ? "+" : "-",
+                           unit);
+      return fmt::format("position of {} {} this, {}", column.name, column.turned ? "-" : "+", unit);
+    case SheetColumn::Use::kLeft:
+      return "left out";
+  }
+  return "";
+}
+
+nlohmann::ordered_json columns_json(const SheetReading& reading) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < reading.columns.size(); ++k) {
+    const SheetColumn& column = reading.columns[k];
+    const char* use = column.use == SheetColumn::Use::kColumn      ? "column"
+                      : column.use == SheetColumn::Use::kDeviation ? "deviation"
+                                                                   : "left";
+    list.push_back({{"heading", reading.table.headings[k].text},
+                    {"use", use},
+                    {"name", column.name},
+                    {"unit", column.unit},
+                    {"why", column.why}});
+    if (column.turned) list.back()["sign"] = "nominal - actual";
+  }
+  return list;
+}
+
+}  // namespace vernier::importer

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/tables/sheet_words.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+using WordSet = std::set<std::string, std::less<>>;
+
+const WordSet kTargetWords = {"soll",      "sollwert", "target",   "nominal", "cmd",          "command",
+                              "commanded", "position", "pos",      "set",     "ziel",         "achse",
+                              "axis",      "machine",  "maschine", "nom",     "sollposition", "zielposition"};
+const WordSet kMeasuredWords = {"ist",     "istwert", "istposition", "measured", "actual",
+                                "act",     "meas",    "mess",        "messwert", "gemessen",
+                                "reading", "tracker", "laser",       "read",     "mes"};
+const WordSet kDeviationWords = {"abweichung", "abweichungen", "deviation", "deviations", "dev",
+                                 "error",      "errors",       "fehler",    "err",        "delta",
+                                 "diff",       "abw",          "differenz", "difference", "ecart"};
+const WordSet kForthWords = {"1",   "+1",  "+",        "forward", "fwd",    "forth",
+                             "up",  "pos", "positive", "positiv", "vor",    "vorwärts",
+                             "hin", "auf", "plus",     "cw",      "\u2191", "\u2192"};
+const WordSet kBackWords = {"-1",
+                            "-",
+                            "backward",
+                            "backwards",
+                            "bwd",
+                            "back",
+                            "reverse",
+                            "rev",
+                            "down",
+                            "neg",
+                            "negative",
+                            "negativ",
+                            "zurück",
+                            "rück",
+                            "rückwärts",
+                            "her",
+                            "ab",
+                            "minus",
+                            "ccw",
+                            "\u2212",
+                            "\u2212"
+                            "1",
+                            "\u2193",
+                            "\u2190"};
+
+/// Small letters without blanks, every dash a hyphen.
+std::string bare_signs(std::string_view text) {
+  std::string bare = text::in_small_letters(text);
+  for (const std::string_view dash : {"\u2212", "\u2013", "\u2014"})
+    for (std::size_t at = 0; (at = bare.find(dash, at)) != std::string::npos;)
+      bare.replace(at, dash.size(), "-");
+  bare.erase(std::remove_if(bare.begin(), bare.end(), [](char c) { return c == ' ' || c == '\t'; }),
+             bare.end());
+  return bare;
+}
+
+}  // namespace
+
+std::vector<std::string> heading_words(const std::string& name) {
+  return text::words_in(name, " \t_-./:;,()[]#+");
+}
+
+bool says_target(const std::string& word) { return kTargetWords.contains(word); }
+bool says_measured(const std::string& word) { return kMeasuredWords.contains(word); }
+bool says_deviation(const std::string& word) { return kDeviationWords.contains(word); }
+
+int sense_said(std::string_view word) {
+  const std::string small = text::in_small_letters(word);
+  return kForthWords.contains(small) ? 1 : kBackWords.contains(small) ? -1 : 0;
+}
+
+bool says_nominal_less_actual(std::string_view text, bool whole) {
+  constexpr std::array<std::string_view, 6> kNominal = {"nominal", "target",       "nom",
+                                                        "soll",    "sollposition", "sollwert"};
+  constexpr std::array<std::string_view, 7> kActual = {"actual", "measured",    "act",    "meas",
+                                                       "ist",    "istposition", "istwert"};
+  const std::string bare = bare_signs(text);
+  for (const std::string_view nominal : kNominal)
+    for (const std::string_view actual : kActual) {
+      const std::string formula = std::string(nominal) + "-" + std::string(actual);
+      for (std::size_t at = 0; (at = bare.find(formula, at)) != std::string::npos; ++at) {
+        const std::size_t end = at + formula.size();
+        if (whole && at == 0 && end == bare.size()) return true;
+        if (at == 0) continue;
+        const char before = bare[at - 1], after = end < bare.size() ? bare[end] : '\0';
+        const bool closed = after == '\0' || after == ')' || after == ']' || after == ',' || after == ';';
+        if (closed && (before == '=' || ((before == '(' || before == '[') && after != '\0'))) return true;
+      }
+    }
+  return false;
+}
+
+std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  std::vector<std::string> cells;
+  const std::size_t end = table.upper_row ? *table.upper_row : table.heading_row;
+  for (std::size_t row = 0; table.has_headings && row < end; ++row)
+    for (const std::string& cell : sheet.rows[row])
+      if (!cell.empty()) cells.push_back(cell);
+  return cells;
+}
+
+std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  std::vector<std::string> words;
+  for (const std::string& cell : title_cells(sheet, table)) {
+    for (std::string& word : heading_words(cell)) words.push_back(std::move(word));
+    words.emplace_back();
+  }
+  std::set<std::string> found;
+  const auto letter = [](const std::string& word) {
+    return word.size() == 1 && std::string_view("XYZABCUVW").find(word) != std::string_view::npos;
+  };
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    const std::string small = text::in_small_letters(words[k]);
+    if (small != "axis" && small != "achse") continue;
+    // "Achse" and "X" may be in separate cells.
+    const std::size_t next = k + 1 < words.size() && words[k + 1].empty() ? k + 2 : k + 1;
+    if (k > 0 && letter(words[k - 1]))
+      found.insert(words[k - 1]);
+    else if (next < words.size() && letter(words[next]))
+      found.insert(words[next]);
+  }
+  return found.size() == 1 ? *found.begin() : "";
+}
+
+}  // namespace vernier::importer

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/tables/wide_sheet.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
+#include "tools/import/tables/sheet_words.h"
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+/// One run in one approach direction, as its heading describes it.
+struct RunColumn {
+  std::size_t column = 0;
+  std::string run, axis, unit;
+  int sense = 0;
+  bool deviation = false, measured = false, turned = false, pos = false;
+};
+
+enum class Piece { kNone, kNumber, kWord, kSign };
+
+struct Token {
+  Piece piece = Piece::kNone;
+  std::string text;
+  bool glued = false;  // to the piece before it, without a blank or point between
+};
+
+constexpr std::string_view kArrows[] = {"\u2191", "\u2193", "\u2190", "\u2192", "\u2212", "\u2013"};
+
+Piece piece_of(char c) {
+  const auto letter = static_cast<unsigned char>(c);
+  if (std::isdigit(letter) != 0) return Piece::kNumber;
+  if (std::isalpha(letter) != 0 || letter >= 0x80) return Piece::kWord;
+  return c == '+' || c == '-' ? Piece::kSign : Piece::kNone;
+}
+
+/// Numbers, words and signs of a heading.
+std::vector<Token> tokens_of(const std::string& name) {
+  std::vector<Token> tokens;
+  bool glued = false;
+  for (std::size_t at = 0; at < name.size();) {
+    Token token;
+    token.glued = glued;
+    for (const std::string_view arrow : kArrows)
+      if (name.compare(at, arrow.size(), arrow) == 0) token = {Piece::kSign, std::string(arrow), glued};
+    if (token.piece == Piece::kNone) {
+      token.piece = piece_of(name[at]);
+      token.text = name[at];
+      const auto arrow_at = [&](std::size_t place) {
+        return std::any_of(std::begin(kArrows), std::end(kArrows), [&](std::string_view arrow) {
+          return name.compare(place, arrow.size(), arrow) == 0;
+        });
+      };
+      if (token.piece == Piece::kNumber || token.piece == Piece::kWord)
+        while (at + token.text.size() < name.size() &&
+               piece_of(name[at + token.text.size()]) == token.piece && !arrow_at(at + token.text.size()))
+          token.text += name[at + token.text.size()];
+    }
+    at += token.text.size();
+    glued = token.piece != Piece::kNone;
+    if (glued) tokens.push_back(std::move(token));
+  }
+  return tokens;
+}
+
+bool says_run(const std::string& word) {
+  static const std::set<std::string> kRunWords = {
+      "run",    "runs",  "lauf", "messung", "messlauf", "messreihe",   "durchgang",
+      "zyklus", "cycle", "pass", "serie",   "series",   "measurement", "reihe",
+      "test",   "nr",    "no",   "r",       "m",        "mr",          "n"};
+  return kRunWords.contains(word);
+}
+
+/// A sign between a word and the next word joins them ("Lauf-1"), else it is a direction.
+bool joins(const std::vector<Token>& tokens, std::size_t k) {
+  if (tokens[k].text != "-" && tokens[k].text != "\u2013") return false;
+  const bool behind = k > 0 && tokens[k].glued, before = k + 1 < tokens.size() && tokens[k + 1].glued;
+  return behind && before;
+}
+
+/// The name with the minus behind it, which parse_heading takes for a stroke before the unit: "1- [um]".
+std::string with_its_sign(const sheet::Heading& heading) {
+  if (!heading.text.starts_with(heading.name)) return heading.name;
+  const std::string rest = text::trimmed(heading.text.substr(heading.name.size()));
+  const bool minus =
+      rest.starts_with("-") && (rest.size() == 1 || rest[1] == ' ' || rest[1] == '[' || rest[1] == '(');
+  return heading.name + (minus ? " -" : "");
+}
+
+std::optional<RunColumn> run_column(const sheet::Heading& heading) {
+  RunColumn column;
+  column.unit = heading.unit;
+  column.turned = says_nominal_less_actual(heading.name, true);
+  std::string name = with_its_sign(heading);
+  if (column.turned) {  // the text in brackets gives the sign only
+    const auto open = name.find_first_of("(["), close = name.find_last_of(")]");
+    if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
+    name.erase(open, close - open + 1);
+    column.deviation = true;
+  }
+  const std::vector<Token> tokens = tokens_of(name);
+  int by_word = 0, by_sign = 0;
+  bool said = false;
+  for (std::size_t k = 0; k < tokens.size(); ++k) {
+    const Token& token = tokens[k];
+    const std::string small = text::in_small_letters(token.text);
+    if (token.piece == Piece::kNumber) {
+      if (!column.run.empty() || token.text.size() > 3) return std::nullopt;
+      column.run = token.text;
+    } else if (token.piece == Piece::kSign) {
+      if (!joins(tokens, k)) by_sign = token.text == "\u2013" ? -1 : sense_said(token.text);
+    } else if (says_run(small)) {
+      said = true;
+    } else if (sense_said(small) != 0) {
+      if (by_word != 0) return std::nullopt;
+      by_word = sense_said(small);
+      column.pos |= small == "pos";
+    } else if (says_deviation(small)) {
+      column.deviation = said = true;
+    } else if (says_measured(small)) {
+      column.measured = said = true;
+    } else if (token.text.size() == 1 &&
+               std::string_view("XYZABCUVW").find(token.text[0]) != std::string_view::npos &&
+               column.axis.empty() && (k + 1 >= tokens.size() || !tokens[k + 1].glued)) {
+      column.axis = token.text;
+    } else {
+      return std::nullopt;
+    }
+  }
+  column.sense = by_word != 0 ? by_word : by_sign;
+  if (column.run.empty() && column.sense == 0) return std::nullopt;
+  if (column.sense == 0 && !said) return std::nullopt;
+  return column;
+}
+
+/// Runs without a number are counted in their order, if a direction occurs more than once.
+void number_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<RunColumn>& runs) {
+  const bool numbered =
+      std::any_of(runs.begin(), runs.end(), [](const RunColumn& one) { return !one.run.empty(); });
+  std::map<int, int> count;
+  std::set<std::pair<std::string, int>> seen;
+  for (RunColumn& one : runs) {
+    if (!numbered) one.run = std::to_string(++count[one.sense]);
+    if (!seen.emplace(one.run, one.sense).second)
+      throw text::InputError({sheet.file, sheet.line[table.heading_row]}, table.headings[one.column].text,
+                             "this run occurs twice in this direction");
+  }
+}
+
+double spread_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
+  double least = 0, most = 0;
+  bool any = false;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto number = sheet::plain_number(sheet.rows[row][column], sheet.decimal_comma);
+    const auto value = number ? text::parse_number(*number) : std::nullopt;
+    if (!value) continue;
+    least = any ? std::min(least, *value) : *value;
+    most = any ? std::max(most, *value) : *value;
+    any = true;
+  }
+  return most - least;
+}
+
+/// The unit of lengths or angles in a title: "Abweichungen in µm (Soll-Ist)".
+std::string unit_in(const std::string& title) {
+  for (const std::string& word : text::words_in(title, " \t,;:")) {
+    const auto unit = sheet::unit_meant(word);
+    // "in" and "as" are words of a sentence.
+    if (!unit || word == "in" || word == "as" || word.size() < 2) continue;
+    const auto dimension = format::find_unit(*unit)->dimension;
+    if (dimension == format::Dimension::kLength || dimension == format::Dimension::kAngle) return *unit;
+  }
+  return sheet::parse_heading(title).unit;
+}
+
+/// Kind of the readings, as a heading of one column that the import understands.
+sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                   const std::vector<RunColumn>& runs,
+                                   const std::vector<std::size_t>& others) {
+  RunColumn all = runs.front();
+  for (const RunColumn& one : runs) {
+    all.deviation |= one.deviation;
+    all.measured |= one.measured;
+    all.turned |= one.turned;
+    if (all.unit.empty()) all.unit = one.unit;
+  }
+  for (const std::string& title : title_cells(sheet, table)) {
+    const std::vector<std::string> words = heading_words(title);
+    const bool deviation = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+      return says_deviation(text::in_small_letters(word));
+    });
+    if (!deviation) continue;
+    all.deviation = all.deviation || !all.measured;
+    if (all.unit.empty()) all.unit = unit_in(title);
+  }
+  if (!all.deviation && !all.measured) {
+    // Readings that go as far as the positions do are positions.
+    const double read = spread_of(sheet, table, runs.front().column);
+    for (const std::size_t other : others) {
+      const double ratio = spread_of(sheet, table, other) > 0 ? read / spread_of(sheet, table, other) : 0;
+      if (!(ratio > 0.9 && ratio < 1.1)) continue;
+      all.measured = true;
+      if (all.unit.empty()) all.unit = table.headings[other].unit;
+    }
+  }
+  sheet::Heading heading;
+  heading.name = std::string(all.measured && !all.deviation ? "Actual" : "Deviation") +
+                 (all.axis.empty() ? "" : " " + all.axis);
+  heading.text = heading.name + (all.turned ? " (nominal-actual)" : "");
+  heading.unit = all.unit;
+  return heading;
+}
+
+bool belong_together(const std::vector<RunColumn>& runs) {
+  if (runs.size() < 2) return false;
+  bool pos = false, back = false;
+  for (const RunColumn& one : runs) {
+    if (one.axis != runs.front().axis || one.run.empty() != runs.front().run.empty()) return false;
+    if (one.deviation != runs.front().deviation || one.turned != runs.front().turned) return false;
+    if (one.unit != runs.front().unit) return false;
+    pos |= one.pos;
+    back |= one.sense < 0;
+  }
+  return !pos || back;  // "Pos" without its counterpart is a position
+}
+
+}  // namespace
+
+std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
+  if (!table.has_headings) return 0;
+  std::vector<RunColumn> runs;
+  std::vector<std::size_t> others;
+  for (std::size_t k = 0; k < table.headings.size(); ++k) {
+    auto one = run_column(table.headings[k]);
+    // "Pos" at the left is where the machine was sent.
+    if (one && one->pos && one->run.empty() && k == 0) one.reset();
+    if (one) {
+      one->column = k;
+      runs.push_back(std::move(*one));
+    } else {
+      others.push_back(k);
+    }
+  }
+  if (others.empty() || !belong_together(runs)) return 0;
+  number_runs(sheet, table, runs);
+  constexpr std::size_t kMostCells = 8u << 20;  // 64 MB of numbers
+  const std::size_t width = others.size() + 3, data = sheet.rows.size() - table.first_data;
+  if (data > kMostCells / width / runs.size())
+    throw text::InputError({sheet.file, sheet.line[table.heading_row]}, "",
+                           "too many rows, a row for each of " + std::to_string(runs.size()) + " runs");
+  const sheet::Heading readings = heading_of_readings(sheet, table, runs, others);
+  std::vector<sheet::Heading> headings;
+  for (const std::size_t k : others) headings.push_back(table.headings[k]);
+  headings.push_back({"sense", "sense", "", ""});
+  headings.push_back({format::columns::kRun, format::columns::kRun, "", ""});
+  headings.push_back(readings);
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::size_t> line;
+  for (std::size_t row = 0; row < table.first_data; ++row) {
+    rows.push_back(sheet.rows[row]);
+    line.push_back(sheet.line[row]);
+  }
+  for (const RunColumn& one : runs)
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+      if (sheet.rows[row][one.column].empty()) continue;
+      std::vector<std::string> cells;
+      for (const std::size_t k : others) cells.push_back(sheet.rows[row][k]);
+      cells.push_back(one.sense == 0 ? "" : std::to_string(one.sense));
+      cells.push_back(one.run);
+      cells.push_back(sheet.rows[row][one.column]);
+      rows.push_back(std::move(cells));
+      line.push_back(sheet.line[row]);
+    }
+  if (rows.size() == table.first_data) return 0;
+  sheet.rows = std::move(rows);
+  sheet.line = std::move(line);
+  table.headings = std::move(headings);
+  return runs.size();
+}
+
+}  // namespace vernier::importer

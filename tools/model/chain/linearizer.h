@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "tools/model/chain/chain_rows.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/model/parameters.h"
+
+namespace vernier::model {
+
+/// Adjacent parameters that share their weights: the free columns of a table (a weight for each
+/// station that takes part at a row), statics, or the components of a BaseShift (weight 1).
+struct ParameterGroup {
+  Eigen::Index slot = 0, width = 0;                           // rows of RowLinear::gradient
+  std::vector<std::pair<Eigen::Index, double>> first_weight;  // parameter of the first column, weight
+};
+
+/// One row of a measurement, linear in the parameters:
+/// d predicted(o) / d parameter(first + k) = sum over the groups of weight * gradient(slot + k, o).
+struct RowLinear {
+  std::size_t first_observation = 0;
+  Eigen::VectorXd predicted;           // of the row's observations, mm or deg
+  Eigen::MatrixXd gradient;            // observations x slots
+  std::vector<ParameterGroup> groups;  // by increasing parameter
+};
+
+/// Linearises the rows of a measurement one by one. A station table is represented by a few
+/// weights times six columns. Data that do not depend on the parameters' values (stations and
+/// weights of every row) are computed once. Keeps a reference to `measurement`. tool.
+class Linearizer {
+ public:
+  Linearizer(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters);
+
+  /// Calls visit(const RowLinear&) for every row that has an observation. `machine` is the machine
+  /// of the constructor with other parameter values. Throws InputError if an expression is not
+  /// finite.
+  template <class Visit>
+  void each_row(const Machine& machine, const Visit& visit) const {
+    Pass pass(*this, machine);
+    while (pass.next()) visit(pass.row());
+  }
+
+ private:
+  struct TableGroup {
+    std::size_t axis = 0;
+    ParameterGroup group;                                  // first_weight is filled row by row
+    std::vector<std::size_t> start;                        // of each row in `weights`
+    std::vector<std::pair<Eigen::Index, double>> weights;  // first parameter of the station, weight
+  };
+  class Pass {
+   public:
+    Pass(const Linearizer& all, const Machine& machine);
+    bool next();
+    const RowLinear& row() const { return is_joined_ ? joined_ : row_; }
+
+   private:
+    /// Fills a row's observations with their dependence on the pose of row `at`: the row itself,
+    /// or the row at the other end of a distance. `other_end`: position of the end that is not
+    /// evaluated.
+    void fill(std::size_t row, std::size_t at, const Eigen::Vector3d& other_end);
+    Eigen::Vector3d point_at(std::size_t row) const;
+    /// Adds the influence of the pose at the other end of the row's distance. Gives every
+    /// parameter of both rows its own slot.
+    void join_other_end(std::size_t row, std::size_t other);
+    const BaseShift* shift_of(std::size_t row) const {
+      const States& states = all_.measurement_.states;
+      return shift_of_setup_[states.of(states.setup, row)];
+    }
+
+    const Linearizer& all_;
+    const Machine& machine_;
+    ChainRows chain_;
+    std::vector<Eigen::Index> slot_of_key_;
+    std::vector<const BaseShift*> shift_of_setup_;
+    std::vector<Twist> twists_;
+    std::size_t at_ = 0;
+    RowLinear row_, joined_;
+    bool is_joined_ = false;
+  };
+
+  const Measurement& measurement_;
+  std::vector<std::size_t> start_;         // first observation of each row
+  std::vector<char> active_;               // keys of Evaluator
+  std::vector<Eigen::Index> slot_of_key_;  // by key of Evaluator
+  std::vector<ParameterGroup> static_groups_;
+  std::vector<TableGroup> tables_;
+  std::vector<std::array<Eigen::Index, 6>>
+      base_parameter_;      // per BaseShift: parameter of each component, -1: held
+  Eigen::Index slots_ = 0;  // without the six of the BaseShift
+};
+
+}  // namespace vernier::model

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+
+#include "tools/workbench/files/project.h"
+#include "tools/workbench/files/request.h"
+#include "tools/workbench/files/rows.h"
+
+namespace vernier::workbench {
+
+/// All functions that read a machine, a measurement or a term. They run in a separate process: a harmful file
+/// ends that process and not the server. tool.
+class FileDesk {
+ public:
+  explicit FileDesk(const Project& project) : project_(project), cache_(project) {}
+
+  /// True if the request is for this desk. Data to be stored (PUT) are only checked here.
+  static bool answers(const ApiRequest& request);
+  /// Never throws; as Api::reply.
+  ApiReply reply(const ApiRequest& request);
+
+ private:
+  ApiReply answer(const ApiRequest& request);
+  ApiReply check(const ApiRequest& request);
+  ApiReply excluded(const ApiRequest& request);
+  ApiReply rows(const ApiRequest& request);
+  ApiReply parameters(const ApiRequest& request);
+  ApiReply predict(const ApiRequest& request);
+  ApiReply explain(const ApiRequest& request);
+  ApiReply names(const ApiRequest& request);
+  ApiReply term(const ApiRequest& request);
+  ApiReply kind(const ApiRequest& request);
+  ApiReply sheet(const ApiRequest& request);
+  ApiReply safety(const ApiRequest& request);
+
+  struct Route;
+  static const Route* find(const ApiRequest& request);
+
+  const Project& project_;
+  RowCache cache_;
+};
+
+}  // namespace vernier::workbench

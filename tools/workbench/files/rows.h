@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/workbench/files/project.h"
+
+namespace vernier::workbench {
+
+/// A machine and rows of a project, as read.
+struct LoadedRows {
+  std::string text;        // of the machine file
+  model::Machine machine;  // with its set-up fitted to the rows, if requested
+  bool datum = false;
+  model::Measurement measurement;
+};
+
+/// Reads machines with their measurements and keeps the last few, as long as their files do not change. May
+/// be called from several threads. tool.
+class RowCache {
+ public:
+  explicit RowCache(const Project& project) : project_(project) {}
+  /// Names in the project. `datum`: the machine's set-up is fitted to the rows first (`compare --datum`).
+  /// Rows that were measured with a correction on find its image in the project. Throws InputError with file,
+  /// line and word.
+  std::shared_ptr<const LoadedRows> get(const std::string& machine,
+                                        const std::vector<std::string>& measurements, bool datum);
+
+ private:
+  struct Entry {
+    std::string key;
+    std::shared_ptr<const LoadedRows> rows;
+  };
+  std::string key_of(const std::string& machine, const std::vector<std::string>& measurements) const;
+
+  const Project& project_;
+  std::mutex guard_;
+  std::vector<Entry> kept_;
+};
+
+/// Everything that the page draws of a machine and rows (Blob): columns, runs, roles, lines, tool points,
+/// directions of lengths, observations with residuals in um or urad, circles, figures. tool.
+std::string rows_blob(const LoadedRows& rows);
+
+/// Residuals and figures with some parameters changed; no file is written. tool.
+std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, double>& values);
+
+/// What an effect would explain: the change that adding and fitting it makes to the residual of the fitted
+/// model, per observation, um or urad. add: a candidate's `add` string. tool.
+std::string explanation_blob(const LoadedRows& rows, const std::string& add);
+
+/// Free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention, prior) are those
+/// of the fit that wrote the file; null without a fit, or if the value was changed since.
+nlohmann::ordered_json parameters_json(const LoadedRows& rows);
+
+}  // namespace vernier::workbench

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/workbench/files/sheets.h"
+
+#include <algorithm>
+
+#include "tools/format/csv_file.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
+
+namespace vernier::workbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kShown = 8;  // rows of a preview
+
+std::string text_or_none(const nlohmann::json& request, const char* key) {
+  const auto found = request.find(key);
+  if (found == request.end() || found->is_null()) return {};
+  if (!found->is_string()) throw text::InputError(std::string("\"") + key + "\" must be a text");
+  return found->get<std::string>();
+}
+
+std::vector<std::string> list_or_none(const nlohmann::json& request, const char* key) {
+  const auto found = request.find(key);
+  if (found == request.end() || found->is_null()) return {};
+  std::vector<std::string> list;
+  if (!found->is_array()) throw text::InputError(std::string("\"") + key + "\" must be a list");
+  for (const nlohmann::json& one : *found) {
+    if (!one.is_string()) throw text::InputError(std::string("\"") + key + "\" must be a list of texts");
+    list.push_back(one.get<std::string>());
+  }
+  return list;
+}
+
+Json first_lines(const std::string& csv) {
+  Json lines = Json::array();
+  for (std::size_t at = 0; at < csv.size() && lines.size() <= kShown;) {
+    const std::size_t end = std::min(csv.find('\n', at), csv.size());
+    lines.push_back(csv.substr(at, end - at));
+    at = end + 1;
+  }
+  return lines;
+}
+
+}  // namespace
+
+bool begins_as_measurement(const std::string& text) {
+  for (std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string line = text::trimmed(text.substr(at, end - at));
+    at = end + 1;
+    if (line.empty() || line.front() == '#') continue;
+    try {
+      const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+      const format::CsvFile csv = format::parse_csv(line + "\n0" + std::string(commas, ',') + "\n", "");
+      return std::any_of(csv.columns.begin(), csv.columns.end(),
+                         [](const format::CsvColumn& column) { return !column.unit.empty(); });
+    } catch (const text::InputError&) {
+      return false;
+    }
+  }
+  return false;
+}
+
+Json sheet_preview(const std::string& bytes, const std::string& file, const importer::SheetWords& words) {
+  const importer::SheetReading reading = importer::read_as_sheet(bytes, file, words);
+  const sheet::Sheet& sheet = reading.sheet;
+  Json json = {{"how", importer::how_read(sheet)},
+               {"workbook", sheet.workbook},
+               {"separator", sheet::separator_word(sheet.separator)},
+               {"decimal", sheet.decimal_comma ? "comma" : "point"},
+               {"heading_line",
+                reading.table.has_headings ? Json(sheet.line[reading.table.heading_row]) : Json(nullptr)},
+               {"columns", importer::columns_json(reading)},
+               {"rows", Json::array()}};
+  for (std::size_t row = reading.table.first_data; row < sheet.rows.size() && json["rows"].size() < kShown;
+       ++row)
+    json["rows"].push_back(sheet.rows[row]);
+  try {
+    const importer::ImportTable table =
+        importer::table_of_sheet(sheet, reading.table, reading.columns, reading.wishes);
+    json["csv"] = first_lines(importer::measurement_csv(table));
+    json["n_rows"] = table.line.size();
+    json["message"] = nullptr;
+  } catch (const text::InputError& error) {
+    json["csv"] = Json::array();
+    json["n_rows"] = 0;
+    json["message"] = error.what();
+  }
+  return json;
+}
+
+importer::SheetWords sheet_words(const nlohmann::json& request) {
+  importer::SheetWords words;
+  words.separator = text_or_none(request, "separator");
+  words.decimal = text_or_none(request, "decimal");
+  words.comment = text_or_none(request, "comment");
+  words.sheet = text_or_none(request, "sheet");
+  words.unit = text_or_none(request, "unit");
+  if (const auto skip = request.find("skip"); skip != request.end() && skip->is_number_integer())
+    words.skip = static_cast<std::size_t>(std::max<std::int64_t>(0, skip->get<std::int64_t>()));
+  words.columns = list_or_none(request, "columns");
+  words.deviations = list_or_none(request, "deviations");
+  words.left = list_or_none(request, "leave");
+  words.constants = list_or_none(request, "set");
+  return words;
+}
+
+}  // namespace vernier::workbench

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/import/tables/sheet_import.h"
+
+namespace vernier::workbench {
+
+/// True if the first line of the text is that of a measurement file: names with units, separated by commas.
+/// Other text may be a spreadsheet. tool.
+bool begins_as_measurement(const std::string& text);
+
+/// Interpretation of a spreadsheet and its result: {how, separator, decimal, heading_line, columns
+/// (columns_json), rows: the first as cells, csv: the first lines of the measurement file, n_rows, message:
+/// reason why it is not a measurement yet}. Throws InputError if it is not a table. tool.
+nlohmann::ordered_json sheet_preview(const std::string& bytes, const std::string& file,
+                                     const importer::SheetWords& words);
+
+/// The words of a request: separator, decimal, comment, sheet, unit (texts), skip (number), columns,
+/// deviations, leave, set (lists). Throws InputError.
+importer::SheetWords sheet_words(const nlohmann::json& request);
+
+}  // namespace vernier::workbench

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/workbench/runs/commands.h"
+
+namespace vernier::workbench {
+
+/// The steps of a project, in order. They are kept in `.vernier/history.json` and, without the undone steps,
+/// as the shell script `history.sh`, which repeats them. Commands to a board are comments in the script.
+/// tool.
+class CommandHistory {
+ public:
+  /// Reads the history of an earlier session. Throws InputError if it cannot be read.
+  explicit CommandHistory(const Project& project);
+
+  /// result: of the command; its rms_um and check_rms_um are kept.
+  void add(const std::string& typed, const PlannedCommand& command, const nlohmann::ordered_json& result);
+  /// Undoes the last entry (its files are kept, the script omits it), or restores the first undone entry
+  /// after it. Throws InputError if no such entry exists.
+  void undo();
+  void redo();
+  /// [{"command", "name", "at", "undone", "outputs", "rms_um", "check_rms_um"}].
+  nlohmann::ordered_json entries() const;
+  std::string script() const;
+
+ private:
+  void save() const;
+  std::string script_unguarded() const;
+
+  const Project& project_;
+  mutable std::mutex guard_;
+  nlohmann::ordered_json entries_ = nlohmann::ordered_json::array();
+};
+
+}  // namespace vernier::workbench

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "tools/workbench/runs/commands.h"
+#include "tools/workbench/runs/history.h"
+#include "tools/workbench/runs/process.h"
+
+namespace vernier::workbench {
+
+/// Runs commands of the page as processes of this program in the project's folder, each in a thread that
+/// waits for it. The page gets the same result as a terminal. A bad file affects only its job; cancelling
+/// ends the job immediately. tool.
+class Jobs {
+ public:
+  /// program: the `vernier` to run. References are kept.
+  Jobs(std::string program, const Project& project, CommandHistory& history);
+  ~Jobs();
+  Jobs(const Jobs&) = delete;
+  Jobs& operator=(const Jobs&) = delete;
+
+  /// Starts a command; returns its number. Throws InputError if too many run already.
+  std::uint64_t start(const PlannedCommand& command);
+  /// {"id", "command" as typed, "state": "running" | "done" | "failed" | "cancelled", "fraction", "step",
+  /// "seconds", "exit", "message", "text", "outputs", "result"}. Throws InputError for an unknown number.
+  nlohmann::ordered_json state(std::uint64_t id);
+  void cancel(std::uint64_t id);
+
+ private:
+  struct Job {
+    PlannedCommand command;
+    std::string typed, state = "running", step, message, text;
+    double fraction = 0, started_s = 0, seconds = 0;
+    int exit = -1;
+    nlohmann::ordered_json result;
+    RunningProcess process;
+    std::atomic<bool> over{false};
+    std::thread thread;
+  };
+  void run(Job& job);
+  void finish(Job& job, int exit, const std::string& out, const std::string& err);
+  void take_line(Job& job, std::string_view line);
+  void forget_old();
+  std::shared_ptr<Job> find(std::uint64_t id);
+
+  std::string program_;
+  const Project& project_;
+  CommandHistory& history_;
+  std::mutex guard_;
+  std::map<std::uint64_t, std::shared_ptr<Job>> jobs_;
+  std::uint64_t next_ = 1;
+};
+
+}  // namespace vernier::workbench
