@@ -9,6 +9,7 @@
 #include "tools/commands/survey.h"
 #include "tools/compile/compile.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/sentences.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
 #include "tools/report/report.h"
