@@ -144,7 +144,7 @@ const std::vector<Allowed>& allowed() {
       {"fleet",
        false,
        false,
-       {{"what", K::kText, "", true, "status due alike jobs list"},
+       {{"what", K::kText, "", true, "status due alike answers list"},
         {"registry", K::kRegistry, "--registry", true}}},
   };
   return kAll;
