@@ -220,6 +220,15 @@ TEST_F(FleetCommand, SlurmScriptNumbersTheMachines) {
                 "'vernier compare {machine}.xml {machine}.csv'"),
             0)
       << said();
+  ASSERT_EQ(run("vernier fleet batch two --machine b --machine a compare {machine}.xml {machine}.csv && cat "
+                "two/machines"),
+            0)
+      << said();
+  EXPECT_NE(said().find("\na\nb\n"), std::string::npos) << said();
+  ASSERT_EQ(
+      run("vernier fleet batch one --machine b compare {machine}.xml {machine}.csv && cat one/machines"), 0)
+      << said();
+  EXPECT_NE(said().find("\nb\n"), std::string::npos) << said();
   const std::string script = read_file(folder_ + "/a b/slurm.sh");
   EXPECT_NE(script.find("#SBATCH --array=1-2\n"), std::string::npos) << script;
   EXPECT_EQ(run("cd 'a b' && sh -n slurm.sh"), 0) << said();

@@ -232,8 +232,7 @@ void add_batch(CLI::App& fleet) {
       ->check(CLI::IsMember({"parallel", "slurm"}))
       ->capture_default_str();
   command->add_option("--machine", batch->machines, "only these; default: all of the registry")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->allow_extra_args(false);
   command->prefix_command();
   command->footer(
       "Behind NAME and the options: the command of each machine, as for vernier, with {machine} for the "
