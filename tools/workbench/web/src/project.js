@@ -48,13 +48,16 @@ async function isSheet(name) {
   return (await kinds.get(key)).kind === 'sheet';
 }
 
+/** The kind of `vernier import` that reads a file of the project without further options. */
+const importerOf = (name) => store.files.find((one) => one.name === name)?.importer;
+
 /** Makes a measurement of a file of the project, as its kind asks for. */
 async function importFile(name, box, repair) {
   const done = (output) => choose(store.machine, [output]);
-  if (/\.b5r$/i.test(name)) {
-    const stem = name.replace(/\.b5r$/i, '');
-    const output = freeName(stem, '.csv');
-    await run({ command: 'import', kind: 'ballbar', files: [name], repair_time_base: repair, output });
+  const kind = importerOf(name);
+  if (kind) {
+    const output = freeName(name.replace(/\.[^.]*$/, ''), '.csv');
+    await run({ command: 'import', kind, files: [name], repair_time_base: repair && kind === 'ballbar', output });
     return done(output);
   }
   return importSheet(box, name, done);
@@ -67,7 +70,7 @@ async function take(file, repair, box) {
   await putFile(name, bytes);
   await refresh();
   if (/\.xml$/i.test(name)) return choose(name, store.measurements);
-  if (/\.b5r$/i.test(name) || (kSheet.test(name) && (await isSheet(name)))) return importFile(name, box, repair);
+  if (importerOf(name) || (kSheet.test(name) && (await isSheet(name)))) return importFile(name, box, repair);
   if (/\.csv$/i.test(name)) return choose(store.machine, [name]);
   return null;
 }
@@ -152,7 +155,7 @@ export function projectView(root) {
   const zone = el(
     'div',
     { class: 'drop', id: 'drop' },
-    el('p', {}, 'Drop what was measured (.csv, .xlsx, .txt, .b5r) and machine files (.xml) here, or choose them: '),
+    el('p', {}, 'Drop what was measured (.csv, .xlsx, .txt, files of an instrument) and machine files (.xml) here, or choose them: '),
     pick,
     el('label', { class: 'choice' }, repair, ' repair the time base of ball-bar files'),
   );
