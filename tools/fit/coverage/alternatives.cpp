@@ -20,8 +20,6 @@ using Eigen::VectorXd;
 
 /// Increase of chi square at which an explanation is worse: three standard deviations.
 constexpr double kWorse = 9;
-/// A smaller motion of the tool is negligible, mm.
-constexpr double kNothing_mm = 5e-5;
 /// Value of the spectral window of the positions above which a periodic term has an alias: 1 on a
 /// grid, 1/sqrt(N) for random positions.
 constexpr double kAliased = 0.7;

@@ -10,6 +10,9 @@
 
 namespace vernier::fit {
 
+/// A smaller motion of the tool is negligible, mm.
+inline constexpr double kNothing_mm = 5e-5;
+
 /// Finds other terms that explain the fit rows as well as terms of the fitted model, beside a free
 /// set-up. "As well" means within three standard deviations in all. Two kinds are searched:
 /// - for a cyclic error along an axis (a sine or cosine of it with a free static): one with a

@@ -29,8 +29,6 @@ constexpr double kVaried = 0.15;
 /// An axis that moved by less than this share of its travel was not measured: rule
 /// `measured-range`.
 constexpr double kMoved = 0.05;
-/// A smaller motion of the tool is negligible, mm.
-constexpr double kNothing_mm = 5e-5;
 /// The axis or the input of a name.
 struct Variable {
   bool is_axis = true;
