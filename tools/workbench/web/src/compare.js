@@ -109,7 +109,7 @@ function exclusion(error) {
   const change = (name, fields) =>
     guarded(error, async () => {
       const output = target(name);
-      await run({ command: 'exclude', measurement: name, ...fields, output });
+      await run({ command: 'exclude', meas: name, ...fields, output });
       store.measurements = store.measurements.map((one) => (one === name ? output : one));
       select(new Uint8Array(store.rows.n_rows));
       await loadRows();
