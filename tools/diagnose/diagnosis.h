@@ -1,86 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include <functional>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "tools/diagnose/propose/thresholds.h"
-#include "tools/effects/candidate.h"
-#include "tools/fit/fit.h"
-#include "tools/fit/noise/noise.h"
+#include "tools/diagnose/types.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
-#include "tools/residual/structure.h"
-#include "tools/timebase/time_base.h"
 
 namespace vernier::diagnose {
-
-enum class Verdict : std::uint8_t { kMissingEffect, kAmbiguous, kUnexplained, kInstrument, kConsistent };
-/// Returns the name as the JSON result writes it: "missing-effect" ...
-const char* verdict_name(Verdict verdict);
-
-struct DiagnoseOptions {
-  std::vector<effects::Effect> effects = effects::built_in_effects();
-  std::size_t most_effects = 5;  // steps of the stepwise model
-  std::size_t shown = 8;         // candidates that are fitted and listed
-  DiagnoseThresholds thresholds;
-  std::function<void(double, const std::string&)> progress = [](double, const std::string&) {};
-};
-
-/// The result of one candidate alone, by a full fit.
-struct CandidateFinding {
-  effects::Candidate candidate;
-  std::string add;
-  std::optional<std::size_t> axis;  // axis that drives it, else the axis of the transform on which it acts
-  std::vector<fit::ParameterEstimate> parameters;
-  std::optional<double> rms_after_um, check_rms_before_um, check_rms_after_um;
-  double share = 0, p_value = 1;
-  double score = 0;       // decrease of the extended BIC; above 6 is evidence
-  bool accepted = false;  // is in the stepwise model
-  std::string why_not;    // the test that it fails
-  std::vector<std::string> confounded_with;
-  std::vector<double>
-      aliases;  // other periods that the positions cannot distinguish from its own, longest first
-};
-
-/// Returns "Z carriage: lag 0.137 +- 0.007 ms": cause and size for people
-/// (tools/effects/spoken.h).
-std::string said_of(const CandidateFinding& finding);
-
-struct LadderStep {
-  std::string effect, add, label;                  // empty: the model as given
-  std::string said;                                // "Z carriage: lag"
-  std::string text;                                // the machine file, fitted
-  std::optional<double> rms_um, check_rms_um;      // of lengths
-  std::optional<double> rms_urad, check_rms_urad;  // of rotations
-  double chi_square_per_freedom = 0;
-  /// Do held-out rows confirm it, and by what likelihood ratio (natural logarithm)? Check rows are
-  /// used if the step is large enough there. Otherwise runs are held out in turn.
-  std::optional<bool> confirmed;
-  std::optional<double> evidence;
-};
-
-/// Locations of the candidates are those of base.machine, which may have an additional row
-/// (with_base_row).
-struct Diagnosis {
-  Verdict verdict = Verdict::kConsistent;
-  std::string explanation;
-  fit::FitResult base;
-  std::vector<CandidateFinding> candidates;
-  std::vector<LadderStep> ladder;
-  std::vector<std::string> next_measurement;
-  std::optional<std::size_t> runner_up;  // index into candidates
-  double runner_up_distance = 0;         // difference by which its criterion is worse
-  std::string machine_text;              // with all effects of the stepwise model, fitted
-  fit::FitResult end;                    // of that machine
-  residual::FailurePicture failure;      // where the fitted model fails, before any effect is added
-  residual::FailurePicture left;         // and at the end of the stepwise model
-  timebase::TimeBaseFinding time_base;   // `found` if the clock is the more likely cause
-  std::size_t searched = 0;              // number of tested candidates
-  fit::NoiseModel noise;                 // correlation of the errors of the readings
-  fit::NoiseUnit noise_unit;             // unit of a weighted reading
-};
 
 /// Finds the missing physical effect. Fits the model, ranks the catalogue at every location,
 /// accepts candidates that pass all tests, and returns one of the five verdicts (FORMATS section

@@ -598,8 +598,8 @@ double Finder::chance_of(std::size_t item, const Eigen::MatrixXd& columns, const
                            maths::chi_square_tail(gain / std::max(variance, 1e-300), unknowns));
 }
 
-Rivals Finder::rivals_of(std::size_t item) const {
-  Rivals rivals;
+Alternatives Finder::alternatives_to(std::size_t item) const {
+  Alternatives rivals;
   std::vector<std::pair<double, std::size_t>> close;
   const std::vector<std::size_t> others = without(item);
   for (const std::size_t rival : entry_item_) {

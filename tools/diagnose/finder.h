@@ -15,7 +15,7 @@
 namespace vernier::diagnose {
 
 /// Alternatives to an accepted effect. All are items of the pool.
-struct Rivals {
+struct Alternatives {
   std::vector<std::size_t> close;  // other causes that fit nearly as well, best first
   std::vector<std::size_t> same;   // the same columns from the same kinds of quantities
   double distance = 1e300;         // of the best other cause
@@ -60,7 +60,7 @@ class Finder {
   /// without it. Each run is predicted from the others.
   double held_out_evidence(std::size_t item) const;
   /// Alternatives that fit nearly as well as an accepted item, with the other items unchanged.
-  Rivals rivals_of(std::size_t item) const;
+  Alternatives alternatives_to(std::size_t item) const;
   /// Other periods that fit as well as an accepted item's own (Scanner::aliases), with the other
   /// items unchanged.
   std::vector<double> aliases_of(std::size_t item) const;

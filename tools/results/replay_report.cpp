@@ -15,7 +15,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json rung(const std::string& label, const model::Measurement& m, const Eigen::VectorXd& residual) {
+ordered_json step_json(const std::string& label, const model::Measurement& m,
+                       const Eigen::VectorXd& residual) {
   return {{"label", label},
           {"rms_um", text::or_null(fit::role_statistics(m, residual, false).rms_um)},
           {"check_rms_um", text::or_null(fit::role_statistics(m, residual, true).rms_um)}};
@@ -79,11 +80,11 @@ ordered_json loop_section(const compile::LoadedImage& image, const std::vector<R
 ordered_json replay_report(const std::optional<model::Machine>& before, const compile::LoadedImage& image,
                            const model::Measurement& m, const std::vector<ReplayStep>& steps) {
   ordered_json ladder = ordered_json::array();
-  ladder.push_back(rung("nominal machine", m, steps.front().result.before));
-  if (before) ladder.push_back(rung("model " + before->name, m, fit::residuals(*before, m)));
-  ladder.push_back(rung("model " + image.machine.name, m, fit::residuals(image.machine, m)));
+  ladder.push_back(step_json("nominal machine", m, steps.front().result.before));
+  if (before) ladder.push_back(step_json("model " + before->name, m, fit::residuals(*before, m)));
+  ladder.push_back(step_json("model " + image.machine.name, m, fit::residuals(image.machine, m)));
   for (const ReplayStep& step : steps)
-    ladder.push_back(rung("corrected, " + step.label, m, step.result.after));
+    ladder.push_back(step_json("corrected, " + step.label, m, step.result.after));
   ordered_json sections = ordered_json::array();
   sections.push_back(
       {{"title", "The error, step by step"},

@@ -11,6 +11,7 @@
 #include "tests/bench/diagnose/rates.h"
 #include "tests/support/hidden_survey_key.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/sentences.h"
 #include "tools/model/machine_reader.h"
 #include "tools/results/diagnosis_json.h"
 

@@ -12,8 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Names = std::vector<std::string>;
-
 std::map<std::string, std::string> sources_of_the_house() {
   std::map<std::string, std::string> files;
   for (const std::string& path : tracked_files()) {
@@ -32,7 +30,7 @@ TEST(Units, ACircleIsDetected) {
       {"tools/fit/b.h", "#include \"tools/fit/noise/c.h\"\n"},
       {"tools/fit/noise/c.h", "#include \"tools/fit/a.h\"\n"},
       {"tools/fit/d.cpp", "#include \"tools/fit/a.h\"\n#include \"tools/model/a.h\"\n"}};
-  EXPECT_EQ(circles_of_units(files), Names{"tools/fit/a tools/fit/b tools/fit/noise/c"});
+  EXPECT_EQ(circles_of_units(files), std::vector<std::string>{"tools/fit/a tools/fit/b tools/fit/noise/c"});
 }
 
 TEST(Units, ACircleOfFoldersIsDetected) {
@@ -40,7 +38,7 @@ TEST(Units, ACircleOfFoldersIsDetected) {
   const std::map<std::string, std::string> files = {{"tools/fit/a.cpp", "#include \"tools/fit/noise/c.h\"\n"},
                                                     {"tools/fit/noise/d.h", "#include \"tools/fit/b.h\"\n"}};
   EXPECT_TRUE(circles_of_units(files).empty());
-  EXPECT_EQ(circles_of_folders(files), Names{"tools/fit tools/fit/noise"});
+  EXPECT_EQ(circles_of_folders(files), std::vector<std::string>{"tools/fit tools/fit/noise"});
 }
 
 TEST(Units, OfOtherRoomsAreNoCircle) {
@@ -59,8 +57,8 @@ TEST(Units, NoneOfTheHouseStandInACircle) {
   const std::map<std::string, std::string> files = sources_of_the_house();
   if (files.empty()) GTEST_SKIP() << "not a git checkout: no list of tracked files";
   EXPECT_GT(files.size(), 500u) << "next to no source was found";
-  EXPECT_EQ(circles_of_units(files), Names{});
-  EXPECT_EQ(circles_of_folders(files), Names{});
+  EXPECT_EQ(circles_of_units(files), std::vector<std::string>{});
+  EXPECT_EQ(circles_of_folders(files), std::vector<std::string>{});
 }
 
 TEST(Units, NoFolderOfTheHouseHoldsMoreThanFifteen) {

@@ -5,10 +5,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "tools/import/ballbar/ballbar_file.h"
 
 namespace vernier {
 
@@ -55,6 +58,17 @@ inline std::vector<std::string> cells(const std::string& line) {
   std::istringstream in(line);
   for (std::string cell; std::getline(in, cell, ',');) found.push_back(cell);
   return found;
+}
+
+/// The file's printed result `feature` of an analysis of that version ("": no version); nullopt: no such
+/// result.
+inline std::optional<double> printed_result(const importer::BallbarFile& file, const std::string& analysis,
+                                            const std::string& version, const std::string& feature) {
+  for (const auto& candidate : file.analyses)
+    if (candidate.name == analysis && candidate.version == version)
+      for (const auto& printed : candidate.features)
+        if (printed.name == feature) return printed.value;
+  return std::nullopt;
 }
 
 }  // namespace vernier

@@ -7,6 +7,7 @@
 
 #include "tests/unit/plan/confusable.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/sentences.h"
 #include "tools/model/machine_reader.h"
 #include "tools/plan/offers.h"
 

@@ -8,6 +8,7 @@
 #include "tools/commands/report_header.h"
 #include "tools/commands/survey.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/sentences.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/model/machine_reader.h"

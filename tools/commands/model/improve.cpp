@@ -9,6 +9,7 @@
 #include "tools/commands/survey.h"
 #include "tools/compile/compile.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/sentences.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
 #include "tools/report/report.h"
@@ -34,7 +35,7 @@ struct ImproveArguments {
 };
 
 /// A step of the stepwise model that was accepted, and the machine file with it.
-struct Rung {
+struct ModelStep {
   std::string label, effect, add, file, text;
   std::optional<double> rms_um, check_rms_um;
 };
@@ -54,22 +55,22 @@ bool agreed(const ImproveArguments& arguments, const diagnose::LadderStep& step,
 }
 
 /// Readings of the measurement with the running correction of a machine, or the reason why they are unknown.
-Json replayed(const Rung& rung, const model::Measurement& rows, const model::Machine& from) {
+Json replayed(const ModelStep& model_step, const model::Measurement& rows, const model::Machine& from) {
   // Four days of a machine and a minute or two of ours.
   constexpr double kMostTicks = 4e8;
   try {
-    const model::Machine machine = model::parse_machine(rung.text, rung.file);
+    const model::Machine machine = model::parse_machine(model_step.text, model_step.file);
     const model::Measurement m = model::rebind(rows, from, machine);
     if (m.rows() > 0 && (m.states.time.maxCoeff() - m.states.time.minCoeff()) * 1000 > kMostTicks)
-      return {{"label", rung.label},
+      return {{"label", model_step.label},
               {"why_not", "the measurement is longer than four hundred million ticks"}};
-    const compile::CompiledMachine compiled = compile::compile_machine(machine, rung.text, {});
+    const compile::CompiledMachine compiled = compile::compile_machine(machine, model_step.text, {});
     const auto image = compile::load_image(compiled.image, machine);
     const simulate::ReplayResult r = simulate::replay(*image, m, {});
     const auto rms = [&](const Eigen::VectorXd& residual, bool check) {
       return text::or_null(fit::role_statistics(m, residual, check).rms_um);
     };
-    return {{"label", rung.label},
+    return {{"label", model_step.label},
             {"ticks", r.ticks},
             {"saturated", r.saturated},
             {"rms_before_um", rms(r.before, false)},
@@ -77,9 +78,9 @@ Json replayed(const Rung& rung, const model::Measurement& rows, const model::Mac
             {"check_rms_before_um", rms(r.before, true)},
             {"check_rms_after_um", rms(r.after, true)}};
   } catch (const text::InputError& error) {
-    return {{"label", rung.label}, {"why_not", error.what()}};
+    return {{"label", model_step.label}, {"why_not", error.what()}};
   } catch (const text::LimitNotMet& error) {
-    return {{"label", rung.label}, {"why_not", error.what()}};
+    return {{"label", model_step.label}, {"why_not", error.what()}};
   }
 }
 
@@ -131,17 +132,17 @@ class Improver {
       take({"+ " + step.said, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um});
     }
     const model::Machine before = machine_;
-    text_ = rungs_.back().text;
+    text_ = model_steps_.back().text;
     machine_ = model::parse_machine(text_, arguments_.survey.machine);
     rows_ = model::rebind(rows_, before, machine_);
     return true;
   }
 
-  void take(Rung rung) {
-    rung.file = fmt::format("{}/{}{}.xml", arguments_.output, rungs_.size(),
-                            rung.effect.empty() ? "_model" : "_" + rung.effect);
-    text::write_file(rung.file, rung.text);
-    rungs_.push_back(std::move(rung));
+  void take(ModelStep model_step) {
+    model_step.file = fmt::format("{}/{}{}.xml", arguments_.output, model_steps_.size(),
+                                  model_step.effect.empty() ? "_model" : "_" + model_step.effect);
+    text::write_file(model_step.file, model_step.text);
+    model_steps_.push_back(std::move(model_step));
   }
 
   void finish() {
@@ -156,13 +157,13 @@ class Improver {
     json["check_rms_um"] = last_["check_rms_um"];
     json["candidates"] = first_diagnosis_["candidates"];
     json["next_measurement"] = last_["next_measurement"];
-    for (const Rung& rung : rungs_) {
-      Json step = {{"effect", rung.effect.empty() ? Json(nullptr) : Json(rung.effect)},
-                   {"add", rung.add.empty() ? Json(nullptr) : Json(rung.add)},
-                   {"label", rung.label},
-                   {"machine", rung.file}};
-      step["rms_um"] = text::or_null(rung.rms_um);
-      step["check_rms_um"] = text::or_null(rung.check_rms_um);
+    for (const ModelStep& model_step : model_steps_) {
+      Json step = {{"effect", model_step.effect.empty() ? Json(nullptr) : Json(model_step.effect)},
+                   {"add", model_step.add.empty() ? Json(nullptr) : Json(model_step.add)},
+                   {"label", model_step.label},
+                   {"machine", model_step.file}};
+      step["rms_um"] = text::or_null(model_step.rms_um);
+      step["check_rms_um"] = text::or_null(model_step.check_rms_um);
       json["ladder"].push_back(step);
     }
     simulate(json);
@@ -172,27 +173,27 @@ class Improver {
     text::write_file(arguments_.output + "/improve.json", json.dump(1) + "\n");
     write_json(arguments_.json, json);
     fmt::print(out_, "left in {}: {} machine files, improve.json, improve.html\n", arguments_.output,
-               rungs_.size());
+               model_steps_.size());
   }
 
   /// The same fall in the 1 kHz loop: the correction of the first and of the last machine.
   void simulate(Json& json) {
     json["loop"] = Json::array();
-    for (const Rung* rung : {&rungs_.front(), &rungs_.back()}) {
-      const Json r = replayed(*rung, all_rows_, first_);
+    for (const ModelStep* model_step : {&model_steps_.front(), &model_steps_.back()}) {
+      const Json r = replayed(*model_step, all_rows_, first_);
       json["loop"].push_back(r);
       if (r.contains("why_not")) {
-        fmt::print(out_, "1 kHz loop, {}: not run: {}\n", rung->label, r["why_not"].get<std::string>());
+        fmt::print(out_, "1 kHz loop, {}: not run: {}\n", model_step->label, r["why_not"].get<std::string>());
         continue;
       }
       const auto um = [&](const char* key) {
         return r[key].is_null() ? std::string("-") : fmt::format("{:.4g} um", r[key].get<double>());
       };
-      fmt::print(out_, "1 kHz loop, {}: fit rows {} -> {}, check rows {} -> {}\n", rung->label,
+      fmt::print(out_, "1 kHz loop, {}: fit rows {} -> {}, check rows {} -> {}\n", model_step->label,
                  um("rms_before_um"), um("rms_after_um"), um("check_rms_before_um"),
                  um("check_rms_after_um"));
       json["simulation"] = r;
-      if (rungs_.size() == 1) break;
+      if (model_steps_.size() == 1) break;
     }
   }
 
@@ -201,7 +202,7 @@ class Improver {
     json["safe_to_run"] = nullptr;
     try {
       const safety::SafetySheet sheet =
-          safety::safety_sheet(model::parse_machine(rungs_.back().text, rungs_.back().file));
+          safety::safety_sheet(model::parse_machine(model_steps_.back().text, model_steps_.back().file));
       json["safe_to_run"] = results::safety_json(sheet);
       fmt::print(out_, "{}\n", sheet.ok() ? "safe to run: every rule of the sheet holds" : sheet.refusal());
     } catch (const text::InputError& error) {
@@ -216,7 +217,7 @@ class Improver {
   model::Machine machine_, first_;
   model::Measurement rows_, all_rows_;
   std::vector<effects::Effect> effects_;
-  std::vector<Rung> rungs_;
+  std::vector<ModelStep> model_steps_;
   Json first_diagnosis_, last_;
 };
 

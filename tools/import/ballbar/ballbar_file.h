@@ -60,9 +60,4 @@ struct BallbarFile {
   std::vector<std::string> notes;  // assumptions, one sentence each
 };
 
-/// The file's printed result `feature` of analysis `analysis` of that version ("" for no version); `nullopt`
-/// if the file has no such result. tool.
-std::optional<double> printed_result(const BallbarFile& file, const std::string& analysis,
-                                     const std::string& version, const std::string& feature);
-
 }  // namespace vernier::importer

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/diagnose/sentences.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "tools/effects/spoken.h"
+
+namespace vernier::diagnose {
+
+const char* verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kMissingEffect:
+      return "missing-effect";
+    case Verdict::kAmbiguous:
+      return "ambiguous";
+    case Verdict::kUnexplained:
+      return "unexplained";
+    case Verdict::kInstrument:
+      return "instrument";
+    case Verdict::kConsistent:
+      break;
+  }
+  return "consistent";
+}
+
+std::string said_of(const CandidateFinding& finding) {
+  std::vector<effects::SpokenValue> values;
+  for (const fit::ParameterEstimate& one : finding.parameters)
+    values.push_back({one.name, one.value, one.std});
+  return effects::spoken_with_size(finding.candidate, values);
+}
+
+std::string where_left(const residual::FailurePicture& left) {
+  std::string text;
+  constexpr std::size_t kSentences = 3;  // number of sentences that a reader can follow
+  for (std::size_t i = 0; i < std::min(kSentences, left.findings.size()); ++i)
+    text += " " + left.findings[i].sentence + ".";
+  return text;
+}
+
+std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_t accepted) {
+  std::string way, worse;
+  const bool lengths = steps[0].check_rms_um.has_value();
+  const auto left = [&](const LadderStep& step) { return lengths ? step.check_rms_um : step.check_rms_urad; };
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (!left(steps[i])) return {};
+    way += fmt::format("{}{:.4g}", i == 0 ? "" : i + 1 == steps.size() ? " to " : ", ", *left(steps[i]));
+    if (i > 0 && *left(steps[i]) > *left(steps[i - 1])) worse += (worse.empty() ? "" : ", ") + steps[i].said;
+  }
+  std::string text = fmt::format(" With {} effect{} the check rows go from {} {}", accepted,
+                                 accepted == 1 ? "" : "s", way, lengths ? "um" : "urad");
+  if (!worse.empty()) text += "; worse by " + worse;
+  return text + ".";
+}
+
+std::string cause_in_words(const CandidateFinding& cause, const std::string& next_best, double distance,
+                           const std::vector<LadderStep>& steps, std::size_t accepted) {
+  std::string text = said_of(cause) + ".";
+  if (!next_best.empty())
+    text += fmt::format(" The next best other cause, {}, is {:.0f} behind.", next_best, distance);
+  std::vector<std::string> beside;  // the stepwise model starts with the given model
+  for (std::size_t i = 1; i < steps.size(); ++i)
+    if (steps[i].said != cause.candidate.spoken) beside.push_back(steps[i].said);
+  if (!beside.empty()) text += fmt::format(" Beside it: {}.", fmt::join(beside, "; "));
+  return text + check_rows_in_words(steps, accepted);
+}
+
+std::string aliases_in_words(const effects::Candidate& candidate, double period,
+                             const std::vector<double>& aliases, const model::Axis& axis) {
+  std::string text =
+      fmt::format("{}: {}, with any of {} periods: the positions of {} do not tell them apart. {:.5g}",
+                  candidate.choice.effect->title, candidate.spoken, aliases.size() + 1, axis.name, period);
+  constexpr std::size_t kListed = 20;  // largest number of periods in a sentence
+  for (std::size_t i = 0; i < std::min(kListed, aliases.size()); ++i)
+    text += fmt::format(", {:.5g}", aliases[i]);
+  return text + fmt::format(" {}{}. Measure {} in uneven steps.", axis.rotary ? "deg" : "mm",
+                            aliases.size() > kListed ? " and shorter ones" : "", axis.name);
+}
+
+std::string pieces_in_words(const std::vector<std::string>& names) {
+  return fmt::format(
+      "{} effects come down to the noise together, and are more likely the pieces of one function of the "
+      "position that is none of the catalogue's: {}.",
+      names.size(), fmt::join(names, "; "));
+}
+
+std::string not_confirmed_in_words(const std::vector<std::string>& names) {
+  return names.empty() ? "" : fmt::format("The check rows do not confirm {}.", fmt::join(names, ", "));
+}
+
+}  // namespace vernier::diagnose

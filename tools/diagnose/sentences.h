@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The texts of a diagnosis. They decide nothing.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/types.h"
+#include "tools/model/machine.h"
+#include "tools/residual/structure.h"
+
+namespace vernier::diagnose {
+
+/// Returns the name as the JSON result writes it: "missing-effect" ...
+const char* verdict_name(Verdict verdict);
+
+/// Returns "Z carriage: lag 0.137 +- 0.007 ms": cause and size for people
+/// (tools/effects/spoken.h).
+std::string said_of(const CandidateFinding& finding);
+
+/// Returns where the residual fails its tests, in up to three sentences, each after a blank.
+std::string where_left(const residual::FailurePicture& left);
+
+/// Returns the residual of the check rows after every step, and the steps that increase it. Empty
+/// without check rows. `accepted`: number of accepted effects.
+std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_t accepted);
+
+/// Returns the cause with its coefficients, the next best other cause with the difference of its
+/// criterion (empty: there is no other), and the other steps. `steps` begins with the given model.
+std::string cause_in_words(const CandidateFinding& cause, const std::string& next_best, double distance,
+                           const std::vector<LadderStep>& steps, std::size_t accepted);
+
+/// Returns the sentence about a cyclic error whose period has aliases, and what to measure. `name`:
+/// of the effect with its location; period and aliases in mm or deg of the axis.
+std::string aliases_in_words(const effects::Candidate& candidate, double period,
+                             const std::vector<double>& aliases, const model::Axis& axis);
+
+/// Returns the sentence about effects that are likely parts of one function of position.
+std::string pieces_in_words(const std::vector<std::string>& names);
+
+/// Returns "The check rows do not confirm A, B."; empty without names.
+std::string not_confirmed_in_words(const std::vector<std::string>& names);
+
+}  // namespace vernier::diagnose

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/diagnose/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tools/diagnose/outliers.h"
+#include "tools/diagnose/pieces.h"
+#include "tools/diagnose/sentences.h"
+#include "tools/diagnose/shape.h"
+#include "tools/fit/least_squares/statistics.h"
+#include "tools/fit/noise/noise.h"
+#include "tools/maths/decompositions.h"
+#include "tools/model/rebind.h"
+
+namespace vernier::diagnose {
+namespace {
+
+class Decision {
+ public:
+  Decision(const Findings& found, Diagnosis& answer)
+      : found_(found),
+        limits_(found.options.thresholds.verdict),
+        finder_(found.finder),
+        pool_(found.finder.pool()),
+        accepted_(found.accepted),
+        answer_(answer),
+        rows_(model::rebind(found.measurement, answer.base.machine, answer.end.machine)) {}
+
+  void decide() {
+    for (const Rule& rule : kRules) {
+      std::string text = (this->*rule.explains)();
+      if (text.empty()) continue;
+      answer_.verdict = rule.verdict;
+      answer_.explanation = std::move(text);
+      return;
+    }
+  }
+
+ private:
+  /// A rule applies if it has an explanation.
+  struct Rule {
+    std::string (Decision::*explains)();
+    Verdict verdict;
+  };
+  static const std::array<Rule, 15> kRules;
+
+  // The rules, in the order of the table.
+
+  /// The clock of the instrument is the more likely cause. What effects of the machine explain is
+  /// not a clock error: a late reading looks like one.
+  std::string time_base() {
+    const timebase::TimeBaseFinding clock =
+        timebase::examine_time_base(found_.measurement, answer_.base.residual);
+    if (!clock.found) return {};
+    const bool explained = !accepted_.empty() && is_mostly_explained() &&
+                           !timebase::examine_time_base(rows_, answer_.end.residual).found;
+    if (explained) return {};
+    answer_.time_base = clock;
+    return "The time base of the measurement: " + clock.why;
+  }
+
+  std::string outliers() {
+    is_noise_ = down_to_noise();
+    pieces_ = pieces_of_one_function(finder_.evidence(), pool_, accepted_);
+    if (is_noise_ || !pieces_.empty()) return {};
+    return outliers_to_blame(answer_.end.machine, rows_, answer_.end.residual, limits_).value_or("");
+  }
+
+  std::string instrument_alone() {
+    const std::string drift = accepted_.empty() ? drift_of_instrument() : "";
+    if (drift.empty()) return {};
+    return drift + (is_noise_ ? " Beside it there is nothing to add." : where_left(answer_.left));
+  }
+
+  std::string nothing_and_not_confirmed() {
+    return with_refused(is_alone_in_noise() ? check_contradicts() : "");
+  }
+
+  std::string nothing_to_add() {
+    return with_refused(is_alone_in_noise() ? "The residual is noise: there is nothing to add." : "");
+  }
+
+  std::string nothing_explains() {
+    if (!accepted_.empty()) return {};
+    return with_refused("There is more than noise, and nothing in the catalogue explains it." +
+                        where_left(answer_.left));
+  }
+
+  std::string effect_of_instrument() {
+    return pool_.candidate(accepted_.front()).choice.effect->of_instrument;
+  }
+
+  std::string not_down_to_noise() {
+    name_confusions();
+    answer_.runner_up_distance = found_.alternatives.distance;
+    if (is_noise_) return {};
+    return "Effects of the catalogue lower the residual, and it does not come down to the noise." +
+           where_left(answer_.left);
+  }
+
+  std::string pieces() { return pieces_.empty() ? "" : pieces_in_words(names_of(pieces_)); }
+
+  /// The error of the check rows must not exceed that of the fit rows, except for their own scatter
+  /// and the uncertainty of the model's parameters.
+  std::string check_contradicts() {
+    const auto& check = answer_.end.normalised_check;
+    if (!check) return {};
+    const double freedom = std::max(1.0, answer_.end.freedom);
+    const double with_u =
+        fit::has_uncertainty(found_.measurement) ? std::max(1.0, answer_.end.chi_square / freedom) : 1;
+    const double ratio = check->rms * check->rms / with_u;
+    const double std = std::hypot(check->square_std / with_u, ratio * std::sqrt(2 / freedom));
+    if (ratio < 1 + found_.options.thresholds.proof.carries_sigmas * std) return {};
+    return fmt::format(
+        "The improvement is not confirmed on held-out rows: the residual of the check rows is {:.2g} times "
+        "that of the fit rows.",
+        std::sqrt(ratio));
+  }
+
+  /// Searched terms are likely pieces of one function if two of them are at one degree of freedom,
+  /// or if the check rows do not confirm one of them.
+  std::string terms_without_name() {
+    std::vector<effects::DofPlace> places;
+    bool apart = true;
+    for (const std::size_t item : accepted_) {
+      if (!pool_.is_custom(item)) continue;
+      const effects::DofPlace place = pool_.candidate(item).terms.front().place;
+      apart = apart && found_.confirmed.contains(item) &&
+              std::find(places.begin(), places.end(), place) == places.end();
+      places.push_back(place);
+    }
+    if (places.size() < 2 || apart) return {};
+    return fmt::format(
+        "The residual comes down to the noise with {} terms that only a search found: more likely pieces "
+        "of what the catalogue does not hold.",
+        places.size());
+  }
+
+  /// One of the accepted effects cannot be what its name states.
+  std::string shape_contradicts() {
+    for (const std::size_t item : accepted_)
+      if (const std::string doubt = doubt_of_shape(finder_.evidence(), pool_, accepted_, item);
+          !doubt.empty())
+        return "The residual comes down to the noise, and what does it is not given a name: " + doubt + ".";
+    return {};
+  }
+
+  /// The positions do not distinguish the found period from others. Sets the aliases of all
+  /// accepted effects, and explains the first one that has any.
+  std::string other_periods() {
+    std::string text;
+    for (const std::size_t item : accepted_) {
+      const std::vector<double> aliases = finder_.aliases_of(item);
+      if (aliases.empty()) continue;
+      const auto listed = std::find(found_.listed.begin(), found_.listed.end(), item);
+      if (listed != found_.listed.end())
+        answer_.candidates[static_cast<std::size_t>(listed - found_.listed.begin())].aliases = aliases;
+      if (text.empty())
+        text = aliases_in_words(pool_.candidate(item), pool_[item].scored.scanned.front(), aliases,
+                                found_.machine.axes[*pool_.candidate(item).choice.axis]);
+    }
+    return text;
+  }
+
+  std::string several_causes() {
+    if (found_.alternatives.close.empty()) return {};
+    return fmt::format("One of {} causes that explain these data alike, {} first.",
+                       1 + found_.alternatives.close.size(), pool_.candidate(accepted_.front()).spoken);
+  }
+
+  std::string one_cause() {
+    return cause_in_words(
+        answer_.candidates.front(),
+        found_.alternatives.best ? pool_.candidate(*found_.alternatives.best).spoken : std::string(),
+        found_.alternatives.distance, answer_.ladder, accepted_.size());
+  }
+
+  // What the rules need.
+
+  bool is_alone_in_noise() const { return accepted_.empty() && is_noise_; }
+
+  /// Appends the steps that the check rows contradict to an explanation that is not empty.
+  std::string with_refused(std::string text) const {
+    const std::string refused = not_confirmed_in_words(found_.not_confirmed);
+    if (!text.empty() && !refused.empty()) text += " " + refused;
+    return text;
+  }
+
+  std::vector<std::string> names_of(const std::vector<std::size_t>& items) const {
+    std::vector<std::string> names;
+    for (const std::size_t item : items) names.push_back(pool_.candidate(item).spoken);
+    return names;
+  }
+
+  /// The residual at the end of the stepwise model (mm, deg) without the correlated errors of the
+  /// fit rows: the residual of independent readings.
+  Eigen::VectorXd independent_residual() const {
+    const fit::NoiseModel& noise = answer_.noise;
+    Eigen::VectorXd residual = answer_.end.residual;
+    if (noise.independent() && noise.own == 1) return residual;
+    const Eigen::VectorXd weights = fit::fit_weights(rows_);
+    std::vector<std::size_t> fitted;
+    for (std::size_t i = 0; i < rows_.observations.size(); ++i)
+      if (weights[static_cast<Eigen::Index>(i)] > 0) fitted.push_back(i);
+    Eigen::MatrixXd left = weights(fitted).cwiseProduct(residual(fitted));
+    const fit::NoiseLayout layout = fit::noise_layout(rows_, fitted, found_.options.thresholds.layout);
+    fit::whiten(layout, noise, left);
+    if (!noise.steps.empty()) {
+      // The fit did not contain the steps and absorbed part of them. That part is removed together
+      // with them.
+      const Eigen::MatrixXd &seen = finder_.evidence().absorbed(), named = pool_.columns(accepted_);
+      Eigen::MatrixXd columns = fit::step_columns(layout, noise.steps, left.rows());
+      fit::whiten(layout, noise, columns);
+      if (seen.rows() == left.rows()) {  // otherwise the search used only every k-th row
+        const Eigen::Index steps = columns.cols();
+        columns.conservativeResize(Eigen::NoChange, steps + seen.cols() + named.cols());
+        columns.rightCols(seen.cols() + named.cols()) << seen, named;
+      }
+      left -= columns * maths::least_norm(columns, left);
+    }
+    // Whitened readings are in units of the independent noise. If no u is given, 1 of it is not a
+    // length.
+    const double unit = fit::has_uncertainty(rows_) ? 1 : noise.own;
+    residual(fitted) = unit * left.col(0).cwiseQuotient(weights(fitted));
+    return residual;
+  }
+
+  /// Returns a sentence about the instrument if errors correlated in time or by run are as large
+  /// as the independent noise; else empty.
+  std::string drift_of_instrument() const {
+    const fit::NoiseModel& noise = answer_.noise;
+    double drift = std::hypot(noise.run, noise.drift);
+    for (const fit::NoiseStep& step : noise.steps) drift = std::max(drift, std::abs(step.height));
+    if (drift < limits_.drift_share * noise.own || noise.support < limits_.drift_support) return {};
+    return "The instrument does not hold still: " + ::vernier::fit::in_words(noise, answer_.noise_unit) + ".";
+  }
+
+  /// Is one of the candidates, accepted or not, significant beside the accepted effects and noise
+  /// of the size of the residual?
+  bool something_stands_out() const {
+    for (std::size_t item = 0; item < pool_.size(); ++item) {
+      const bool chosen = std::find(accepted_.begin(), accepted_.end(), item) != accepted_.end();
+      if (!chosen && finder_.p_value_beside(item) < limits_.stands_out) return true;
+    }
+    return false;
+  }
+
+  /// Is the residual of the fit at the end of the stepwise model noise? If the uncertainty is
+  /// given, chi^2 decides. If chi^2 is so little above it that the uncertainty may be too small,
+  /// or if no uncertainty is given, remaining structure decides.
+  bool down_to_noise() {
+    const model::Machine& machine = answer_.end.machine;
+    residual::StructureOptions structure;
+    structure.fitted_parameters = static_cast<std::size_t>(answer_.end.observability.rank);
+    const Eigen::VectorXd left = independent_residual();
+    answer_.left = residual::failure_picture(machine, rows_, left, structure);
+    const bool structured = answer_.left.omnibus_p < limits_.structure;
+    const double freedom = std::max(1.0, answer_.end.freedom);
+    const Eigen::VectorXd weights = fit::fit_weights(rows_);
+    const fit::NoiseModel& noise = answer_.noise;
+    const bool told = !noise.independent() || noise.own != 1;
+    const double reduced =
+        (told ? weights.cwiseProduct(left).squaredNorm() : answer_.end.chi_square) / freedom;
+    if (!fit::has_uncertainty(found_.measurement)) return !structured || stands_without_u();
+    // Noise above the stated value is accepted only if no tested candidate is significant, and if
+    // there are enough readings to show structure.
+    const double stated = answer_.end.chi_square / freedom;
+    if (noise.independent() && stated > limits_.doubtful_uncertainty) {
+      if (stated > limits_.implausible_uncertainty || something_stands_out()) return false;
+      // With too few readings to show structure, the requirement is the same as without u.
+      if (freedom < limits_.enough_readings) return !structured && stands_without_u();
+    }
+    // The number alone is sufficient for one or two effects that reach the noise. If the result is
+    // only near the noise, or has more effects, it must also have no structure.
+    const double sigmas = (reduced - 1) / std::sqrt(2 / freedom);
+    if (sigmas < limits_.hit_sigmas && !accepted_.empty() && accepted_.size() <= limits_.few_effects)
+      return true;
+    if (sigmas < limits_.noise_sigmas) return !structured;
+    return reduced < limits_.doubtful_uncertainty && !structured;
+  }
+
+  /// Is the first effect larger than the residual beside it, and is most of chi^2 explained?
+  bool stands_without_u() const {
+    return !accepted_.empty() && is_mostly_explained() &&
+           finder_.growth_without(accepted_.front()) > limits_.larger_than_rest;
+  }
+
+  bool is_mostly_explained() const {
+    return answer_.end.chi_square < (1 - limits_.mostly_explained) * answer_.base.chi_square;
+  }
+
+  /// Sets which listed candidates cannot be distinguished from the cause.
+  void name_confusions() {
+    const Alternatives& alternatives = found_.alternatives;
+    const auto id = [&](std::size_t item) { return pool_.candidate(item).choice.effect->id; };
+    const auto note = [&](CandidateFinding& finding, const std::string& name) {
+      auto& list = finding.confounded_with;
+      if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+    };
+    std::vector<std::size_t> alike = alternatives.close;
+    alike.push_back(accepted_.front());
+    const auto is_alike = [&](std::size_t item) {
+      return std::find(alike.begin(), alike.end(), item) != alike.end();
+    };
+    for (std::size_t i = 0; i < found_.listed.size(); ++i) {
+      if (alternatives.best && found_.listed[i] == *alternatives.best) answer_.runner_up = i;
+      if (!is_alike(found_.listed[i])) continue;
+      for (const std::size_t other : alike)
+        if (other != found_.listed[i]) note(answer_.candidates[i], id(other));
+      if (found_.listed[i] == accepted_.front())
+        for (const std::size_t other : alternatives.same) note(answer_.candidates[i], id(other));
+    }
+  }
+
+  const Findings& found_;
+  const VerdictThresholds& limits_;
+  const Finder& finder_;
+  const Pool& pool_;  // of the finder
+  const std::vector<std::size_t>& accepted_;
+  Diagnosis& answer_;
+  const model::Measurement rows_;  // for the machine at the end of the stepwise model
+  bool is_noise_ = false;          // is the residual at that end noise?
+  std::vector<std::size_t> pieces_;
+};
+
+// The order is the precedence: the instrument before the machine, no name before a doubtful name,
+// several names before one.
+const std::array<Decision::Rule, 15> Decision::kRules = {{
+    {&Decision::time_base, Verdict::kInstrument},
+    {&Decision::outliers, Verdict::kInstrument},
+    {&Decision::instrument_alone, Verdict::kInstrument},
+    {&Decision::nothing_and_not_confirmed, Verdict::kUnexplained},
+    {&Decision::nothing_to_add, Verdict::kConsistent},
+    {&Decision::nothing_explains, Verdict::kUnexplained},
+    {&Decision::effect_of_instrument, Verdict::kInstrument},
+    {&Decision::not_down_to_noise, Verdict::kUnexplained},
+    {&Decision::pieces, Verdict::kUnexplained},
+    {&Decision::check_contradicts, Verdict::kUnexplained},
+    {&Decision::terms_without_name, Verdict::kUnexplained},
+    {&Decision::shape_contradicts, Verdict::kUnexplained},
+    {&Decision::other_periods, Verdict::kAmbiguous},
+    {&Decision::several_causes, Verdict::kAmbiguous},
+    {&Decision::one_cause, Verdict::kMissingEffect},
+}};
+
+}  // namespace
+
+void set_verdict(const Findings& found, Diagnosis& answer) { Decision(found, answer).decide(); }
+
+}  // namespace vernier::diagnose

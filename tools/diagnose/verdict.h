@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/finder.h"
+#include "tools/diagnose/types.h"
+
+namespace vernier::diagnose {
+
+/// All that the search and the fits found, as input of the verdict.
+struct Findings {
+  const DiagnoseOptions& options;
+  const model::Measurement& measurement;  // for the machine of the base fit
+  const model::Machine& machine;          // as given
+  const Finder& finder;
+  const std::vector<std::size_t>& accepted;       // items of the stepwise model, the cause first
+  const std::set<std::size_t>& confirmed;         // items that the check rows confirm
+  const std::vector<std::string>& not_confirmed;  // names of steps that the check rows contradict
+  const Alternatives& alternatives;               // to the cause
+  const std::vector<std::size_t>& listed;         // items in the order of Diagnosis::candidates
+};
+
+/// Sets the verdict, its explanation and what belongs to them (`left`, `time_base`, `runner_up`,
+/// aliases and confusions of candidates). The first rule that applies decides; their order is the
+/// table in the source. `answer`: with base, end, stepwise model and candidates. tool.
+void set_verdict(const Findings& found, Diagnosis& answer);
+
+}  // namespace vernier::diagnose
