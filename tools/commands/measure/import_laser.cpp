@@ -45,7 +45,7 @@ void run_laser(const LaserArguments& arguments) {
 void add_laser_kind(CLI::App& import) {
   const auto arguments = std::make_shared<LaserArguments>();
   CLI::App* kind = import.add_subcommand("laser", "Linear laser runs (.rtl)");
-  kind->add_option("file", arguments->file, "file of targets and runs")->required()->type_name("FILE");
+  kind->add_option("file", arguments->file, "file of targets and runs")->type_name(kReads)->required();
   kind->add_option("--axis", arguments->axis, "which axis was measured; default: the file's own");
   kind->add_option("--senses", arguments->senses,
                    "listed: by the order of the lines; alternate: odd runs forward, even back; forward")
