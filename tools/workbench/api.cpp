@@ -25,9 +25,10 @@ Json importer_of(const std::string& file) {
 
 }  // namespace
 
-Api::Api(const std::string& directory, const std::string& program, std::string version)
+Api::Api(const std::string& directory, const std::string& program, std::string version, const Json& commands)
     : project_(directory),
       version_(std::move(version)),
+      commands_(commands),
       history_(project_),
       reader_(program, project_),
       jobs_(program, project_, history_) {}
@@ -48,6 +49,7 @@ ApiReply Api::answer(const ApiRequest& request) {
       {"GET", "/api/history", &Api::history}, {"POST", "/api/history", &Api::history},
       {"GET", "/api/live", &Api::live}};
   if (request.method == "GET" && request.path == "/api/project") return project_page();
+  if (request.method == "GET" && request.path == "/api/commands") return json_reply(commands_.allowed());
   if (FileDesk::answers(request) && request.method != "PUT") return reader_.reply(request);
   for (const Route& route : kRoutes)
     if (request.method == route.method && request.path == route.path) return (this->*route.answer)(request);
@@ -115,7 +117,7 @@ ApiReply Api::lines(const ApiRequest& request) {
 
 ApiReply Api::jobs(const ApiRequest& request) {
   if (request.method == "POST") {
-    const std::uint64_t id = jobs_.start(plan_command(body_json(request), project_));
+    const std::uint64_t id = jobs_.start(commands_.plan(body_json(request), project_));
     return json_reply(jobs_.state(id), 202);
   }
   const std::uint64_t id = whole_number(request.word("id"));

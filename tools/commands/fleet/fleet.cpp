@@ -347,11 +347,14 @@ void add_record_kinds(CLI::App& fleet) {
       "record", "record what runs on a machine: model, image, data, signer, data of its check");
   command->add_option("MACHINE", record->machine, "its name in the registry")->required();
   add_registry(*command, record->registry);
-  command->add_option("--model", record->model, "machine file (XML)")->required();
-  command->add_option("--image", record->image, "directory that `vernier compile` wrote");
-  command->add_option("--data", record->data, "measurement files that the model was fitted to");
+  command->add_option("--model", record->model, "machine file (XML)")->type_name(kReads)->required();
+  command->add_option("--image", record->image, "directory that `vernier compile` wrote")
+      ->type_name(kReadsFolder);
+  command->add_option("--data", record->data, "measurement files that the model was fitted to")
+      ->type_name(kReads);
   command->add_option("--signed-by", record->signed_by, "person responsible for it")->required();
-  command->add_option("--against", record->against, "measurement files that it was checked against");
+  command->add_option("--against", record->against, "measurement files that it was checked against")
+      ->type_name(kReads);
   command->footer("Files are written down by name and BLAKE2b-256. Exit status 0 done, 1 bad input.");
   command->callback([record] { run_record(*record); });
 
@@ -359,10 +362,14 @@ void add_record_kinds(CLI::App& fleet) {
   command = fleet.add_subcommand("check", "write down what `vernier check` answered for a machine");
   command->add_option("MACHINE", check->machine, "its name in the registry")->required();
   add_registry(*command, check->registry);
-  command->add_option("--result", check->result, "file of `vernier check --json`")->required();
-  command->add_option(
-      "--history", check->history,
-      "file of `vernier check --history`: what its last check reads of each parameter, for `alike`");
+  command->add_option("--result", check->result, "file of `vernier check --json`")
+      ->type_name(kReads)
+      ->required();
+  command
+      ->add_option(
+          "--history", check->history,
+          "file of `vernier check --history`: what its last check reads of each parameter, for `alike`")
+      ->type_name(kReads);
   command->add_option("--at", check->at, "when it was measured (UTC): 2026-11-23T13:05:00Z; default: now");
   command->footer("Exit status 0 done, 1 bad input, 2 this check is there already.");
   command->callback([check] { run_check(*check); });
@@ -372,6 +379,7 @@ void add_record_kinds(CLI::App& fleet) {
 
 void add_registry(CLI::App& command, std::string& place) {
   command.add_option("--registry", place, "postgresql://… or a file (or VERNIER_REGISTRY)")
+      ->type_name(kReadsOrServer)
       ->envname("VERNIER_REGISTRY");
 }
 

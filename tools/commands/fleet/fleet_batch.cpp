@@ -227,7 +227,8 @@ void add_batch(CLI::App& fleet) {
       fleet.add_subcommand("batch", "write a command for each machine, for GNU parallel or Slurm");
   command->add_option("NAME", batch->name, "name of the batch, e.g. night-2026-11-23")->required();
   add_registry(*command, batch->registry);
-  command->add_option("-o,--output", batch->folder, "new directory of the batch; default: NAME");
+  command->add_option("-o,--output", batch->folder, "new directory of the batch; default: NAME")
+      ->type_name(kWritesFolder);
   command->add_option("--scheduler", batch->scheduler, "program that runs the commands: parallel or slurm")
       ->check(CLI::IsMember({"parallel", "slurm"}))
       ->capture_default_str();
@@ -249,7 +250,9 @@ void add_batch(CLI::App& fleet) {
   const auto task = std::make_shared<TaskArguments>();
   command =
       fleet.add_subcommand("task", "run the command of one machine of a batch (the scheduler calls it)");
-  command->add_option("DIR", task->folder, "directory that `fleet batch` wrote")->required();
+  command->add_option("DIR", task->folder, "directory that `fleet batch` wrote")
+      ->type_name(kReadsFolder)
+      ->required();
   command->add_option("MACHINE", task->machine, "machine of the batch")->required();
   command->footer(
       "A machine that has an answer is left alone. Exit status 0 the answer is written, 1 bad input, 2 the "
@@ -258,7 +261,9 @@ void add_batch(CLI::App& fleet) {
 
   const auto collect = std::make_shared<CollectArguments>();
   command = fleet.add_subcommand("collect", "book the answers of a batch in the registry, each once");
-  command->add_option("DIR", collect->folder, "directory that `fleet batch` wrote")->required();
+  command->add_option("DIR", collect->folder, "directory that `fleet batch` wrote")
+      ->type_name(kReadsFolder)
+      ->required();
   add_registry(*command, collect->registry);
   command->add_option("--json", collect->json, "result for programs; - for standard output");
   command->footer(

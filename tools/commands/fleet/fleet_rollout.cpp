@@ -191,7 +191,8 @@ void add_rollout(CLI::App& fleet) {
   command->add_option(
       "--images", arguments->images,
       "directories that `vernier compile` wrote, {machine} in the name; without it: how far it is");
-  command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)");
+  command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)")
+      ->type_name(kReads);
   command->add_option("--signed-by", arguments->signed_by,
                       "person responsible for the images; recorded in the registry");
   command->add_option("--machine", arguments->machines,

@@ -17,9 +17,10 @@ constexpr AddKind kKinds[] = {
 
 void add_import_output(CLI::App& kind, ImportOutput& output) {
   kind.add_option("-o,--output", output.csv_path, "Measurement file to write (CSV)")
-      ->required()
-      ->type_name("FILE");
-  kind.add_option("--json", output.json_path, "Result for programs; - is standard output")->type_name("FILE");
+      ->type_name(kWrites)
+      ->required();
+  kind.add_option("--json", output.json_path, "Result for programs; - is standard output")
+      ->type_name(kWrites);
 }
 
 void register_import(CLI::App& vernier) {

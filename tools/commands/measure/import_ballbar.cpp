@@ -189,7 +189,7 @@ struct BallbarArguments {
 
 std::shared_ptr<BallbarArguments> add_common(CLI::App& kind) {
   auto arguments = std::make_shared<BallbarArguments>();
-  kind.add_option("files", arguments->files, "Files of the instrument")->required()->type_name("FILE");
+  kind.add_option("files", arguments->files, "Files of the instrument")->type_name(kReads)->required();
   kind.add_option("--pause", arguments->options.pause_s, "Time between two runs, which no file logs (s)")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));

@@ -44,7 +44,7 @@ void run_laser(const LaserArguments& arguments) {
 
 void add_laser_kind(CLI::App& kind) {
   const auto arguments = std::make_shared<LaserArguments>();
-  kind.add_option("file", arguments->file, "file of targets and runs")->required()->type_name("FILE");
+  kind.add_option("file", arguments->file, "file of targets and runs")->type_name(kReads)->required();
   kind.add_option("--axis", arguments->axis, "which axis was measured; default: the file's own");
   kind.add_option("--senses", arguments->senses,
                   "listed: by the order of the lines; alternate: odd runs forward, even back; forward")

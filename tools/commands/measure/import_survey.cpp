@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
 #include "tools/format/columns.h"
+#include "tools/import/tables/delimited.h"
 #include "tools/import/tables/machine_log.h"
 #include "tools/import/tables/survey.h"
 #include "tools/model/machine_reader.h"
@@ -132,14 +133,14 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
 }
 
 void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& arguments) {
-  kind.add_option("file", arguments->file, "table of the instrument (text)")->required()->type_name("FILE");
-  kind.add_option("--map", arguments->map, "column map: the meanings of the columns")->type_name("FILE");
+  kind.add_option("file", arguments->file, "table of the instrument (text)")->type_name(kReads)->required();
+  kind.add_option("--map", arguments->map, "column map: the meanings of the columns")->type_name(kReads);
   kind.add_option("--column", arguments->columns, "one column: \"3=x[mm]\" or \"Name=x[mm]\"; again for each")
       ->allow_extra_args(false);
   kind.add_option("--set", arguments->constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
       ->allow_extra_args(false);
-  kind.add_option("--separator", arguments->separator,
-                  "comma, semicolon, tab, space (blanks); default: auto");
+  kind.add_option("--separator", arguments->separator, "space: blanks; default: auto")
+      ->check(CLI::IsMember(importer::separator_words()));
   kind.add_option("--decimal", arguments->decimal, "decimal sign")->check(CLI::IsMember({"point", "comma"}));
   kind.add_option("--skip", arguments->skip, "lines at the top to leave out");
   kind.add_option("--comment", arguments->comment,
@@ -148,7 +149,7 @@ void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& 
   kind.add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
       ->check(CLI::Range(2, 1000000));
   kind.add_option("--machine", arguments->machine, "machine file: read the result as a fit of it would")
-      ->type_name("FILE");
+      ->type_name(kReads);
   add_import_output(kind, arguments->output);
   kind.callback([arguments, &kind] { run_survey(kind.get_name(), *arguments, kind); });
 }
@@ -163,7 +164,7 @@ void add_tracker_kind(CLI::App& kind) {
           "--log", arguments->log,
           "log of the machine (CSV: t and its axes): points are paired with its dwells, by order, ways and "
           "time; with --machine")
-      ->type_name("FILE");
+      ->type_name(kReads);
   kind.add_option("--dwell", log.dwell_s, "--log: least standstill, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

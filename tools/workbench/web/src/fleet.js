@@ -65,7 +65,7 @@ export function fleetView(root) {
     const there = store.files.find((file) => file.name === 'fleet.db');
     if (!registry.value && there) registry.value = there.name;
   });
-  const ask = async (what) => (await run({ command: 'fleet', what, registry: registry.value })).result;
+  const ask = async (what) => (await run({ command: `fleet ${what}`, registry: registry.value })).result;
   const look = button(
     'Look',
     () =>
