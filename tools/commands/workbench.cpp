@@ -13,11 +13,11 @@
 #include "tools/commands/description.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
+#include "tools/text/process.h"
 #include "tools/upload/client.h"
 #include "tools/upload/open_transport.h"
 #include "tools/workbench/file_reader.h"
 #include "tools/workbench/image_diff.h"
-#include "tools/workbench/runs/process.h"
 #include "tools/workbench/server.h"
 
 namespace vernier::commands::workbench_cli {
@@ -40,9 +40,9 @@ sigset_t ending_signals() {
 void open_browser(const std::string& url) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   std::thread([url] {
-    workbench::RunningProcess running;
+    text::RunningProcess running;
     try {
-      workbench::run_process(
+      text::run_process(
           "/usr/bin/xdg-open", {url}, "/", 1 << 20, [](std::string_view) {}, running);
     } catch (const text::InputError&) {
       // The address is printed too.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tools/import/kinds.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/workbench/files/file_desk.h"
@@ -14,6 +15,12 @@ using Json = nlohmann::ordered_json;
 
 bool ends_with(const std::string& text, std::string_view end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// The kind of `vernier import` for the file of an instrument, null for another file.
+Json importer_of(const std::string& file) {
+  const importer::ImportKind* const kind = importer::import_kind_of(file);
+  return kind == nullptr ? Json(nullptr) : Json(kind->name);
 }
 
 }  // namespace
@@ -54,6 +61,7 @@ ApiReply Api::project_page() {
   for (const ProjectFile& file : project_.list())
     files.push_back({{"name", file.name},
                      {"kind", kind_name(file.kind)},
+                     {"importer", importer_of(file.name)},
                      {"bytes", file.bytes},
                      {"modified_s", file.modified_s}});
   return json_reply({{"folder", project_.root().filename().string()},

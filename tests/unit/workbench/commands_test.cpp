@@ -3,7 +3,7 @@
 
 #include "tests/unit/workbench/rig.h"
 #include "tools/text/error.h"
-#include "tools/workbench/runs/process.h"
+#include "tools/text/process.h"
 
 namespace vernier::commands_test {
 
@@ -63,7 +63,8 @@ TEST(WorkbenchCommand, LooksAtAFleetAndChangesNothingOfIt) {
             "vernier fleet due --registry postgresql://u@h/fleet");
   EXPECT_EQ(rig.typed({{"command", "fleet alike"}, {"registry", "m.xml"}}),
             "vernier fleet alike --registry m.xml");
-  for (const char* what : {"rollout", "forget", "gateway", "work", "enqueue", "add", "", "status due"})
+  for (const char* what :
+       {"rollout", "forget", "gateway", "batch", "task", "collect", "rename", "add", "", "status due"})
     EXPECT_THROW(rig.typed({{"command", std::string("fleet ") + what}, {"registry", "m.xml"}}), InputError)
         << what;
   for (const char* place : {"../fleet.db", "/tmp/fleet.db", "none.db", "--x", "postgresqlx://h"})

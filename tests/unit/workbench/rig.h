@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "tools/text/files.h"
-#include "tools/workbench/runs/process.h"
+#include "tools/text/process.h"
 #include "tools/workbench/server.h"
 
 namespace vernier::test {
@@ -48,9 +48,9 @@ inline std::string program() { return std::string(VERNIER_BIN_DIR) + "/vernier";
 /// Its commands and options, as it hands them to the workbench.
 inline const nlohmann::ordered_json& described() {
   static const nlohmann::ordered_json kCommands = [] {
-    workbench::RunningProcess running;
+    text::RunningProcess running;
     return nlohmann::ordered_json::parse(
-        workbench::run_process(
+        text::run_process(
             program(), {"completion", "json"}, "/", 1 << 22, [](std::string_view) {}, running)
             .out);
   }();

@@ -55,7 +55,7 @@ constexpr Allowed kAllowed[] = {
     {"fleet status", false, false, "registry!"},
     {"fleet due", false, false, "registry!"},
     {"fleet alike", false, false, "registry!"},
-    {"fleet jobs", false, false, "registry!"},
+    {"fleet answers", false, false, "registry!"},
 };
 
 /// The entry of a list with this "name"; throws std::logic_error without one.

@@ -67,7 +67,10 @@ export function beginPanel(choose) {
       rows = store.measurements.length > 0;
     const item = (done, words) => el('li', { class: done ? 'done' : null }, words);
     steps.replaceChildren(
-      item(rows, 'What was measured: drop any spreadsheet (.xlsx, .csv, .txt), ball-bar file (.b5r) or measurement file above.'),
+      item(
+        rows,
+        'What was measured: drop any spreadsheet (.xlsx, .csv, .txt), file of a ball bar or an interferometer (.b5r, .rtl) or measurement file above.',
+      ),
       item(machine, 'Which machine: drop its machine file (.xml), or make one below.'),
       item(false, 'Then go to Compare: where the model fails, and from there along the path at the top.'),
     );

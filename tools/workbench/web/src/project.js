@@ -49,13 +49,17 @@ async function isSheet(name) {
   return (await kinds.get(key)).kind === 'sheet';
 }
 
+/** The kind of `vernier import` that reads a file of the project without further options. */
+const importerOf = (name) => store.files.find((one) => one.name === name)?.importer;
+
 /** Makes a measurement of a file of the project, as its kind asks for. */
 async function importFile(name, box, repair) {
   const done = (output) => choose(store.machine, [output]);
-  if (/\.b5r$/i.test(name)) {
-    const stem = name.replace(/\.b5r$/i, '');
-    const output = freeName(stem, '.csv');
-    await run({ command: 'import ballbar', files: [name], ...repair, output });
+  const kind = importerOf(name);
+  if (kind) {
+    const output = freeName(name.replace(/\.[^.]*$/, ''), '.csv');
+    const fields = kind === 'ballbar' ? { files: [name], ...repair } : { file: name };
+    await run({ command: `import ${kind}`, ...fields, output });
     return done(output);
   }
   return importSheet(box, name, done);
@@ -68,7 +72,7 @@ async function take(file, repair, box) {
   await putFile(name, bytes);
   await refresh();
   if (/\.xml$/i.test(name)) return choose(name, store.measurements);
-  if (/\.b5r$/i.test(name) || (kSheet.test(name) && (await isSheet(name)))) return importFile(name, box, repair);
+  if (importerOf(name) || (kSheet.test(name) && (await isSheet(name)))) return importFile(name, box, repair);
   if (/\.csv$/i.test(name)) return choose(store.machine, [name]);
   return null;
 }
@@ -153,7 +157,7 @@ export function projectView(root) {
   const zone = el(
     'div',
     { class: 'drop', id: 'drop' },
-    el('p', {}, 'Drop what was measured (.csv, .xlsx, .txt, .b5r) and machine files (.xml) here, or choose them: '),
+    el('p', {}, 'Drop what was measured (.csv, .xlsx, .txt, files of an instrument) and machine files (.xml) here, or choose them: '),
     pick,
     repair.elements,
   );
