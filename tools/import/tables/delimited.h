@@ -30,8 +30,9 @@ struct DelimitedFile {
 DelimitedFile parse_delimited(const std::string& text, const std::string& file,
                               const DelimitedFormat& format);
 
-/// The separator of a name: comma, semicolon, tab, space, auto. place: of the name, if it is not an argument.
-/// Throws InputError.
+/// Names of separators: comma, semicolon, tab, space, auto.
+std::vector<std::string> separator_words();
+/// The separator of such a name. place: of the name, if it is not an argument. Throws InputError.
 char separator_of(const std::string& name, const text::Place& place = {});
 
 }  // namespace vernier::importer
