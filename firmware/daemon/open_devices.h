@@ -23,12 +23,12 @@ using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
 // Each function opens one device of the board file. Null with `error` set if it is missing; a wrong kind or
 // setting throws BoardError. setup.
 
-/// A PWM channel or a converter. rotary: spans are in degrees, else in mm.
+/// Opens a PWM channel or a converter. rotary: spans are in degrees, else in mm.
 std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error);
-/// A sensor. lines: the open ones, and one more if the sensor needs it.
+/// Opens a sensor. lines: the open Modbus lines; a line that the sensor needs is added.
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines, std::string& error);
-/// The buffer of a device that inputs of kind "iio-buffer" name, one channel each; its trigger and rate are
-/// those of the first.
+/// Opens the buffer of the device that inputs of kind "iio-buffer" name, one channel per input. The trigger
+/// and the rate of the first input apply.
 std::unique_ptr<IioBuffer> open_iio_buffer(const std::vector<const SignalSource*>& channels,
                                            std::string& error);
 /// A way in from outside.

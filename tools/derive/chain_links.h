@@ -13,8 +13,8 @@ class SymbolBook;
 
 using SymbolicVector = std::array<GiNaC::ex, 3>;
 
-/// Rotation matrix as a product. Successive rotations about one axis are merged: parallel axes
-/// give sin(q2+q3), not products of sines.
+/// Rotation matrix as a product. Successive rotations about one axis are merged: parallel axes give
+/// sin(q2+q3) instead of products of sines.
 class RotationProduct {
  public:
   void turn(int axis, const GiNaC::ex& angle_rad);

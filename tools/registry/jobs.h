@@ -38,7 +38,7 @@ class JobQueue {
   /// Takes the next free job for this worker for lease_s; `nullopt` if no job is free.
   std::optional<Job> take(const std::string& batch, const std::string& worker, double lease_s,
                           std::int64_t most_attempts);
-  /// False: it is no longer this attempt's.
+  /// Renews the lease of a job; false: the job no longer belongs to this attempt.
   bool renew(const Job& job, double lease_s);
   /// Records the end of a job (status 0: done); false: the job no longer belongs to this attempt, and no
   /// entry was written.
@@ -55,16 +55,16 @@ class JobQueue {
   Registry& registry_;
 };
 
-/// How a worker works.
+/// Options of a worker.
 struct WorkOptions {
   std::string registry, batch, worker;
   double lease_s = 60;
   std::int64_t most_attempts = 3;  // a command that takes its worker with it is not tried for ever
 };
 
-/// Takes jobs and runs their commands with the shell, one after the other, until no job of the batch is open
-/// or `stop` is set. At `stop` a running command is ended and its job returned. `ended` is called for every
-/// job. Returns the number of finished jobs. The registry may be unavailable for a while. tool.
+/// Takes jobs and runs their commands with the shell, one after another, until no job of the batch is open or
+/// `stop` is set. At `stop` a running command is ended and its job returned. `ended` is called for every job.
+/// Returns the number of finished jobs. The registry may be unavailable for a while. tool.
 std::int64_t work(const WorkOptions& options, const std::atomic<bool>& stop,
                   const std::function<void(const Job&, const JobCounts&)>& ended);
 

@@ -7,11 +7,12 @@
 
 namespace vernier::registry {
 
-/// Replaces {machine} in a command by the name, as one word of a shell with any characters. tool.
+/// Replaces {machine} in a command by the name, as one word of a shell; the name may have any characters.
+/// tool.
 std::string command_for(const std::string& command, const std::string& machine);
 
-/// A running shell command in a separate process group. It ends together with the process that started it.
-/// Its output is read, and the last line of the output is kept. tool.
+/// A running shell command in a separate process group. The command ends together with the process that
+/// started it. The output of the command is read; its last line is kept. tool.
 class ShellCommand {
  public:
   /// Throws InputError if no process can be started.
@@ -20,14 +21,14 @@ class ShellCommand {
   ShellCommand(const ShellCommand&) = delete;
   ShellCommand& operator=(const ShellCommand&) = delete;
 
-  /// Waits; true once it has ended.
+  /// Waits for the end of the command; true if the command has ended.
   bool wait(std::chrono::milliseconds patience);
   bool ended() const { return pid_ == 0; }
-  /// Exit status, or 128 + the signal that ended it.
+  /// Returns the exit status, or 128 + the signal that ended the command.
   int status() const { return status_; }
-  /// The last line of its output that is not empty, 400 letters at most.
+  /// Returns the last line of the output that is not empty, at most 400 letters.
   std::string last_line() const;
-  /// Ends it, and all that it started, immediately.
+  /// Ends the command, and all processes that it started, immediately.
   void end();
 
  private:

@@ -20,7 +20,8 @@ class Api {
   /// InputError if the folder does not exist. tool.
   Api(const std::string& directory, const std::string& program, std::string version);
 
-  /// Never throws: bad input is 422 with {"message"}, an unknown path 404, our own fault 500.
+  /// Answers a request and never throws: bad input is 422 with {"message"}, an unknown path 404, an internal
+  /// error 500.
   ApiReply reply(const ApiRequest& request);
 
  private:

@@ -8,8 +8,8 @@ namespace vernier::compile {
 
 enum class Function : std::uint8_t { kSin, kCos, kExp, kLog, kSqrt, kReciprocal, kArcTangent };
 
-/// Value of a function and of its first derivative. Arguments of sine and cosine and results of
-/// the arc tangent are in degrees.
+/// Returns the value of a function; slope_of returns its first derivative. Arguments of sine and cosine and
+/// results of the arc tangent are in degrees.
 double value_of(Function f, double x);
 double slope_of(Function f, double x);
 /// Largest |first| and |fourth| derivative over an interval (closed form). The fourth bounds the error of

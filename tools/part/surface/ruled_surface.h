@@ -7,8 +7,8 @@
 
 namespace vernier::part {
 
-/// One flank of the part: straight lines between a bottom and a top curve at the same parameter,
-/// S(u,v) = (1-v) C0(u) + v C1(u), u and v 0..1, mm in workpiece coordinates.
+/// One flank of the part: straight lines between a bottom and a top curve at the same parameter. S(u,v) =
+/// (1-v) C0(u) + v C1(u), u and v 0..1, mm in workpiece coordinates.
 struct RuledSurface {
   char name = '?';
   Spline bottom, top;
@@ -23,7 +23,7 @@ struct SurfacePoint {
 
 SurfacePoint surface_point(const RuledSurface& surface, double u, double v);
 
-/// Where a point of space falls on a surface.
+/// Foot point: the nearest point of a surface to a point in space.
 struct SurfaceFoot {
   double u = 0, v = 0;
   double distance_mm = 0;   // along the outward normal; negative: within the material (overcut)
@@ -36,7 +36,7 @@ struct SurfaceFoot {
 /// tool.
 SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point, double u, double v);
 
-/// The same with a start found by searching the whole surface.
+/// Finds the nearest point of a surface; searches the whole surface for the start.
 SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point);
 
 }  // namespace vernier::part
