@@ -32,8 +32,8 @@ struct ProgramArc {
   bool whole() const;
 };
 
-/// Returns the letters of a plane's axes in the order in which G3 turns from the first to the second;
-/// centre_letters() returns the letters of the centre.
+/// Returns the letters of a plane's axes in the order in which G3 turns from the first to the second. The
+/// letters of the centre (I J K) follow from them.
 std::array<char, 2> plane_letters(int plane);
 
 /// Returns the arc of a block from R, or from I J K. Ends that coincide are a whole turn. Throws InputError:

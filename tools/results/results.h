@@ -22,7 +22,7 @@ nlohmann::ordered_json stretches_json(const model::Measurement& measurement, con
 
 /// domains_json: rows inside and outside the domains of validity of learned terms: {domain, quantity, low,
 /// high (trained; null while open), least, most (of the rows), rows_outside, rows_without_effect}.
-/// domain_lines: the same for people, one line each, if rows are outside.
+/// print_domains: the same for people, one line each, if rows are outside.
 nlohmann::ordered_json domains_json(const model::Machine& machine, const model::Measurement& measurement);
 void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
 

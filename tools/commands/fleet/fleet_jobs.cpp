@@ -152,7 +152,7 @@ void add_jobs(CLI::App& fleet) {
       ->capture_default_str();
   command
       ->add_option("--lease", work->options.lease_s,
-                   "s after which the job of a worker that is gone is free again")
+                   "time in s after which the job of a stopped worker is free again")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
   command->add_option("--attempts", work->options.most_attempts, "of a job whose workers end without a word")
@@ -168,7 +168,7 @@ void add_jobs(CLI::App& fleet) {
 
   const auto jobs = std::make_shared<JobsArguments>();
   command = fleet.add_subcommand("jobs", "how far the batches are, or one of them job by job");
-  command->add_option("BATCH", jobs->batch, "only this one, with its jobs");
+  command->add_option("BATCH", jobs->batch, "only this batch, with its jobs");
   add_registry(*command, jobs->registry);
   command->add_flag("--again", jobs->again, "jobs that failed wait again");
   command->add_option("--json", jobs->json, "result for programs; - for standard output");

@@ -41,7 +41,7 @@ importer::ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kin
   if (kind.count("--skip") > 0) map.format.skip = arguments.skip;
   if (arguments.header) map.format.header = true;
   if (map.columns.empty())
-    throw text::InputError("no column is mapped: give --map FILE or --column \"3=x[mm]\"");
+    throw text::InputError("no column has a meaning: give --map FILE or --column \"3=x[mm]\"");
   return map;
 }
 
@@ -144,7 +144,7 @@ CLI::App* add_survey_kind(CLI::App& import, const std::string& name, const std::
   kind->add_option("--separator", arguments->separator,
                    "comma, semicolon, tab, space (blanks); default: auto");
   kind->add_option("--decimal", arguments->decimal, "decimal sign")->check(CLI::IsMember({"point", "comma"}));
-  kind->add_option("--skip", arguments->skip, "lines at the top to leave out");
+  kind->add_option("--skip", arguments->skip, "number of lines at the top to skip");
   kind->add_option("--comment", arguments->comment,
                    "lines that begin with it are skipped; none: no such lines; default: #");
   kind->add_flag("--header", arguments->header, "the first line names columns (implied by a column by name)");
@@ -176,7 +176,7 @@ void add_tracker_kind(CLI::App& import) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   kind->add_option("--tolerance", log.tolerance_mm,
-                   "--log: ways of machine and nominal machine differ by, mm")
+                   "--log: largest difference of the distances measured and nominal, mm")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   kind->footer(
@@ -189,9 +189,9 @@ void add_tracker_kind(CLI::App& import) {
 void add_probe_kind(CLI::App& import) {
   const auto arguments = std::make_shared<SurveyArguments>();
   CLI::App* kind = add_survey_kind(import, "probe", "Touches of a probe on a surface", arguments);
-  kind->add_option(
-      "--radius", arguments->radius_mm,
-      "of the stylus ball (mm), where recorded points are its centre and nominal ones on the surface");
+  kind->add_option("--radius", arguments->radius_mm,
+                   "radius of the stylus ball (mm), if recorded points are its centre and nominal points are "
+                   "on the surface");
   kind->footer(
       "Each touch: the normal nx ny nz, the nominal point px py pz, and the deviation d or the recorded "
       "point\n"

@@ -223,7 +223,7 @@ PlannedCommand plan_command(const nlohmann::json& request, const Project& projec
   const auto name = request["command"].get<std::string>();
   const auto found =
       std::find_if(allowed().begin(), allowed().end(), [&](const Allowed& one) { return one.name == name; });
-  if (found == allowed().end()) throw text::InputError("\"" + name + "\": no command of the workbench");
+  if (found == allowed().end()) throw text::InputError("\"" + name + "\": the workbench has no such command");
   PlannedCommand command{name, {name}, {}, found->on_board, found->for_history};
   std::size_t known = 1;
   for (const Field& field : found->fields) {
