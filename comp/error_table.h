@@ -101,15 +101,15 @@ constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position
   return static_cast<std::int64_t>((inside * segment.reciprocal) >> segment.shift);
 }
 
-/// Value between two stations: near + fraction * rise, c = {near, rise}, rounded once, ties up (<= 1/2 LSB of
-/// the column). Stays within the two; product < 2^62. realtime.
+/// Returns the value between two stations: near + fraction * rise, c = {near, rise}, rounded once, ties up
+/// (<= 1/2 LSB of the column). Stays within the two; product < 2^62. realtime.
 constexpr std::int32_t linear_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   return c[0] + narrow(round_shift(c[1] * fraction, 30));
 }
 
-/// Value of the cubic c[0] + f (c[1] + f (c[2] + f c[3])), f the fraction (Q30), all in the column's format.
-/// The inner two products are truncated, the last is rounded: together within -5/2 and +1/2 LSB. Every
-/// partial sum of the cubic is below 2^31 (proved by the verifier). realtime.
+/// Returns the value of the cubic c[0] + f (c[1] + f (c[2] + f c[3])), f the fraction (Q30), all in the
+/// column's format. The inner two products are truncated, the last is rounded: together within -5/2 and +1/2
+/// LSB. Every partial sum of the cubic is below 2^31 (proved by the verifier). realtime.
 constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   const std::int32_t second = c[2] + narrow((c[3] * fraction) >> 30);
   const std::int32_t first = c[1] + narrow((second * fraction) >> 30);

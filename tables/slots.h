@@ -73,7 +73,7 @@ class Slots {
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }
   std::uint8_t trial() const noexcept { return now_.trial; }
-  /// Signing time of the confirmed image; 0 without a confirmed image.
+  /// Returns the signing time of the confirmed image; 0 without a confirmed image.
   std::uint64_t issued() const noexcept { return now_.issued; }
   std::uint64_t trial_issued() const noexcept { return now_.trial_issued; }
   /// Limits for a new upload: signing time above newest_issued(), security at least security(). Both are the

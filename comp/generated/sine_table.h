@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// Sine and cosine of i/512 turn, 30 fraction bits, rounded to nearest. One cache line contains eight nodes.
+/// Sine and cosine of i/512 turn, 30 fraction bits, rounded to nearest: one cache line holds eight nodes.
 struct SineNode {
   std::int32_t sine, cosine;
 };

@@ -58,7 +58,7 @@ class LatchRing {
   LatchFault position_of(std::uint32_t axis, bool rollover, InstantNs time_uncertainty,
                          LatchedPosition& latched) const noexcept;
 
-  /// Instant of the newest sample; meaningless in an empty ring.
+  /// Returns the instant of the newest sample; meaningless in an empty ring.
   InstantNs newest() const noexcept { return sample(count_ - 1).at; }
   bool empty() const noexcept { return count_ == 0; }
 

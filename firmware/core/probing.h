@@ -22,7 +22,7 @@ struct ProbeSettings {
   bool rollover[kMaxAxes] = {};                          // whole turns of the axis do not count
   std::uint8_t xyz[3] = {kMaxAxes, kMaxAxes, kMaxAxes};  // board's axes X, Y, Z; kMaxAxes: no such axis
 
-  /// Standard uncertainty of the instant of a touch. resolution: of the edge's stamp. setup.
+  /// Returns the standard uncertainty of the instant of a touch. resolution: of the edge's stamp. setup.
   InstantNs time_uncertainty(InstantNs resolution) const noexcept;
 };
 

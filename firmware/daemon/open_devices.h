@@ -35,7 +35,7 @@ std::unique_ptr<IioBuffer> open_iio_buffer(const std::vector<const SignalSource*
 std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error);
 /// The sync of kind "can".
 std::unique_ptr<TickSync> open_sync(const SignalSource& source, std::string& error);
-/// Lines of kind "gpio".
+/// Opens a line of kind "gpio": the line of a probe, a digital input or a digital output.
 std::unique_ptr<ProbeLine> open_probe(const SignalSource& source, std::string& error);
 std::unique_ptr<DigitalInput> open_digital_input(const SignalSource& source, std::string& error);
 std::unique_ptr<DigitalOutput> open_digital_output(const SignalSource& source, std::string& error);

@@ -24,7 +24,7 @@ class AnalogueChain {
   double step_nm() const { return step_nm_; }
   std::int64_t last_code() const { return 2 * zero_code_; }
 
-  /// Nearest code, limited to the first and last.
+  /// Returns the nearest code, limited to the first and last.
   std::int64_t code_for(AxisTravel correction_nm) const {
     return std::clamp<std::int64_t>(wanted_code(correction_nm), 0, last_code());
   }

@@ -54,7 +54,7 @@ class SimPlant : public AxisReader, public InputReader, public CorrectionWriter 
   void release() noexcept { released_ = true; }
   /// Returns the ticks since construction; tick 0 is the tick after the first advance().
   std::int64_t tick() const noexcept { return tick_; }
-  /// Tick of the trajectory; 0 until released.
+  /// Returns the tick of the trajectory; 0 until released.
   std::int64_t path_tick() const noexcept { return path_tick_; }
   /// Returns the correction that the drive has.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }

@@ -32,7 +32,7 @@ struct AnalogueScale {
   /// In the tick, AnalogueConverter computes both. setup.
   std::int64_t wanted_code(AxisTravel correction) const noexcept;
   std::int64_t code_for(AxisTravel correction) const noexcept;
-  /// Correction that a code represents, to the nearest count. code: 0 .. 2^31. setup.
+  /// Returns the correction that a code represents, to the nearest count. code: 0 .. 2^31. setup.
   AxisTravel correction_of(std::int64_t code) const noexcept {
     const std::int64_t off = RoundedRatio(span, codes).of(code - zero);
     return AxisTravel(inverted ? -off : off);
@@ -51,7 +51,7 @@ class AnalogueConverter {
     const std::int64_t off = ratio_.of(correction.count);
     return scale_.zero + (scale_.inverted ? -off : off);
   }
-  /// Code that is written. realtime.
+  /// Returns the code that is written. realtime.
   std::int64_t code_for(AxisTravel correction) const noexcept {
     return clamp(wanted_code(correction), scale_.low, scale_.high);
   }

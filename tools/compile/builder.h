@@ -46,8 +46,8 @@ class ProgramBuilder {
   /// itself, in the unit of the result.
   Id plain(Instruction step, int fraction_bits, const Interval& exact, double error, ErrorSource source,
            std::vector<Register::Use> uses, const std::string& name);
-  /// Adds one table interpolation. The interpolation has one result per column, in the order of `results`
-  /// (name, format, range, own error and uses). Returns the first result.
+  /// Adds one interpolation in a table to the program. The interpolation has one result per column, in the
+  /// order of `results` (name, format, range, own error and uses). Returns the first result.
   Id look_up(Id position, LoweredTable table, std::vector<Register> results);
   /// Adds sine and cosine of an angle in deg. The cosine is in the register after the returned register.
   Id sine_cosine(Id angle, const Interval& sine, const Interval& cosine);

@@ -47,12 +47,12 @@ class Walk {
   void freeze() { frozen_ = true; }
 
   const NodeVector& nominal() const { return nominal_; }
-  /// Contribution of each term of the chain to the deviation.
+  /// Returns the contribution of each term of the chain to the deviation.
   const std::map<std::string, NodeVector>& parts() const { return parts_; }
   /// Returns the deviation in the frame in which freeze() was called.
   const NodeVector& deviation() const { return deviation_; }
-  /// Bounds of the two vectors' lengths, mm. Rotations keep a length. These bounds therefore do not grow with
-  /// every rotation, unlike the intervals of the components.
+  /// Returns the bounds of the two vectors' lengths, mm. Rotations keep a length. These bounds therefore do
+  /// not grow with every rotation, unlike the intervals of the components.
   double reach_mm() const;
   double spread_mm() const;
 

@@ -35,7 +35,7 @@ SymbolicVector turned(const SymbolicVector& v, int axis, const GiNaC::ex& angle_
 /// Returns a x b.
 SymbolicVector cross(const SymbolicVector& a, const SymbolicVector& b);
 
-/// Unit vector of axis 0..2.
+/// Returns the unit vector of axis 0..2.
 SymbolicVector unit_vector(int axis);
 
 /// Returns the chain as elementary motions from the workpiece to the tool: the workpiece branch in

@@ -41,7 +41,7 @@ class Finder {
   const std::vector<std::size_t>& chosen() const { return chosen_; }
   const Pool& pool() const { return pool_; }
   const Evidence& evidence() const { return evidence_; }
-  /// Correlation of the errors of the readings beside the accepted effects.
+  /// Returns the correlation of the errors of the readings beside the accepted effects.
   fit::NoiseModel noise() const;
   const std::vector<ScannedCandidate>& candidates() const { return list_; }
 
@@ -69,7 +69,7 @@ class Finder {
   /// Returns the factor by which chi^2 increases if an accepted item is excluded and the others are fitted
   /// again.
   double growth_without(std::size_t item) const;
-  /// Is the residual beside the accepted effects noise, by the linear estimate?
+  /// True if the residual beside the accepted effects is noise, by the linear estimate.
   bool linear_down_to_noise() const;
 
  private:
@@ -81,7 +81,7 @@ class Finder {
   std::vector<Product> best_products();
   /// Prepares the present entries of the pool for a selection.
   void pose_problem();
-  /// Position of an item in the problem; nullopt for a banned item.
+  /// Returns the position of an item in the problem; nullopt for a banned item.
   std::optional<std::size_t> entry_of(std::size_t item) const;
   void select_again();
   /// A form that contains a simpler form is accepted only if there is evidence for its additional terms
@@ -95,7 +95,7 @@ class Finder {
   /// Without u, any remaining structure counts as noise. name_simplest then uses the simplest form that
   /// explains nearly all, if the form passes the tests.
   void name_simplest();
-  /// Number of entries that contain a simpler form and additional terms.
+  /// Returns the number of entries that contain a simpler form and additional terms.
   double holders_of(std::size_t simple) const;
   void search();
   /// Reduces the weight of readings with correlated errors: at one pose, in a run or in time.
@@ -118,7 +118,7 @@ class Finder {
   /// cause makes one offset of all readings. An instrument that is set up again or drifts does not make one
   /// offset of all readings.
   bool is_one_offset(const fit::NoiseModel& noise) const;
-  /// Unwhitened columns of several items side by side.
+  /// Returns the unwhitened columns of several items side by side.
   Eigen::MatrixXd raw_columns(const std::vector<std::size_t>& items) const;
   std::vector<std::size_t> without(std::size_t item) const;
   Selection evaluate(const std::vector<std::size_t>& items) const;
@@ -131,7 +131,7 @@ class Finder {
   /// one run contains nearly all that an accepted item explains. The other runs then cannot confirm the item.
   bool is_learned(std::size_t item) const;
   bool shows_in_one_block(std::size_t item) const;
-  /// Is the term larger than on any real machine?
+  /// Returns the reason why a term is larger than on any real machine; empty if it is not.
   std::string too_large(std::size_t item) const;
   /// Returns the reference for the size of a term. Angles: travel of the rotary axis that drives the angle,
   /// deg (0: no such axis); lengths: reach of the machine, mm.

@@ -67,7 +67,7 @@ struct EffectForm {
 
   bool asks_for(const std::string& mark) const { return marks.contains(mark); }
   bool asks_for_input() const { return asks_for("T") || asks_for("L") || asks_for("F") || asks_for("V"); }
-  /// Is the condition true for any node of the term?
+  /// Returns true if the condition `is` is true for any node of the term.
   template <class Is>
   bool any(const Is& is) const {
     return std::any_of(trees.begin(), trees.end(),

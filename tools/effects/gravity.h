@@ -53,8 +53,8 @@ class GravityChain {
  public:
   explicit GravityChain(const model::Machine& machine);
 
-  /// Direction of gravity in the frame in which a degree of freedom acts. For an angle, the frame is the
-  /// frame after the turn by the angle.
+  /// Returns the direction of gravity in the frame in which a degree of freedom acts. For an angle, the frame
+  /// is the frame after the turn by the angle.
   std::optional<std::array<Wave, 3>> direction(const DofPlace& place) const;
   /// Returns the moment of gravity on a bar about an angle, per length and weight: (toward x gravity) . axis.
   /// The bar points along local axis `toward` (0 to 2, not the axis of the angle).

@@ -18,7 +18,7 @@ struct DofPlace {
 
 const model::Transform& transform_at(const model::Machine& machine, const DofPlace& place);
 const char* dof_name(const model::Machine& machine, const DofPlace& place);
-/// Is the degree of freedom an angle (deg) and not a length (mm)?
+/// True if the degree of freedom is an angle (deg), false if it is a length (mm).
 bool is_angle(const model::Machine& machine, const DofPlace& place);
 /// The degree of freedom that every axis moves in the nominal chain. The constructor evaluates the chain for
 /// every degree of freedom: construct AxisPlaces once per machine. tool.

@@ -39,7 +39,7 @@ struct ScrewTable {
 ScrewTable screw_table(const model::Machine& machine, std::size_t axis, const model::States& at,
                        double tolerance_um);
 
-/// Text of a file: only lines of three numbers (the controller stops reading at any other line).
+/// Returns the text of a file: only lines of three numbers (the controller stops reading at any other line).
 std::string screw_text(const std::vector<ScrewPoint>& points, ScrewType type);
 
 /// Reads a screw-compensation file. Throws InputError with file, line and word: a line without three numbers,

@@ -128,7 +128,7 @@ constexpr const char* name_of(ReadingKind kind) { return entry_of(kind).name; }
 constexpr bool is_rotation(ReadingKind kind) { return entry_of(form_of(kind)).rotation; }
 /// "mm" or "deg".
 constexpr const char* unit_of(ReadingKind kind) { return is_rotation(kind) ? "deg" : "mm"; }
-/// Unit of a residual in results: "um" or "urad".
+/// Returns the unit of a residual in results: "um" or "urad".
 constexpr const char* report_unit_of(ReadingKind kind) { return is_rotation(kind) ? "urad" : "um"; }
 /// The set-up of the instrument does not change the reading.
 constexpr bool is_free_of_setup(ReadingKind kind) { return entry_of(form_of(kind)).free_of_set_up; }
@@ -140,7 +140,8 @@ std::optional<ReadingKind> kind_named(std::string_view name);
 /// Returns the unit in results of the kind of this name; "um" if no kind has the name.
 const char* report_unit_of(std::string_view name);
 
-/// Name of the residual of a kind in a sentence: "X error", "rotation error about Z", "length error".
+/// Returns the name of the residual of a kind in a sentence: "X error", "rotation error about Z", "length
+/// error".
 std::string subject_of(ReadingKind kind);
 
 /// A reading as `vernier new --reading` names it: one form, or several forms that one instrument reads

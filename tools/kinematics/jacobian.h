@@ -32,7 +32,7 @@ Eigen::VectorXd axis_scales(const model::Machine& machine, const std::vector<std
 double condition_of(const Eigen::MatrixXd& jacobian, const model::Machine& machine,
                     const std::vector<std::size_t>& axes, const InverseOptions& options);
 
-/// Length of the part of `residual` that the axes can reach (singular values below 1 /
+/// Returns the length of the part of `residual` that the axes can reach (singular values below 1 /
 /// most_condition of the largest do not count). tool.
 double reducible(const Eigen::MatrixXd& jacobian, const model::Machine& machine,
                  const std::vector<std::size_t>& axes, const Eigen::VectorXd& residual,

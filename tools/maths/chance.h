@@ -9,8 +9,8 @@ namespace vernier::maths {
 /// about 1e-10. tool. NIST DLMF 8.17.
 double log_f_tail(double f, double d1, double d2);
 
-/// Natural logarithm of the upper tail of chi square: log P(X >= x), k > 0 degrees of freedom. tool. NIST
-/// DLMF 8.2, 8.9.
+/// Returns the natural logarithm of the upper tail of chi square: log P(X >= x), k > 0 degrees of freedom.
+/// tool. NIST DLMF 8.2, 8.9.
 double log_chi_square_tail(double x, double k);
 
 /// Returns the upper tail probability of a chi square distribution with k degrees of freedom; 1 for x <= 0, 0

@@ -24,7 +24,7 @@ class PivotedCholesky {
   std::vector<char> left_over() const;
   /// Returns n x (n - rank), orthonormal: directions that the kept rows do not determine.
   Eigen::MatrixXd null_basis() const;
-  /// Inverse over the kept rows and columns, zero elsewhere.
+  /// Returns the inverse over the kept rows and columns, zero elsewhere.
   Eigen::MatrixXd inverse() const;
 
  private:

@@ -116,7 +116,7 @@ bool is_constant(const Expr& expr, double& value);
 const char* function_name(Op op);
 /// Returns the names of all functions: sin, cos …
 std::vector<std::string> function_names();
-/// Is `name` a function or a fixed quantity of the expression language (t, feed, run, sin ...)?
+/// True if `name` is a function or a fixed quantity of the expression language (t, feed, run, sin ...).
 bool is_reserved_word(std::string_view name);
 
 /// Returns the value of one operation on plain numbers. Comparisons give 1 or 0. apply() must not be called
@@ -130,7 +130,7 @@ void walk(const Expr& expr, const Visit& visit) {
   visit(expr);
 }
 
-/// Is `is(node)` true for any node of the expression?
+/// Returns true if `is(node)` is true for any node of the expression.
 template <class Is>
 bool any_node(const Expr& expr, const Is& is) {
   bool found = false;
@@ -138,7 +138,7 @@ bool any_node(const Expr& expr, const Is& is) {
   return found;
 }
 
-/// Does the expression depend on the symbol?
+/// True if the expression depends on the symbol.
 inline bool has_symbol(const Expr& expr, const Symbol& symbol) {
   return any_node(expr, [&](const Expr& node) { return node.op == Op::kSymbol && node.symbol == symbol; });
 }

@@ -16,7 +16,7 @@ class StationTable {
  public:
   explicit StationTable(const Table& table);
 
-  /// Six values (mm, deg) at a raw axis position.
+  /// Returns the six values (mm, deg) at a raw axis position.
   std::array<double, 6> values(double raw) const;
   /// Returns d value / d raw of the six columns; 0 beyond the ends.
   std::array<double, 6> slopes(double raw) const;
@@ -38,7 +38,8 @@ class StationTable {
   std::vector<std::array<double, 6>> bend_;  // cubic: second derivative of the six columns at every station
 };
 
-/// Values of a table at a raw axis position, mm and deg; node, edge and periodic rules of FORMATS.
+/// Returns the values of a table at a raw axis position, mm and deg; node, edge and periodic rules of
+/// FORMATS.
 std::array<double, 6> table_values(const Table& table, double raw);
 
 }  // namespace vernier::model

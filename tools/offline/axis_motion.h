@@ -31,7 +31,7 @@ class AxisMotion {
   std::vector<double> stretches(const ProgramMove& move) const;
   /// Records that the axes move from one position to another without a reversal in between.
   void set_out(const Eigen::VectorXd& from, const Eigen::VectorXd& to);
-  /// Positions with the motion at shares of a move, all within the planned range.
+  /// Returns the positions with the motion at shares of a move, all within the planned range.
   model::States along(const ProgramMove& move, const std::vector<double>& shares) const;
   /// Returns the shares of a part of a move at which the correction is evaluated, including its first and
   /// last. The shares are those of even_looks, and closer ones where an expression of the chain is sharp

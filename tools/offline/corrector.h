@@ -24,7 +24,7 @@ struct CorrectionSummary {
   std::vector<double> largest;    // by axis, mm or deg
   double left_mm = 0;             // largest distance between the corrected tool point and the ideal one
 
-  /// Largest correction of the linear axes together, um.
+  /// Returns the largest correction of the linear axes together, um.
   double largest_um(const model::Machine& machine) const;
 };
 

@@ -29,7 +29,8 @@ struct PathPiece {
 std::vector<PathPiece> fit_path(const Eigen::MatrixXd& points, const std::optional<ArcGuide>& guide,
                                 double most);
 
-/// Distance of a place from a piece that begins in the point `from` (norm over all axes, as above). tool.
+/// Returns the distance of a place from a piece that begins in the point `from` (norm over all axes, as
+/// above). tool.
 double distance_from(const PathPiece& piece, const Eigen::MatrixXd& points, Eigen::Index from,
                      const std::optional<ArcGuide>& guide, const Eigen::VectorXd& place);
 

@@ -16,7 +16,7 @@ struct BHeadMachine {
   double pivot_mm = 0;                // B axis to tool tip, read off the nominal chain
   std::array<std::size_t, 5> axis{};  // indices of X Y Z B C among the machine's axes
 
-  /// Joint values of the origin of the work coordinates: tip at (0, 0, 0), tool vertical, C = 0.
+  /// Returns the joint values of the origin of the work coordinates: tip at (0, 0, 0), tool vertical, C = 0.
   JointPose origin() const { return {0, 0, pivot_mm, 0, 0}; }
   /// Returns rows for the chain; inputs are at their reference, motion is zero.
   model::States states(const std::vector<JointPose>& joints) const;

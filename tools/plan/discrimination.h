@@ -43,7 +43,7 @@ class Discrimination {
 /// sqrt(lambda) = z + sqrt(z^2 + lead). confidence: 0.5 to 1, both exclusive. tool.
 double needed_non_centrality(double confidence, double lead);
 
-/// Quantile of the standard normal distribution (bisection of erfc). p: 0 to 1, exclusive.
+/// Returns the quantile of the standard normal distribution (bisection of erfc). p: 0 to 1, exclusive.
 double normal_quantile(double p);
 
 }  // namespace vernier::plan

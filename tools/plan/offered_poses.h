@@ -19,8 +19,8 @@ model::States offered_poses(const model::Machine& machine, std::size_t count, st
 std::vector<std::size_t> nearest_way(const model::Machine& machine, const model::States& offered,
                                      const std::vector<std::size_t>& chosen);
 
-/// Rows of a measurement file with x, y, z to be filled in; check: the role of each; reading_um: u of a
-/// coordinate.
+/// Returns the rows of a measurement file with x, y, z to be filled in; check: the role of each; reading_um:
+/// u of a coordinate.
 std::string pose_rows_csv(const model::Machine& machine, const model::States& states,
                           const std::vector<char>& check, double reading_um, const std::string& run);
 

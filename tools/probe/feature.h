@@ -39,9 +39,9 @@ struct MeasuredFeature {
   const Calibrated* find(const std::string& name) const { return find_calibrated(parameters, name); }
 };
 
-/// Columns: x, y, z (z not needed for line, circle and block in the plane z = 0), nx ny nz (outward normals;
-/// for a block: of the touched face), T[degC], u[mm]. Without normals, plane and line are those of the centre
-/// of the ball.
+/// Columns: x, y, z (z not needed for line, circle and block in the plane z = 0), nx ny nz
+/// (outward normals; for a block: of the touched face), T[degC], u[mm]. Without normals, plane and line are
+/// those of the centre of the ball.
 ///
 /// parameters: plane: point (nearest to the centroid), normal, tilt about x and y; line: point, direction,
 /// angle (deg from X, in the plane); circle, sphere, cylinder: centre (for a cylinder nearest to the

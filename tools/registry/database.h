@@ -25,7 +25,7 @@ class Database {
   virtual ~Database() = default;
   /// Executes one statement with values for $1, $2, ... and returns its rows. Throws DatabaseError.
   virtual std::vector<Row> run(const std::string& sql, const std::vector<Cell>& values = {}) = 0;
-  /// Rows that the last statement wrote.
+  /// Returns the number of rows that the last statement wrote.
   virtual std::int64_t written() const = 0;
   /// Returns the statement that begins a transaction that writes.
   virtual const char* begin() const = 0;

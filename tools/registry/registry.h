@@ -87,7 +87,7 @@ class Registry {
   bool trust_board_key(const std::string& machine, const std::string& key);
 
   void put(const RecordedCalibration& calibration);
-  /// Newest first; of all machines if `machine` is empty.
+  /// Returns the calibrations, newest first; those of all machines if `machine` is empty.
   std::vector<RecordedCalibration> calibrations(const std::string& machine);
 
   /// Adds a check with its readings; false: the registry already has this check.

@@ -11,7 +11,7 @@ namespace vernier::report {
 /// Base64 (RFC 4648, padded) of some bytes. tool.
 std::string base64(std::string_view bytes);
 
-/// Text for an HTML document: & < > " ' written as entities. tool.
+/// Returns the text for an HTML document: & < > " ' written as entities. tool.
 std::string escape_html(std::string_view text);
 
 /// Returns `value` with long rows of numbers packed: {"u8": base64} for small whole numbers, else {"f32":

@@ -6,8 +6,9 @@
 
 namespace vernier::simulate {
 
-/// Motion state of a machine at every tick. Positions and inputs are interpolated linearly. Recorded motion
-/// is interpolated too (a direction keeps the value of its row). The rest is derived:
+/// Returns the motion state of a machine at every tick. Positions and inputs are interpolated linearly.
+/// Recorded motion is interpolated too (a direction keeps the value of its row). All other quantities are
+/// derived:
 ///   v      slope of the path's segment
 ///   a      change of segment speed at each row, over the time between the segments' middles; linear between
 ///          the rows, the first and last row as their neighbours

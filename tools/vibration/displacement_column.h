@@ -37,7 +37,7 @@ struct DisplacementSeries {
   std::uint32_t held = 0;  // samples beyond the range of the board's filter (kCorner)
 };
 
-/// Is the signal an acceleration (unit g, m/s^2, mm/s^2)? tool.
+/// True if the signal is an acceleration (unit g, m/s^2, mm/s^2). tool.
 bool is_acceleration(const Signal& signal);
 
 /// Returns the displacement of an acceleration. Throws InputError for a signal of another unit,

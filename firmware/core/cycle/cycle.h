@@ -75,9 +75,9 @@ class Cycle {
   Mode mode() const noexcept { return mode_.mode(); }
   bool holding() const noexcept { return mode_.holding(); }
   Fault latched() const noexcept { return mode_.latched(); }
-  /// Fault of the last tick, latched or not; while checking, the condition that is not met yet.
+  /// Returns the fault of the last tick, latched or not; while checking, the condition that is not met yet.
   Fault found() const noexcept { return found_; }
-  /// Share of the correction that is in.
+  /// Returns the share of the correction that is applied now.
   WeightQ16 weight() const noexcept { return mode_.weight(); }
   Health& health() noexcept { return health_; }
   const Health& health() const noexcept { return health_; }
@@ -86,11 +86,12 @@ class Cycle {
   AxisTravel wanted(std::uint32_t axis) const noexcept { return AxisTravel(drive_[axis].whole); }
   AxisTravel achieved(std::uint32_t axis) const noexcept { return drive_[axis].achieved; }
   std::uint8_t limits(std::uint32_t axis) const noexcept { return drive_[axis].limits; }
-  /// Largest change of the correction of a board's axis in a tick, counts; 0 before the first change.
+  /// Returns the largest change of the correction of a board's axis in a tick, counts; 0 before the first
+  /// change.
   std::int64_t slew(std::uint32_t axis) const noexcept { return drive_[axis].slew; }
   /// The correction that a board's axis was given last.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
-  /// Newest good state of a board's axis, and value of a board's input.
+  /// Returns the newest good state of a board's axis, and value of a board's input.
   const AxisInput& axis_state(std::uint32_t axis) const noexcept { return axes_[axis].state(); }
   InputMicro input_value(std::uint32_t input) const noexcept { return inputs_[input]; }
   const PathReading& path() const noexcept { return path_; }
@@ -112,7 +113,7 @@ class Cycle {
   void judge_limits(std::uint32_t axis) noexcept;
   void count(const CycleOutput& output) noexcept;
 
-  /// The value for a drive, by board's axis.
+  /// The value for the drive of one axis of the board.
   struct Drive {
     std::int64_t wanted = 0;  // counts, within the board's limit
     std::int64_t whole = 0;   // the same at full weight, before that limit

@@ -42,9 +42,9 @@ bool feature_of(std::string_view name, Feature& feature) noexcept;
 /// signal, window and resolution share one window. A tick needs, for each window, one FeatureWindow::push and
 /// one features(): 5500 instructions of x86-64 at 800 samples, 8900 at 2048 (tools/docs/vibration.md).
 /// Samples: round(signal / lsb), ties away from zero, exact; limited to +-524287 lsb and counted. A feature
-/// gives no reading (kNoReading) in three cases: its window is not full; it is 0/0
-/// (FeatureValues::undefined); more samples than bridged are missing and not as many have come again. No
-/// window contains a gap. A displacement has a filter (comp/vibration/displacement.h, exact at 0.18 of the
+/// gives no reading (kNoReading) in three cases: the window of the feature is not full; the feature is 0/0
+/// (FeatureValues::undefined); more samples than `bridged` are missing and fewer new samples have come since.
+/// No window contains a gap. A displacement has a filter (comp/vibration/displacement.h, exact at 0.18 of the
 /// rate) instead of a window. The filter of a displacement starts from rest, gives no reading for three
 /// periods of its corner, and starts again after a gap. The displacement is that of the latest sample, to 1
 /// nm. A tick of the displacement filter needs 200 instructions of x86-64.
@@ -59,11 +59,11 @@ class FeatureInputs : public InputReader {
                 TimeUs tick)
       : FeatureInputs(source, inputs, std::span(requests.begin(), requests.size()), tick) {}
 
-  /// Index of the first request that cannot be served, or kNoInput. setup.
+  /// Returns the index of the first request that cannot be served, or kNoInput. setup.
   std::uint32_t refused() const noexcept { return refused_; }
   std::size_t windows() const noexcept { return window_count_; }
-  /// Number of samples so far that were beyond the range of a window or filter, and of displacements beyond
-  /// +-2.1 m. realtime.
+  /// Returns the number of samples so far that were beyond the range of a window or filter, and of
+  /// displacements beyond +-2.1 m. realtime.
   std::uint64_t held() const noexcept;
 
   void begin_tick() noexcept override;

@@ -45,7 +45,7 @@ class HistogramOf {
     const std::uint32_t shift = width > kOctaveBits + 1 ? width - kOctaveBits - 1 : 0;
     return (shift << kOctaveBits) + static_cast<std::uint32_t>(value >> shift);
   }
-  /// Largest value of a bin.
+  /// Returns the largest value of a bin.
   static constexpr std::uint64_t upper_edge(std::uint32_t bin) noexcept {
     const std::uint32_t shift = bin < (2u << kOctaveBits) ? 0 : (bin >> kOctaveBits) - 1;
     return ((std::uint64_t{bin} - (std::uint64_t{shift} << kOctaveBits) + 1) << shift) - 1;

@@ -90,7 +90,7 @@ class Uploader {
   SlotsRecord record() const noexcept;
   /// True if a confirmed image could not be loaded and no other runs instead.
   bool image_lost() const noexcept { return image_lost_.load(); }
-  /// Remaining time of the trial; 0 without a trial.
+  /// Returns the remaining time of the trial; 0 without a trial.
   TimeUs trial_left(TimeUs now) const noexcept;
   std::uint32_t capacity() const noexcept { return store_.capacity(); }
   /// Access to the running program and to the trial.

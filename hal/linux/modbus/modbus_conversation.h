@@ -7,10 +7,10 @@
 
 namespace vernier {
 
-/// Layout of the register map. The mailbox: a request is written (function 16) to the holding registers from
-/// `mailbox` on, its length in bytes, then the bytes, high byte first. The reply is in the input registers at
-/// the same address, separate for each client. Input registers from 0: live state; holding register 0:
-/// command (function 6).
+/// Layout of the register map. The client writes a request (function 16) to the mailbox, the holding
+/// registers from `mailbox` on: the length of the request in bytes, then the bytes, high byte first. The
+/// reply is in the input registers at the same address, separate for each client. Input registers from 0:
+/// live state; holding register 0: command (function 6).
 struct ModbusLayout {
   int mailbox = 0, mailbox_registers = 0, live_registers = 0;
 };
@@ -45,7 +45,8 @@ class ModbusConversation {
   /// takes time.
   void work(CommandHandler& handler, InstantNs now) noexcept;
 
-  /// Bytes to be sent, and number of bytes sent.
+  /// out() returns the bytes to be sent, waiting() their number; sent() takes the number of bytes sent.
+  /// sent.
   const std::uint8_t* out() const noexcept { return out_ + sent_; }
   std::uint32_t waiting() const noexcept { return out_size_ - sent_; }
   void sent(std::uint32_t bytes) noexcept;
@@ -53,9 +54,9 @@ class ModbusConversation {
   /// True if the peer sends a wrong length, is too slow, or does not take its reply: a connection must then
   /// be closed. A serial line continues: the received bytes are discarded.
   bool broken(InstantNs now) noexcept;
-  /// Priority of a client. If more clients connect than can be served, the client with the lowest number is
-  /// removed: first a client that does not take its reply, then the client whose last request is oldest. A
-  /// client that waits for the medium is never removed.
+  /// Returns the priority of a client. If more clients connect than can be served, the client with the lowest
+  /// number is removed: first a client that does not take its reply, then the client whose last request is
+  /// oldest. A client that waits for the medium is never removed.
   std::int64_t worth() const noexcept {
     return waiting() > 0 ? -1 : waits_for_reply_ ? INT64_MAX : last_request_.count;
   }
@@ -84,7 +85,7 @@ class ModbusConversation {
   bool waits_for_reply_ = false, senseless_ = false;
 };
 
-/// CRC of an RTU frame (Modbus over Serial Line V1.02, 6.2.2).
+/// Returns the CRC of an RTU frame (Modbus over Serial Line V1.02, 6.2.2).
 std::uint16_t modbus_crc(const std::uint8_t* bytes, std::uint32_t size) noexcept;
 
 }  // namespace vernier

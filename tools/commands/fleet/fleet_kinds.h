@@ -15,7 +15,7 @@ void add_registry(CLI::App& command, std::string& place);
 /// Opens the registry with the given name; creates a file that does not exist. Throws InputError if no name
 /// is given, or if the registry is not available. tool.
 registry::Registry make_registry(const std::string& place);
-/// ... which exists already: a misspelt file name is refused. tool.
+/// Opens a registry that exists already; a misspelt file name is refused. tool.
 registry::Registry open_registry(const std::string& place);
 
 /// Converts a time that a user wrote to us since 1970; `otherwise` if the text is empty. Throws InputError if

@@ -37,8 +37,8 @@ class Evidence {
   auto response(std::size_t place) const { return response_.col(static_cast<Eigen::Index>(place)); }
   /// Row of each fit observation.
   const std::vector<std::size_t>& rows() const { return rows_; }
-  /// Commanded position of an axis in each row of the measurement. Commanded positions exclude the
-  /// correction: with the correction, every reading would be a separate pose.
+  /// Returns the commanded position of an axis in each row of the measurement. Commanded positions exclude
+  /// the correction: with the correction, every reading would be a separate pose.
   const model::Column& position(std::size_t axis) const { return position_[axis]; }
   const Eigen::VectorXd& weights() const { return weight_; }
   /// (measured - model) / u of the fit observations, without the part that the model can absorb.
@@ -64,9 +64,9 @@ class Evidence {
   /// once, or if the ratio is not significant. `residual`: beside the model and the orthonormal columns
   /// `fitted`.
   double shared_pose_error(const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted) const;
-  /// From this call on, readings at one pose share an error. Its variance is `share` times their own variance
-  /// (generalised least squares). weigh_poses weights the residual, the columns and the part that the model
-  /// absorbs.
+  /// From this call on, readings at one pose share an error. The variance of this error is `share` times the
+  /// independent variance of the readings (generalised least squares). weigh_poses weights the residual, the
+  /// columns and the part that the model absorbs.
   void weigh_poses(double share);
   /// From this call on, the noise model `noise` gives the correlation of the readings' errors (generalised
   /// least squares). assume() whitens the residual, the columns and the part that the model absorbs.
@@ -81,7 +81,7 @@ class Evidence {
   /// Returns the sum of squares of the weighted residual beside the model and the columns `raw`, without
   /// whitening.
   double left_in_full(const Eigen::MatrixXd& raw) const;
-  /// Columns of a candidate before any whitening.
+  /// Returns the columns of a candidate before any whitening.
   Eigen::MatrixXd raw_columns(const effects::Candidate& candidate, const std::vector<double>& scanned) const;
   /// Returns a column for each kind of reading: the influence of one common offset, before any whitening.
   Eigen::MatrixXd offset_columns() const;
@@ -96,8 +96,8 @@ class Evidence {
     bool even = true;  // the steps are multiples of one step, or nearly so
   };
   Range range_of(std::size_t axis) const;
-  /// Positions at which an axis was read, increasing. Positions within `apart` of each other count
-  /// once. sense +1 or -1: of the rows with that approach direction, 0: of all.
+  /// Returns the positions at which an axis was read, increasing. Positions within `apart` of each other
+  /// count once. sense +1 or -1: of the rows with that approach direction, 0: of all.
   std::vector<double> places_read(std::size_t axis, int sense, double apart) const;
   /// Returns the approach direction of a row: as recorded, else from the rows before. The result is 0 if the
   /// approach direction is unknown.

@@ -20,7 +20,7 @@ struct FinePeriods {
 
   bool any() const { return fastest > slowest; }
   bool holds(double period) const { return any() && period * slowest <= 1 && period * fastest >= 1; }
-  /// Number of frequencies that the measured range distinguishes.
+  /// Returns the number of frequencies that the measured range distinguishes.
   double tries() const { return (fastest - slowest) * length; }
 };
 

@@ -52,11 +52,11 @@ class Pool {
     items_[i].why_not = std::move(why);
   }
 
-  /// Columns of several items side by side.
+  /// Returns the columns of several items side by side.
   Eigen::MatrixXd columns(const std::vector<std::size_t>& items) const;
   /// A term from the search, without a name in the catalogue.
   bool is_custom(std::size_t i) const { return candidate(i).choice.effect == &effects::custom_effect(); }
-  /// Share of the squares of an item's columns that lies in the span of another's.
+  /// Returns the share of the squares of an item's columns that lies in the span of another's.
   double common_share(std::size_t item, std::size_t other) const;
   /// Returns the effective number of readings that support an item: squared sum over the sum of squares of
   /// its columns' squares.

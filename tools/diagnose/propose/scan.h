@@ -44,8 +44,8 @@ class Scanner {
   /// empty for other candidates.
   std::vector<double> aliases(const Scored& scored, const Eigen::MatrixXd& beside) const;
 
-  /// Independent columns of a scored candidate after projection. Columns that the model or earlier columns
-  /// contain are dropped. `kept`: indices of the linear unknowns of the columns that remain.
+  /// Returns the independent columns of a scored candidate after projection. Columns that the model or
+  /// earlier columns contain are dropped. `kept`: indices of the linear unknowns of the columns that remain.
   Eigen::MatrixXd projected(const Scored& scored, std::vector<std::size_t>* kept = nullptr) const;
 
   const std::vector<ScannedCandidate>& candidates() const { return candidates_; }

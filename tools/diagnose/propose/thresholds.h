@@ -337,7 +337,7 @@ struct ProofThresholds {
   }
 };
 
-/// Is the residual of the stepwise model noise, and of which source?
+/// Thresholds for the decision whether the residual of the stepwise model is noise, and from which source.
 struct VerdictThresholds {
   /// First value: chi^2 per degree of freedom up to this many of its standard deviations above 1 is noise.
   /// Second value: up to this many standard deviations chi^2 alone is sufficient, for up to a given number of

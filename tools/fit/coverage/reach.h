@@ -39,7 +39,7 @@ class Reach {
   /// The discrepancy is the possible difference between the real machine and the model.
   std::vector<Eigen::Matrix3d> covariance_of_machine(const model::States& states) const;
   Eigen::VectorXd std_of_machine_um(const model::States& states) const;
-  /// Standard deviation of the discrepancy, along x, y, z of workpiece coordinates, mm.
+  /// Returns the standard deviation of the discrepancy, along x, y, z of workpiece coordinates, mm.
   const Eigen::Vector3d& discrepancy_mm() const { return discrepancy_mm_; }
 
   /// Returns the machine in workpiece coordinates, without set-ups; parameters() are those of this machine.

@@ -37,11 +37,11 @@ std::optional<double> noise_um(const model::Measurement& m);
 /// Returns the unit of a weighted reading.
 NoiseUnit noise_unit(const model::Measurement& m);
 
-/// Weight of each observation in a fit: 1/u, 1 if u is absent, 0 for check rows. The weight multiplies the
-/// residual.
+/// Returns the weight of each observation in a fit: 1/u, 1 if u is absent, 0 for check rows. The weight
+/// multiplies the residual.
 Eigen::VectorXd fit_weights(const model::Measurement& m);
 
-/// Is u given for every fit row?
+/// True if u is given for every fit row.
 bool has_uncertainty(const model::Measurement& m);
 
 }  // namespace vernier::fit

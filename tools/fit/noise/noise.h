@@ -36,7 +36,7 @@ struct NoiseModel {
   std::vector<NoiseStep> steps;  // of the instrument: fitted, deterministic
 
   bool independent() const { return pose <= 0 && run <= 0 && drift <= 0 && steps.empty(); }
-  /// Standard deviation of all components except the independent noise.
+  /// Returns the standard deviation of all components except the independent noise.
   double shared() const;
   double total() const;
   /// Returns the penalty of the noise model in a selection criterion, in units of the logarithm of the number

@@ -24,7 +24,7 @@ void finish_probe(ImportTable& table, double radius_mm);
 /// roles already.
 void set_roles(ImportTable& table, std::size_t every);
 
-/// Rotation vector (deg) of the angles of a sixdof transform (deg) and of a quaternion w x y z.
+/// Returns the rotation vector (deg) of the angles of a sixdof transform (deg) and of a quaternion w x y z.
 Eigen::Vector3d rotation_vector_of_angles(const std::array<double, 3>& angles_deg);
 Eigen::Vector3d rotation_vector_of_quaternion(const std::array<double, 4>& wxyz);
 

@@ -31,9 +31,9 @@ struct SurfaceFoot {
   bool beyond_end = false;  // u was held at 0 or 1
 };
 
-/// Nearest point of the surface by Gauss-Newton from (u, v), limited to 0 <= u <= 1, v free. point: mm.
-/// Throws std::runtime_error if the iteration does not converge (start farther off than the curve's radius).
-/// tool.
+/// Returns the nearest point of the surface by Gauss-Newton from (u, v), limited to 0 <= u <= 1, v free.
+/// point: mm. Throws std::runtime_error if the iteration does not converge (start farther off than the
+/// curve's radius). tool.
 SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point, double u, double v);
 
 /// Finds the nearest point of a surface; searches the whole surface for the start.

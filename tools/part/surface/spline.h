@@ -25,7 +25,8 @@ class Spline {
   CurvePoint at(double u) const;
   const std::vector<Eigen::Vector3d>& control() const { return control_; }
   std::size_t spans() const { return control_.size() - 3; }
-  /// Length of the whole curve, mm; Gauss-Legendre quadrature in each knot span, relative error below 1e-9.
+  /// Returns the length of the whole curve, mm; Gauss-Legendre quadrature in each knot span, relative error
+  /// below 1e-9.
   double length_mm() const;
 
  private:

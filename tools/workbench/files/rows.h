@@ -26,9 +26,9 @@ struct LoadedRows {
 class RowCache {
  public:
   explicit RowCache(const Project& project) : project_(project) {}
-  /// Names in the project. `datum`: the machine's set-up is fitted to the rows first (`compare --datum`).
-  /// Rows that were measured with a correction on need its image in the project. Throws InputError with file,
-  /// line and word.
+  /// The names are those in the project. `datum`: the machine's set-up is fitted to the rows first (`compare
+  /// --datum`). Rows that were measured with a correction on need its image in the project. Throws InputError
+  /// with file, line and word.
   std::shared_ptr<const LoadedRows> get(const std::string& machine,
                                         const std::vector<std::string>& measurements, bool datum);
 
