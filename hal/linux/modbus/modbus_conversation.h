@@ -46,7 +46,6 @@ class ModbusConversation {
   void work(CommandHandler& handler, InstantNs now) noexcept;
 
   /// out() returns the bytes to be sent, waiting() their number; sent() takes the number of bytes sent.
-  /// sent.
   const std::uint8_t* out() const noexcept { return out_ + sent_; }
   std::uint32_t waiting() const noexcept { return out_size_ - sent_; }
   void sent(std::uint32_t bytes) noexcept;
