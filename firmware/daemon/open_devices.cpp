@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <vector>
 
 #include "firmware/daemon/settings/device_settings.h"
 #include "hal/linux/analogue_output.h"
@@ -78,42 +79,117 @@ std::shared_ptr<ModbusLine> modbus_line(const SignalSource& source, ModbusLines&
   return line;
 }
 
-}  // namespace
+/// A kind of device for a port of hal/: its name in board files, its settings, and how it is opened. Another
+/// backend is its source in hal/linux and a line in the table of its port below.
+template <class Open>
+struct DeviceKind {
+  const char* name;
+  std::vector<const char*> settings;
+  Open open;
+};
 
-std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error) {
-  if (source.kind == "pwm") {
-    source.only(
-        {"path", "period_ns", "span", "zero_ns", "low_ns", "high_ns", "polarity", "calibration", "delay_ms"});
-    const std::int64_t period = source.whole("period_ns", 2, 1'000'000'000);
-    return AnalogueOutput::pwm(source.text("path"), period, analogue_scale(source, rotary, period, "_ns"),
-                               error);
+/// The entry for a device of the board file. Throws BoardError for another kind or setting.
+template <class Open>
+const DeviceKind<Open>& kind_of(const std::vector<DeviceKind<Open>>& kinds, const char* port,
+                                const SignalSource& source) {
+  std::string known;
+  for (const DeviceKind<Open>& kind : kinds) {
+    known += std::string(known.empty() ? "" : ", ") + kind.name;
+    if (kind.name != source.kind) continue;
+    source.only(kind.settings);
+    return kind;
   }
-  if (source.kind != "iio-dac") source.fail("no output of kind " + source.kind);
-  source.only({"root", "device", "channel", "codes", "span", "zero", "low", "high", "polarity", "calibration",
-               "delay_ms"});
+  source.fail("no " + std::string(port) + " of kind " + source.kind + "; drivers: " + known);
+}
+
+std::unique_ptr<AnalogueOutput> open_pwm(const SignalSource& source, bool rotary, std::string& error) {
+  const std::int64_t period = source.whole("period_ns", 2, 1'000'000'000);
+  return AnalogueOutput::pwm(source.text("path"), period, analogue_scale(source, rotary, period, "_ns"),
+                             error);
+}
+
+std::unique_ptr<AnalogueOutput> open_iio_dac(const SignalSource& source, bool rotary, std::string& error) {
   const AnalogueScale scale = analogue_scale(source, rotary, source.whole("codes", 1, (1 << 24) - 1), "");
   const auto channel = static_cast<unsigned>(source.whole("channel", 0, 0, 63));
   const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);
   return device.empty() ? nullptr : AnalogueOutput::iio_dac(device, channel, scale, error);
 }
 
-std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines,
+using OpenOutput = decltype(&open_pwm);
+const std::vector<DeviceKind<OpenOutput>> kOutputs = {
+    {"pwm",
+     {"path", "period_ns", "span", "zero_ns", "low_ns", "high_ns", "polarity", "calibration", "delay_ms"},
+     open_pwm},
+    {"iio-dac",
+     {"root", "device", "channel", "codes", "span", "zero", "low", "high", "polarity", "calibration",
+      "delay_ms"},
+     open_iio_dac},
+};
+
+std::unique_ptr<SampledInput> open_modbus(const SignalSource& source, ModbusLines& lines,
                                           std::string& error) {
-  if (source.kind == "modbus-rtu" || source.kind == "modbus-tcp") {
-    source.only({"device", "baud", "parity", "address", "port", "timeout_ms", "unit", "register", "registers",
-                 "type", "scale", "offset", "stale_ticks"});
-    const ModbusValue value = modbus_value(source);
-    const auto line = modbus_line(source, lines, error);
-    return line ? std::make_unique<ModbusInput>(line, value, stale_ticks(source)) : nullptr;
-  }
-  if (source.kind != "iio") source.fail("no input of kind " + source.kind);
-  source.only({"root", "device", "attribute", "scale", "offset", "stale_ticks"});
+  const ModbusValue value = modbus_value(source);
+  const auto line = modbus_line(source, lines, error);
+  return line ? std::make_unique<ModbusInput>(line, value, stale_ticks(source)) : nullptr;
+}
+
+std::unique_ptr<SampledInput> open_iio(const SignalSource& source, ModbusLines&, std::string& error) {
   const IioScale scale{source.number("offset", 0), source.number("scale")};
   const std::string attribute = source.text("attribute");
   if (attribute.empty()) source.fail("attribute is empty");
   const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);
   return device.empty() ? nullptr
                         : IioInput::open(device + "/" + attribute, scale, stale_ticks(source), error);
+}
+
+const std::vector<const char*> kModbusSettings = {"device",     "baud",   "parity",     "address",   "port",
+                                                  "timeout_ms", "unit",   "register",   "registers", "type",
+                                                  "scale",      "offset", "stale_ticks"};
+using OpenInput = decltype(&open_modbus);
+const std::vector<DeviceKind<OpenInput>> kInputs = {
+    {"iio", {"root", "device", "attribute", "scale", "offset", "stale_ticks"}, open_iio},
+    {"modbus-rtu", kModbusSettings, open_modbus},
+    {"modbus-tcp", kModbusSettings, open_modbus},
+};
+
+constexpr ModbusLayout kMailbox{kMailboxRegister, kMailboxRegisters, kLiveRegisters};
+
+std::unique_ptr<CommandLink> open_tcp_link(const SignalSource& source, std::string& error) {
+  const std::string address = source.text("address", "127.0.0.1");
+  auto server =
+      ModbusServer::tcp(address, static_cast<int>(source.whole("port", 1502, 0, 65535)), kMailbox, error);
+  if (server) std::fprintf(stderr, "vernierd: Modbus TCP on %s:%d\n", address.c_str(), server->port());
+  return server;
+}
+
+std::unique_ptr<CommandLink> open_rtu_link(const SignalSource& source, std::string& error) {
+  return ModbusServer::rtu(source.text("device"), baud(source, 115200), parity(source),
+                           static_cast<int>(source.whole("unit", 1, 1, 247)), kMailbox, error);
+}
+
+std::unique_ptr<CommandLink> open_isotp_link(const SignalSource& source, std::string& error) {
+  constexpr std::int64_t kLastId = (1 << 29) - 1;
+  return IsotpLink::open(source.text("interface"),
+                         static_cast<std::uint32_t>(source.whole("receive", 0, kLastId)),
+                         static_cast<std::uint32_t>(source.whole("transmit", 0, kLastId)), error);
+}
+
+using OpenLinkKind = decltype(&open_tcp_link);
+const std::vector<DeviceKind<OpenLinkKind>> kLinks = {
+    {"modbus-tcp", {"address", "port"}, open_tcp_link},
+    {"modbus-rtu", {"device", "baud", "parity", "unit"}, open_rtu_link},
+    {"isotp", {"interface", "receive", "transmit"}, open_isotp_link},
+};
+
+}  // namespace
+
+std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error) {
+  return kind_of(kOutputs, "output", source).open(source, rotary, error);
+}
+
+std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines,
+                                          std::string& error) {
+  return kind_of(kInputs, "input", source).open(source, lines, error);
 }
 
 std::unique_ptr<IioBuffer> open_iio_buffer(const std::vector<const SignalSource*>& channels,
@@ -138,26 +214,7 @@ std::unique_ptr<IioBuffer> open_iio_buffer(const std::vector<const SignalSource*
 }
 
 std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error) {
-  const ModbusLayout layout{kMailboxRegister, kMailboxRegisters, kLiveRegisters};
-  if (source.kind == "modbus-tcp") {
-    source.only({"address", "port"});
-    const std::string address = source.text("address", "127.0.0.1");
-    auto server =
-        ModbusServer::tcp(address, static_cast<int>(source.whole("port", 1502, 0, 65535)), layout, error);
-    if (server) std::fprintf(stderr, "vernierd: Modbus TCP on %s:%d\n", address.c_str(), server->port());
-    return server;
-  }
-  if (source.kind == "modbus-rtu") {
-    source.only({"device", "baud", "parity", "unit"});
-    return ModbusServer::rtu(source.text("device"), baud(source, 115200), parity(source),
-                             static_cast<int>(source.whole("unit", 1, 1, 247)), layout, error);
-  }
-  if (source.kind != "isotp") source.fail("no link of kind " + source.kind);
-  source.only({"interface", "receive", "transmit"});
-  constexpr std::int64_t kLastId = (1 << 29) - 1;
-  return IsotpLink::open(source.text("interface"),
-                         static_cast<std::uint32_t>(source.whole("receive", 0, kLastId)),
-                         static_cast<std::uint32_t>(source.whole("transmit", 0, kLastId)), error);
+  return kind_of(kLinks, "link", source).open(source, error);
 }
 
 std::unique_ptr<TickSync> open_sync(const SignalSource& source, std::string& error) {

@@ -9,6 +9,9 @@
 
 #include <atomic>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 #include <thread>
 
 #include "tests/conformance/linux_devices.h"
@@ -243,6 +246,30 @@ TEST_F(Check, RealOutputsNeedLimitsOfTheBoardsOwn) {
     const Said said = run("--check");
     EXPECT_EQ(said.status, 1) << said.text;
     EXPECT_NE(said.text.find(said_of_it), std::string::npos) << said.text;
+  }
+}
+
+// The tables of drivers in the daemon and the table of the page are the same.
+TEST_F(Check, EachDriverIsOnThePageOfTheBoard) {
+  std::ifstream file(VERNIER_SOURCE_DIR "/tools/docs/board.md");
+  const std::string page((std::istreambuf_iterator<char>(file)), {});
+  const std::string link = std::string(kBoard) + "[[link]]\nkind = \"nothing\"\n";
+  const std::pair<std::string, std::string> kBoards[] = {
+      {"output", replaced(kBoard, "\"pwm\"", "\"nothing\"")},
+      {"input", replaced(kBoard, "\"iio\"", "\"nothing\"")},
+      {"link", link}};
+  for (const auto& [port, board] : kBoards) {
+    write(board);
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << said.text;
+    const std::string mark = "no " + port + " of kind nothing; drivers: ";
+    const auto at = said.text.find(mark);
+    ASSERT_NE(at, std::string::npos) << said.text;
+    std::istringstream names(said.text.substr(at + mark.size(), said.text.find('\n', at) - at - mark.size()));
+    int count = 0;
+    for (std::string name; std::getline(names >> std::ws, name, ','); ++count)
+      EXPECT_NE(page.find("| `" + name + "` (" + port + ")"), std::string::npos) << name << " " << port;
+    EXPECT_GE(count, 2) << said.text;
   }
 }
 

@@ -4,6 +4,7 @@
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -72,6 +73,22 @@ class Module(unittest.TestCase):
         self.same(result, ["diagnose", MODEL, SURVEY])
         self.assertEqual(result.verdict, "missing-effect")
         self.assertEqual({step.effect for step in result.ladder[1:]}, {"cyclic-error", "servo-lag"})
+
+    def test_keywords_are_options_of_the_command_with_its_defaults(self):
+        words = subprocess.run([PROGRAM, "completion", "json"], check=True, capture_output=True).stdout
+        described = {command["name"]: command for command in json.loads(words)}
+        for name in ("fit", "compare", "diagnose"):
+            options = {option["name"]: option for option in described[name]["options"]}
+            signature = getattr(vernier, name).__doc__.partition("\n")[0]
+            keywords = re.findall(r"(\w+): [\w.]+(?: = ([^,)]+))?[,)]", signature)
+            self.assertGreaterEqual(len(keywords), 2, name)
+            for keyword, default in keywords:
+                option = options[keyword.replace("_", "-")]
+                if default:
+                    self.assertEqual(default, option["default"], f"{name}: {keyword}")
+                    self.assertFalse(option["required"], f"{name}: {keyword}")
+                else:
+                    self.assertEqual(option["kind"], "reads", f"{name}: {keyword}")
 
     def test_machine_and_measurements_are_described(self):
         self.assertEqual(self.machine.axes, ["X", "Y", "Z"])

@@ -131,6 +131,11 @@ void register_image_diff(CLI::App& vernier);
 /// Throws std::logic_error if a figure that tools/docs/formats.md promises is not finite.
 void write_json(const std::string& path, const nlohmann::ordered_json& result);
 
+/// type_name() of an option that names a file or a folder: which of both the help prints, and whether the
+/// command reads or writes it. The workbench confines such names to its folder (description.h).
+inline constexpr const char *kReads = "FILE", *kReadsFolder = "FOLDER", *kReadsOrServer = "FILE:or server",
+                            *kWrites = "FILE:written", *kWritesFolder = "FOLDER:written";
+
 /// Help text of the option `--residuals`.
 inline constexpr const char* kResidualsHelp =
     "every reading as CSV: row, observation, value, prediction, residual, u (mm or deg)";

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/description.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -77,16 +78,18 @@ std::string fish(const CLI::App& vernier) {
 
 void register_completion(CLI::App& vernier) {
   const auto shell = std::make_shared<std::string>();
-  CLI::App* command =
-      vernier.add_subcommand("completion", "Print completion words for a shell: bash, zsh, fish");
-  command->add_option("SHELL", *shell, "bash, zsh or fish")
+  CLI::App* command = vernier.add_subcommand(
+      "completion", "Print completion words for a shell: bash, zsh, fish; or all options as JSON");
+  command
+      ->add_option("SHELL", *shell, "bash, zsh or fish; json: every command with its options, for programs")
       ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+      ->check(CLI::IsMember({"bash", "zsh", "fish", "json"}));
   command->footer("  source <(vernier completion bash)");
   command->callback([shell, &vernier] {
-    const std::string text = *shell == "bash"  ? bash(vernier)
-                             : *shell == "zsh" ? zsh(vernier)
-                                               : fish(vernier);
+    const std::string text = *shell == "bash"   ? bash(vernier)
+                             : *shell == "zsh"  ? zsh(vernier)
+                             : *shell == "fish" ? fish(vernier)
+                                                : describe(vernier).dump(1) + "\n";
     std::fputs(text.c_str(), stdout);
   });
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tools/commands/description.h"
 #include "tools/text/words.h"
 
 namespace vernier::commands {
@@ -86,11 +87,7 @@ std::pair<std::string, std::string> HelpText::option_words(const CLI::Option* op
             : kind == "FLOAT"                 ? " NUMBER"
             : kind == "UINT" || kind == "INT" ? " N"
                                               : " " + kind;
-  const auto open = type.find('{'), close = type.find('}');
-  if (open != std::string::npos && close != std::string::npos) {
-    std::vector<std::string> words = text::parts_of(type.substr(open + 1, close - open - 1), ',');
-    // A word of the command line that is used for one of our values is written as word->value.
-    for (std::string& word : words) word = word.substr(0, word.find("->"));
+  if (std::vector<std::string> words = allowed_words(*option); !words.empty()) {
     const std::string all = text::joined(words, " ");
     std::erase_if(words, [&](const std::string& word) { return right.find(word) != std::string::npos; });
     if (!words.empty()) right += ": " + all;

@@ -180,7 +180,7 @@ std::string import_hint(const std::string& message, const std::vector<std::strin
     const std::string bytes = head_of(path, kMostRead);
     if (bytes.empty() || is_xml(bytes)) continue;
     const std::string command = lint::import_command_for(bytes, path);
-    if (!command.empty()) return path + " is a table of a spreadsheet; this command reads it: " + command;
+    if (!command.empty()) return path + " is not a measurement file; this command reads it: " + command;
   }
   return "";
 }

@@ -115,7 +115,9 @@ namespace manual_cli {
 void register_manual(CLI::App& vernier) {
   const auto directory = std::make_shared<std::string>();
   CLI::App* command = vernier.add_subcommand("manual", "Write the manual pages of all commands (troff)");
-  command->add_option("-o,--output", *directory, "folder for vernier.1, vernier-fit.1 …")->required();
+  command->add_option("-o,--output", *directory, "folder for vernier.1, vernier-fit.1 …")
+      ->type_name(kWritesFolder)
+      ->required();
   command->footer("  vernier manual -o build/man && man build/man/vernier-fit.1");
   command->callback([directory, &vernier] {
     text::make_folder(*directory);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tools/commands/command.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/text/words.h"
@@ -63,7 +64,7 @@ void add_report_header(CLI::App& command, ReportHeader& header) {
   command
       .add_option("--letterhead", header.file,
                   "a file of such entries, a line each, for every report of a shop")
-      ->type_name("FILE");
+      ->type_name(kReads);
 }
 
 }  // namespace vernier::commands

@@ -9,9 +9,11 @@
 namespace vernier::commands {
 
 void add_survey(CLI::App& command, SurveyArguments& arguments) {
-  command.add_option("MACHINE", arguments.machine, "machine file (XML)")->required();
-  command.add_option("MEAS", arguments.measurements, "measurement files (CSV)")->required();
-  command.add_option("--images", arguments.images, simulate::kImagesHelp);
+  command.add_option("MACHINE", arguments.machine, "machine file (XML)")->type_name(kReads)->required();
+  command.add_option("MEAS", arguments.measurements, "measurement files (CSV)")
+      ->type_name(kReads)
+      ->required();
+  command.add_option("--images", arguments.images, simulate::kImagesHelp)->type_name(kReadsFolder);
   command
       .add_option(
           "--column", arguments.columns,

@@ -10,13 +10,14 @@
 
 #include "tables/upload_format.h"
 #include "tools/commands/command.h"
+#include "tools/commands/description.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
+#include "tools/text/process.h"
 #include "tools/upload/client.h"
 #include "tools/upload/open_transport.h"
 #include "tools/workbench/file_reader.h"
 #include "tools/workbench/image_diff.h"
-#include "tools/workbench/runs/process.h"
 #include "tools/workbench/server.h"
 
 namespace vernier::commands::workbench_cli {
@@ -39,9 +40,9 @@ sigset_t ending_signals() {
 void open_browser(const std::string& url) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   std::thread([url] {
-    workbench::RunningProcess running;
+    text::RunningProcess running;
     try {
-      workbench::run_process(
+      text::run_process(
           "/usr/bin/xdg-open", {url}, "/", 1 << 20, [](std::string_view) {}, running);
     } catch (const text::InputError&) {
       // The address is printed too.
@@ -49,10 +50,10 @@ void open_browser(const std::string& url) {
   }).detach();
 }
 
-void run_workbench(const WorkbenchArguments& arguments) {
+void run_workbench(const WorkbenchArguments& arguments, const CLI::App& vernier) {
   if (arguments.reader) return workbench::serve_files(workbench::Project(arguments.directory), STDIN_FILENO);
   workbench::Api api(arguments.directory, std::filesystem::read_symlink("/proc/self/exe").string(),
-                     VERNIER_VERSION " (" VERNIER_COMMIT ")");
+                     VERNIER_VERSION " (" VERNIER_COMMIT ")", describe(vernier));
   workbench::WorkbenchServer server(api, arguments.port);
   const sigset_t ending = ending_signals();
   pthread_sigmask(SIG_BLOCK, &ending, nullptr);
@@ -121,6 +122,7 @@ void register_workbench(CLI::App& vernier) {
   CLI::App* command =
       vernier.add_subcommand("workbench", "Open the workflow in a browser: a page for this computer only");
   command->add_option("DIR", arguments->directory, "folder with machines, measurements, images")
+      ->type_name(kReadsFolder)
       ->capture_default_str();
   command->add_option("--port", arguments->port, "of 127.0.0.1 (0: any free one)")->capture_default_str();
   command->add_flag("--no-browser", arguments->no_browser, "only print the address");
@@ -130,19 +132,23 @@ void register_workbench(CLI::App& vernier) {
       "Serves until interrupted. The address holds the token of the session; the page reads and writes\n"
       "nothing outside of DIR, and shows the command behind everything that it does "
       "(tools/docs/workbench.md).");
-  command->callback([arguments] { run_workbench(*arguments); });
+  command->callback([arguments, &vernier] { run_workbench(*arguments, vernier); });
 }
 
 void register_image_diff(CLI::App& vernier) {
   auto arguments = std::make_shared<DiffArguments>();
   CLI::App* command = vernier.add_subcommand(
       "image-diff", "Show the differences of a compiled image to another one or to that of a board");
-  command->add_option("DIR", arguments->directory, "directory that `vernier compile` wrote")->required();
-  command->add_option("--with", arguments->with, "another such directory");
+  command->add_option("DIR", arguments->directory, "directory that `vernier compile` wrote")
+      ->type_name(kReadsFolder)
+      ->required();
+  command->add_option("--with", arguments->with, "another such directory")->type_name(kReadsFolder);
   command->add_option("--to", arguments->url, "the board whose confirmed image it is compared with");
-  command->add_option("--key", arguments->key,
-                      "secret key of `vernier keys` (or VERNIER_KEY): a board with keys sends its image only "
-                      "to the owner of a trusted key");
+  command
+      ->add_option("--key", arguments->key,
+                   "secret key of `vernier keys` (or VERNIER_KEY): a board with keys sends its image only "
+                   "to the owner of a trusted key")
+      ->type_name(kReads);
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->footer("Exit status 0 done, 1 bad input or no board, 2 the board's store has no confirmed image.");
   command->callback([arguments] { run_diff(*arguments); });

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "tools/fleet/sparkplug.h"
+#include "tools/registry/machine_name.h"
 #include "tools/text/error.h"
 #include "tools/upload/url.h"
 
@@ -92,7 +93,8 @@ std::string beside(const std::string& file, const std::string& path) {
 GatewayBoard board_of(const toml::table& table, const std::string& path) {
   Section section(table, path);
   GatewayBoard board;
-  board.machine = section.name("machine", "", true);
+  board.machine = section.word("machine", "", true);
+  section.require("machine", [&] { registry::require_machine_name(board.machine); });
   board.url = section.word("url", "", true);
   board.board = section.word("board", "");
   board.check = beside(path, section.word("check", ""));

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 #include <thread>
 
-#include "tools/registry/shell_command.h"
+#include "tools/registry/machine_name.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
+#include "tools/text/process.h"
 #include "tools/text/wall_time.h"
 #include "tools/upload/open_transport.h"
 
@@ -24,6 +26,17 @@ constexpr std::chrono::milliseconds kLookEvery{200};
 constexpr double kTrialMargin_s = 1;
 // Time until a board reports that it has confirmed an image as requested.
 constexpr double kConfirmedWithin_s = 3;
+
+constexpr std::size_t kMostJudgeOutput = 1u << 26;  // bytes; a program in a loop ends there
+
+/// Ends a process with its scope.
+struct Ending {
+  explicit Ending(text::RunningProcess& process) : running(process) {}
+  ~Ending() { running.cancel(); }
+  Ending(const Ending&) = delete;
+  Ending& operator=(const Ending&) = delete;
+  text::RunningProcess& running;
+};
 
 SteadyTime after(double seconds) {
   return std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -184,16 +197,24 @@ std::string ImageTrial::watch() {
 
 std::string ImageTrial::judge() {
   const SteadyTime end = after(left_s(board_.slots()));
-  registry::ShellCommand running(registry::command_for(options_.judge, machine_.name));
-  while (!running.wait(std::chrono::milliseconds(1))) {
+  text::RunningProcess process;
+  std::future<text::ProcessResult> judged = std::async(std::launch::async, [&] {
+    return text::run_process(
+        "/bin/sh", {"-c", registry::for_machine(options_.judge, machine_.name)}, ".", kMostJudgeOutput,
+        [](std::string_view) {}, process);
+  });
+  // Before the future waits for its thread, and however this function ends.
+  const Ending ending{process};
+  while (judged.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) {
     breathe();
     if (is_over(end)) return "no --judge result within the board's trial time";
     if (std::string why = why_not(); !why.empty()) return "while it was judged: " + why;
   }
-  if (running.status() == 0) return {};
+  const text::ProcessResult result = judged.get();
+  if (result.exit == 0) return {};
   return fmt::format("judged {}: {}",
-                     running.status() == 2 ? "worse" : "with status " + std::to_string(running.status()),
-                     running.last_line());
+                     result.exit == 2 ? "worse" : "with status " + std::to_string(result.exit),
+                     text::last_line(result.out + result.err));
 }
 
 /// Requests the board to confirm the image. Success only if the board reports it afterwards.

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "tools/fleet/sample_writer.h"
@@ -33,8 +34,9 @@ struct NodeState {
 /// One connection to the broker with one to the database.
 class Listener {
  public:
-  Listener(const IngestOptions& options, registry::Registry& registry)
+  Listener(const IngestOptions& options, registry::Registry& registry, const Say& say)
       : options_(options),
+        say_(say),
         writer_(registry),
         connection_(options.broker, "vernier-host-" + options.host,
                     {state_topic(options.host), state_text(false, ms_now()), true}) {
@@ -57,6 +59,11 @@ class Listener {
         data.push_back({topic->node, topic->device, std::move(*payload)});
     }
     for (const auto& [gateway, receipt] : writer_.write(data)) tell(gateway, receipt);
+    for (const std::string& machine : writer_.take_not_entered())
+      say_("machine " +
+           nlohmann::json(machine).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) +
+           " is not in the registry: its samples are not stored. The owner enters a machine with `vernier "
+           "fleet add`");
     ask_for_births();
   }
 
@@ -110,6 +117,7 @@ class Listener {
   }
 
   const IngestOptions& options_;
+  const Say& say_;
   SampleWriter writer_;
   std::map<std::string, NodeState> nodes_;
   MqttConnection connection_;
@@ -124,7 +132,7 @@ void run_ingest(const IngestOptions& options, const std::atomic<bool>& stop, con
     try {
       registry::Registry registry(registry::open_database(options.registry));
       begun = true;
-      Listener listener(options, registry);
+      Listener listener(options, registry, say);
       say("writes into " + registry.database().name());
       before.clear();
       try {

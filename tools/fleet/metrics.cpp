@@ -107,11 +107,15 @@ std::string metrics_text(registry::Registry& registry, std::int64_t at_us) {
   lost.add({},
            registry::real(
                database.run("SELECT COALESCE(SUM(before_number - after_number - 1), 0) FROM loss").at(0)[0]));
-  Family jobs(text, "vernier_jobs", "gauge", "Jobs of a batch by state.");
+  Family answers(text, "vernier_batch_answers", "gauge", "Booked answers of a batch by exit status.");
   for (const registry::Row& row :
-       database.run("SELECT batch, state, COUNT(*) FROM job GROUP BY batch, state ORDER BY batch, state"))
-    jobs.add({{"batch", registry::words(row[0])}, {"state", registry::words(row[1])}},
-             registry::real(row[2]));
+       database.run("SELECT name, status, COUNT(*) FROM answer GROUP BY name, status ORDER BY name, status"))
+    answers.add({{"batch", registry::words(row[0])}, {"status", registry::words(row[1])}},
+                registry::real(row[2]));
+  Family unknown(text, "vernier_not_entered_samples_total", "counter",
+                 "Samples of machines that are not in the registry, which were not stored.");
+  for (const registry::NotEntered& one : registry.not_entered())
+    unknown.add({{"machine", one.machine}, {"gateway", one.gateway}}, static_cast<double>(one.samples));
   return text;
 }
 

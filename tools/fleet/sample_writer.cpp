@@ -13,6 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Whoever may publish may send any name: their number is bounded.
+constexpr std::size_t kMostNotEntered = 100;
+
 registry::Cell number_cell(std::uint64_t value) { return registry::cell(static_cast<std::int64_t>(value)); }
 
 // The three by which stores are kept, which are no values of the machine.
@@ -48,7 +51,12 @@ struct SampleWriter::Batch {
   std::map<std::string, std::uint64_t> before, after;  // by spool: its cursor
   std::map<std::string, std::string> names_of_shape;
   std::vector<registry::Row> samples, losses, faults, checks;
-  std::set<std::string> machines;
+  std::set<std::string> entered;  // machines of the registry
+  struct NotEntered {
+    std::string gateway;
+    std::int64_t samples = 0;
+  };
+  std::map<std::string, NotEntered> not_entered;
   std::map<std::string, std::string> last_fault;
   std::map<std::string, std::uint64_t> last_check;
   std::map<std::string, Newest> newest;
@@ -87,12 +95,17 @@ bool SampleWriter::take(const DeviceData& one, Batch& batch) {
   if (*after > stored) return false;
   if (stored + 1 < *number) batch.losses.push_back({*spool, number_cell(stored), number_cell(*number)});
   stored = *number;
+  if (!batch.entered.contains(one.machine)) {
+    auto& counted = batch.not_entered[one.machine];
+    counted.gateway = one.gateway;
+    ++counted.samples;
+    return true;
+  }
   const std::int64_t at_us = static_cast<std::int64_t>(one.payload.find(kNumberMetric)->time_ms) * 1000;
   const bool historical = one.payload.find(kNumberMetric)->historical;
   const std::string shape_id = shape(one.payload, batch), values = values_text(one.payload);
   batch.samples.push_back({*spool, number_cell(*number), one.machine, registry::cell(at_us),
                            registry::cell(std::int64_t{historical ? 1 : 0}), shape_id, values});
-  if (!machines_.contains(one.machine)) batch.machines.insert(one.machine);
   Batch::Newest& newest = batch.newest[one.machine];
   ++newest.samples;
   const std::string fault = text_of(one.payload.find("Board/Fault")).value_or("");
@@ -127,6 +140,9 @@ bool SampleWriter::take(const DeviceData& one, Batch& batch) {
 std::map<std::string, Receipt> SampleWriter::write(const std::vector<DeviceData>& data) {
   std::map<std::string, Receipt> receipts;
   Batch batch;
+  if (!data.empty())
+    for (const registry::Row& row : registry_.database().run("SELECT name FROM machine"))
+      batch.entered.insert(registry::words(row[0]));
   for (const DeviceData& one : data) {
     const auto spool = text_of(one.payload.find(kSpoolMetric));
     if (!spool) continue;
@@ -145,7 +161,7 @@ std::map<std::string, Receipt> SampleWriter::write(const std::vector<DeviceData>
 }
 
 void SampleWriter::write(Batch& batch) {
-  if (batch.samples.empty()) return;
+  if (batch.samples.empty() && batch.not_entered.empty()) return;
   registry::Database& database = registry_.database();
   registry::Transaction transaction(database);
   for (const auto& [spool, stored] : batch.after) {
@@ -157,24 +173,43 @@ void SampleWriter::write(Batch& batch) {
   }
   for (const auto& [id, names] : batch.names_of_shape)
     database.run("INSERT INTO shape VALUES ($1, $2) ON CONFLICT DO NOTHING", {id, names});
-  for (const std::string& machine : batch.machines)
-    database.run(
-        "INSERT INTO machine (name, url, note, check_days, added_us) VALUES ($1, '', 'heard of, not added', "
-        "0, "
-        "$2) ON CONFLICT DO NOTHING",
-        {machine, registry::cell(text::now_us())});
   registry::insert_rows(database, "INSERT INTO sample", batch.samples, "");
   registry::insert_rows(database, "INSERT INTO loss", batch.losses, "");
   registry::insert_rows(database, "INSERT INTO fault_event", batch.faults, "ON CONFLICT DO NOTHING");
   registry::insert_rows(database, "INSERT INTO check_result", batch.checks, "ON CONFLICT DO NOTHING");
   write_live(batch);
+  count_not_entered(batch);
   transaction.commit();
   written_ += batch.samples.size();
   for (const auto& [spool, stored] : batch.after) cursors_[spool].stored = stored;
   for (const auto& [id, names] : batch.names_of_shape) shapes_.insert(id);
-  machines_.insert(batch.machines.begin(), batch.machines.end());
+  for (const auto& [machine, counted] : batch.not_entered)
+    if (reported_.size() < kMostNotEntered && reported_.insert(machine).second) to_report_.insert(machine);
   for (const auto& [machine, fault] : batch.last_fault) faults_[machine] = fault;
   for (const auto& [machine, time] : batch.last_check) checks_[machine] = time;
+}
+
+void SampleWriter::count_not_entered(const Batch& batch) {
+  if (batch.not_entered.empty()) return;
+  registry::Database& database = registry_.database();
+  std::set<std::string> counted;
+  for (const registry::Row& row : database.run("SELECT machine FROM not_entered"))
+    counted.insert(registry::words(row[0]));
+  for (const auto& [machine, one] : batch.not_entered) {
+    const bool has_row = counted.contains(machine) || counted.size() < kMostNotEntered;
+    if (has_row) counted.insert(machine);
+    database.run(
+        "INSERT INTO not_entered (machine, gateway, samples, at_us) VALUES ($1, $2, $3, $4) ON CONFLICT "
+        "(machine) DO UPDATE SET samples = not_entered.samples + excluded.samples, gateway = "
+        "excluded.gateway, at_us = excluded.at_us",
+        {has_row ? machine : "", one.gateway, registry::cell(one.samples), registry::cell(text::now_us())});
+  }
+}
+
+std::vector<std::string> SampleWriter::take_not_entered() {
+  std::vector<std::string> machines(to_report_.begin(), to_report_.end());
+  to_report_.clear();
+  return machines;
 }
 
 void SampleWriter::write_live(const Batch& batch) {

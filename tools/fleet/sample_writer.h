@@ -24,9 +24,11 @@ struct Receipt {
   bool resend = false;  // a record is missing: begin behind `stored`
 };
 
-/// Writes samples into the registry, each once. Records of a spool are taken in the order of their numbers.
-/// The last number is updated in the same transaction as the records; earlier records are ignored. Two
-/// writers may run at the same time. tool.
+/// Writes samples into the registry, each once. Records of a spool are taken in the order of their
+/// numbers. The last number is updated in the same transaction as the records, and earlier records are
+/// ignored. Two writers may run at the same time. Only samples of machines that are in the registry are
+/// stored. The samples of another machine are counted (Registry::not_entered), and the gateway may forget
+/// them. tool.
 class SampleWriter {
  public:
   explicit SampleWriter(registry::Registry& registry) : registry_(registry) {}
@@ -37,6 +39,9 @@ class SampleWriter {
   void online(const std::string& gateway, const std::string& machine, bool online);
   /// Returns the number of samples written so far.
   std::uint64_t written() const { return written_; }
+  /// Machines that are not in the registry and whose samples write() got, each name once. The list is empty
+  /// afterwards.
+  std::vector<std::string> take_not_entered();
 
  private:
   struct Batch;
@@ -46,13 +51,14 @@ class SampleWriter {
   };
   Cursor& cursor(const std::string& spool, const std::string& gateway);
   bool take(const DeviceData& one, Batch& batch);
+  void count_not_entered(const Batch& batch);
   std::string shape(const SparkplugPayload& payload, Batch& batch);
   void write(Batch& batch);
   void write_live(const Batch& batch);
 
   registry::Registry& registry_;
   std::map<std::string, Cursor> cursors_;
-  std::set<std::string> shapes_, machines_;
+  std::set<std::string> shapes_, reported_, to_report_;
   std::map<std::string, std::string> faults_;    // by machine: the last one
   std::map<std::string, std::uint64_t> checks_;  // by machine: time of the last one
   std::uint64_t written_ = 0;

@@ -12,6 +12,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/kinds.h"
 #include "tools/lint/lint_table.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/chain/prediction.h"
@@ -31,11 +32,12 @@ namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();  // an empty cell
 
-std::string command(const std::string& file) {
+std::string command(const std::string& file, const std::string& kind = "table") {
   const auto slash = file.rfind('/'), dot = file.rfind('.');
   const std::string stem = file.substr(
       0, dot == std::string::npos || (slash != std::string::npos && dot < slash) ? file.size() : dot);
-  return "vernier import table " + quoted_for_shell(file) + " -o " + quoted_for_shell(stem + "_read.csv");
+  return "vernier import " + kind + " " + quoted_for_shell(file) + " -o " +
+         quoted_for_shell(stem + "_read.csv");
 }
 
 class Look {
@@ -61,6 +63,10 @@ class Look {
   // ---- how it is written
 
   bool look_at_bytes() {
+    if (const auto* const kind = importer::import_kind_of(file_))
+      return findings_.error(0, "", "the file of an instrument, no measurement file",
+                             "read it: " + command(file_, kind->name)),
+             false;
     if (sheet::is_workbook(text_))
       return findings_.error(0, "", "a workbook (.xlsx), no measurement file", "read it: " + command(file_)),
              false;
@@ -392,6 +398,7 @@ std::vector<LintFinding> lint_measurement(const std::string& bytes, const std::s
 }
 
 std::string import_command_for(const std::string& bytes, const std::string& file) {
+  if (const auto* const kind = importer::import_kind_of(file)) return command(file, kind->name);
   if (sheet::is_workbook(bytes)) return command(file);
   const sheet::Encoding encoding = sheet::encoding_of(bytes);
   if (encoding == sheet::Encoding::kUtf16Le || encoding == sheet::Encoding::kUtf16Be) return command(file);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/registry/cells.h"
+#include "tools/registry/machine_name.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 
@@ -14,7 +15,7 @@ namespace vernier::registry {
 namespace {
 
 // Raised with every change of the tables; an older program leaves a newer registry alone.
-constexpr std::int64_t kSchema = 2;
+constexpr std::int64_t kSchema = 3;
 
 // Time is microseconds since 1970. `spool` is the register of gateways' stores: `stored` is the last of its
 // numbers that is in `sample`, and moves in the transaction that puts it there.
@@ -47,10 +48,6 @@ constexpr const char* kTables[] = {
     "TEXT NOT NULL, shape TEXT NOT NULL, sample_values TEXT NOT NULL)",
     "CREATE TABLE IF NOT EXISTS fault_event (machine TEXT NOT NULL, at_us BIGINT NOT NULL, fault TEXT NOT "
     "NULL, PRIMARY KEY (machine, at_us, fault))",
-    "CREATE TABLE IF NOT EXISTS job (batch TEXT NOT NULL, machine TEXT NOT NULL, command TEXT NOT NULL, "
-    "state "
-    "TEXT NOT NULL, attempt BIGINT NOT NULL, worker TEXT NOT NULL, lease_us BIGINT NOT NULL, ended_us BIGINT "
-    "NOT NULL, status BIGINT NOT NULL, said TEXT NOT NULL, PRIMARY KEY (batch, machine))",
     "CREATE TABLE IF NOT EXISTS rollout (name TEXT NOT NULL, machine TEXT NOT NULL, stage BIGINT NOT NULL, "
     "place BIGINT NOT NULL, image TEXT NOT NULL, state TEXT NOT NULL, said TEXT NOT NULL, at_us BIGINT NOT "
     "NULL, PRIMARY KEY (name, machine))",
@@ -68,6 +65,20 @@ constexpr const char* kSecondVersion[] = {
     ("CREATE TABLE machine_lock (machine TEXT PRIMARY KEY, holder TEXT NOT NULL, purpose TEXT NOT NULL, "
      "until_us BIGINT NOT NULL)"),
 };
+
+// Version 3: answers of batches, and machines whose samples arrive though nobody has entered them. The table
+// `job` of older versions is kept and no longer read.
+constexpr const char* kThirdVersion[] = {
+    "CREATE TABLE answer (batch TEXT NOT NULL, machine TEXT NOT NULL REFERENCES machine(name), name TEXT NOT "
+    "NULL, at_us BIGINT NOT NULL, status BIGINT NOT NULL, result TEXT NOT NULL, PRIMARY KEY (batch, "
+    "machine))",
+    "CREATE TABLE not_entered (machine TEXT PRIMARY KEY, gateway TEXT NOT NULL, samples BIGINT NOT NULL, "
+    "at_us BIGINT NOT NULL)",
+};
+
+// Tables with a column `machine`, for a change of the name.
+constexpr const char* kOfMachines[] = {"calibration", "check_result", "reading", "sample",      "live",
+                                       "fault_event", "rollout",      "answer",  "machine_lock"};
 
 // Two programs that find no tables make them one after the other.
 constexpr std::int64_t kSchemaLock = 0x7665726e;
@@ -106,11 +117,14 @@ void Registry::upgrade(std::int64_t version) {
   version = whole(database_->run("SELECT version FROM fleet_schema").at(0)[0]);
   if (version < 2)
     for (const char* statement : kSecondVersion) database_->run(statement);
+  if (version < 3)
+    for (const char* statement : kThirdVersion) database_->run(statement);
   database_->run("UPDATE fleet_schema SET version = $1", {cell(kSchema)});
   transaction.commit();
 }
 
 void Registry::put(const FleetMachine& machine) {
+  require_machine_name(machine.name);
   database_->run(
       "INSERT INTO machine (name, url, note, check_days, added_us, board, board_key) VALUES ($1, $2, $3, $4, "
       "$5, $6, $7) ON CONFLICT (name) DO UPDATE SET url = excluded.url, note = excluded.note, check_days = "
@@ -141,6 +155,30 @@ FleetMachine Registry::machine(const std::string& name) {
   for (FleetMachine& machine : machines())
     if (machine.name == name) return std::move(machine);
   throw text::InputError({}, name, "no machine has this name in " + database_->name());
+}
+
+void Registry::give_name(const std::string& from, const std::string& to) {
+  require_machine_name(to);
+  FleetMachine machine = this->machine(from);
+  Transaction transaction(*database_);
+  database_->run(
+      "INSERT INTO machine (name, url, note, check_days, added_us, board, board_key) VALUES ($1, $2, $3, $4, "
+      "$5, $6, $7) ON CONFLICT DO NOTHING",
+      {to, machine.url, machine.note, cell(machine.check_days), cell(machine.added_us), machine.board,
+       machine.board_key});
+  if (database_->written() == 0) throw text::InputError({}, to, "a machine of this name is entered");
+  for (const char* table : kOfMachines)
+    database_->run(fmt::format("UPDATE {} SET machine = $1 WHERE machine = $2", table), {to, from});
+  database_->run("DELETE FROM machine WHERE name = $1", {from});
+  transaction.commit();
+}
+
+std::vector<NotEntered> Registry::not_entered() {
+  std::vector<NotEntered> all;
+  for (const Row& row :
+       database_->run("SELECT machine, gateway, samples, at_us FROM not_entered ORDER BY machine"))
+    all.push_back({words(row[0]), words(row[1]), whole(row[2]), whole(row[3])});
+  return all;
 }
 
 void Registry::put(const RecordedCalibration& c) {

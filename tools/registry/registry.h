@@ -68,6 +68,13 @@ LiveAge live_age(const LiveState& live, std::int64_t now_us, double stale_s);
 const char* name_of(LiveAge::State state);
 inline constexpr double kStaleAfter_s = 30;
 
+/// A machine that is not in the registry, and whose samples were not stored; "" stands for all machines
+/// beyond the first hundred.
+struct NotEntered {
+  std::string machine, gateway;  // the gateway that sent the last sample
+  std::int64_t samples = 0, at_us = 0;
+};
+
 /// The registry of a fleet: machines, their images, their states. A registry on a server and a registry in a
 /// file have the same contents. All calls of Registry throw DatabaseError. tool.
 class Registry {
@@ -77,13 +84,19 @@ class Registry {
   explicit Registry(std::unique_ptr<Database> database);
   Database& database() { return *database_; }
 
-  /// Adds a machine, or changes the machine of that name.
+  /// Adds a machine, or changes the machine of that name. Throws InputError for a name that is not allowed
+  /// (machine_name.h).
   void put(const FleetMachine& machine);
   std::vector<FleetMachine> machines();
   /// Throws InputError if no machine has that name.
   FleetMachine machine(const std::string& name);
-  /// Enters the key of a machine's board if no key is entered. False: the board of another machine has this
-  /// key, or a key was entered meanwhile.
+  /// Gives a machine with all its entries another name. Throws InputError if no machine has the first name,
+  /// or if the second one is taken or not allowed.
+  void give_name(const std::string& from, const std::string& to);
+  /// Returns the machines that are not in the registry, and whose samples arrived and were not stored.
+  std::vector<NotEntered> not_entered();
+  /// Enters the key of a machine's board if no key is entered. False: the board of another machine
+  /// has this key, or a key was entered meanwhile.
   bool trust_board_key(const std::string& machine, const std::string& key);
 
   void put(const RecordedCalibration& calibration);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tools/import/kinds.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/workbench/files/file_desk.h"
@@ -16,11 +17,18 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+/// The kind of `vernier import` for the file of an instrument, null for another file.
+Json importer_of(const std::string& file) {
+  const importer::ImportKind* const kind = importer::import_kind_of(file);
+  return kind == nullptr ? Json(nullptr) : Json(kind->name);
+}
+
 }  // namespace
 
-Api::Api(const std::string& directory, const std::string& program, std::string version)
+Api::Api(const std::string& directory, const std::string& program, std::string version, const Json& commands)
     : project_(directory),
       version_(std::move(version)),
+      commands_(commands),
       history_(project_),
       reader_(program, project_),
       jobs_(program, project_, history_) {}
@@ -41,6 +49,7 @@ ApiReply Api::answer(const ApiRequest& request) {
       {"GET", "/api/history", &Api::history}, {"POST", "/api/history", &Api::history},
       {"GET", "/api/live", &Api::live}};
   if (request.method == "GET" && request.path == "/api/project") return project_page();
+  if (request.method == "GET" && request.path == "/api/commands") return json_reply(commands_.allowed());
   if (FileDesk::answers(request) && request.method != "PUT") return reader_.reply(request);
   for (const Route& route : kRoutes)
     if (request.method == route.method && request.path == route.path) return (this->*route.answer)(request);
@@ -52,6 +61,7 @@ ApiReply Api::project_page() {
   for (const ProjectFile& file : project_.list())
     files.push_back({{"name", file.name},
                      {"kind", kind_name(file.kind)},
+                     {"importer", importer_of(file.name)},
                      {"bytes", file.bytes},
                      {"modified_s", file.modified_s}});
   return json_reply({{"folder", project_.root().filename().string()},
@@ -107,7 +117,7 @@ ApiReply Api::lines(const ApiRequest& request) {
 
 ApiReply Api::jobs(const ApiRequest& request) {
   if (request.method == "POST") {
-    const std::uint64_t id = jobs_.start(plan_command(body_json(request), project_));
+    const std::uint64_t id = jobs_.start(commands_.plan(body_json(request), project_));
     return json_reply(jobs_.state(id), 202);
   }
   const std::uint64_t id = whole_number(request.word("id"));

@@ -16,9 +16,11 @@ namespace vernier::workbench {
 /// from several threads. tool.
 class Api {
  public:
-  /// directory: of the project. program: the `vernier` that runs commands. version: shown on the page. Throws
-  /// InputError if the folder does not exist. tool.
-  Api(const std::string& directory, const std::string& program, std::string version);
+  /// directory: of the project. program: the `vernier` that runs commands. version: shown on the page.
+  /// commands: of that program, as CommandTable reads them. Throws InputError if the folder does not exist.
+  /// tool.
+  Api(const std::string& directory, const std::string& program, std::string version,
+      const nlohmann::ordered_json& commands);
 
   /// Answers a request and never throws: bad input is 422 with {"message"}, an unknown path 404, an internal
   /// error 500.
@@ -36,6 +38,7 @@ class Api {
 
   Project project_;
   std::string version_;
+  CommandTable commands_;
   CommandHistory history_;
   FileReader reader_;
   LiveBoard live_;

@@ -402,7 +402,7 @@ void refuse_duplicates(const BoardFile& board) {
 }  // namespace
 
 void SignalSource::fail(const std::string& what) const { throw BoardError{where + ": " + what}; }
-void SignalSource::only(std::initializer_list<const char*> names) const {
+void SignalSource::only(const std::vector<const char*>& names) const {
   const auto check = [&](const std::string& name) {
     if (name != "kind" && std::find(names.begin(), names.end(), name) == names.end())
       fail("unknown setting " + name + " of kind " + kind);

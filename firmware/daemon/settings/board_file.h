@@ -21,7 +21,7 @@ struct SignalSource {
 
   [[noreturn]] void fail(const std::string& what) const;  // throws BoardError
   /// Throws BoardError if the file has a setting that is not among `names`, apart from kind.
-  void only(std::initializer_list<const char*> names) const;
+  void only(const std::vector<const char*>& names) const;
   const std::string& text(const std::string& name) const;  // throws BoardError where absent
   double number(const std::string& name) const;            // the same
   double number(const std::string& name, double otherwise) const;

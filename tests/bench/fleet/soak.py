@@ -16,6 +16,7 @@ import random
 import resource
 import shutil
 import sqlite3
+import subprocess
 import sys
 import tempfile
 import time
@@ -83,12 +84,18 @@ class Fleet:
         else:
             service.start()
 
+    def enter_machines(self):
+        """Only samples of machines that are in the registry are stored."""
+        for board in range(self.options.boards):
+            subprocess.run([os.path.join(self.options.bin, "vernier"), "fleet", "add", f"machine-{board}", "--registry", self.registry], check=True)
+
     def start_all(self):
         if self.postgres:
             self.postgres.start()
             if not self.postgres.ready():
                 raise RuntimeError("PostgreSQL does not come up")
             self.postgres.make_database()
+        self.enter_machines()
         for one in [self.broker, self.ingest, *self.board_processes, *self.gateways]:
             self.start(one)
 

@@ -137,37 +137,123 @@ TEST_F(FleetCommand, StatusSaysHowOldAStateIsAndWhoseClockIsOff) {
 
 TEST_F(FleetCommand, BadInputIsNamed) {
   ASSERT_EQ(run("vernier fleet add a"), 0) << said();
-  for (const char* words :
-       {"vernier fleet add a/b", "vernier fleet add a --url nonsense://x",
-        "vernier fleet record b --model m.xml --signed-by w", "vernier fleet check a --result out.txt",
-        "vernier fleet check b --result out.txt", "vernier fleet status b",
-        "vernier fleet enqueue night true --machine b", "vernier fleet gateway none.toml",
-        "vernier fleet alike --since yesterday", "vernier fleet metrics --listen nowhere",
-        "vernier fleet list --registry /none/such/folder/f.db", "vernier fleet jobs --again",
-        "vernier fleet list --registry fleeet.db", "vernier fleet add 'a\nb'",
-        "vernier fleet due --at 2026-02-30", "vernier fleet record a --model out.txt --signed-by w",
-        "vernier fleet ingest --broker localhost", "vernier fleet ingest --broker tcp://localhost:mqtt"}) {
+  for (const char* words : {"vernier fleet add a/b",
+                            "vernier fleet add a --url nonsense://x",
+                            "vernier fleet record b --model m.xml --signed-by w",
+                            "vernier fleet check a --result out.txt",
+                            "vernier fleet check b --result out.txt",
+                            "vernier fleet status b",
+                            "vernier fleet batch night --machine b fit {machine}.xml",
+                            "vernier fleet batch night fit a.xml",
+                            "vernier fleet batch night",
+                            "vernier fleet batch night none {machine}",
+                            "vernier fleet batch 'a b' fit {machine}.xml",
+                            "vernier fleet batch night fit {machine}.xml --json -",
+                            "vernier fleet batch night fleet add {machine}",
+                            "vernier fleet collect none",
+                            "vernier fleet task none a",
+                            "vernier fleet gateway none.toml",
+                            "vernier fleet alike --since yesterday",
+                            "vernier fleet metrics --listen nowhere",
+                            "vernier fleet list --registry /none/such/folder/f.db",
+                            "vernier fleet add 'a b'",
+                            "vernier fleet rename a 'a b'",
+                            "vernier fleet list --registry fleeet.db",
+                            "vernier fleet add 'a\nb'",
+                            "vernier fleet due --at 2026-02-30",
+                            "vernier fleet record a --model out.txt --signed-by w",
+                            "vernier fleet ingest --broker localhost",
+                            "vernier fleet ingest --broker tcp://localhost:mqtt"}) {
     EXPECT_EQ(run(words), 1) << words << "\n" << said();
     EXPECT_NE(said().find("vernier: "), std::string::npos) << words;
   }
-  EXPECT_EQ(run("vernier fleet work night --lease nan"), 1) << said();
+  EXPECT_EQ(run("vernier fleet batch night --scheduler at fit {machine}.xml"), 1) << said();
   EXPECT_FALSE(std::filesystem::exists(folder_ + "/fleeet.db")) << "a misspelt registry made a file";
   write_file(folder_ + "/text",
              "this is no database, and long enough to be none in every way that there is of being one.");
   EXPECT_EQ(run("vernier fleet list --registry text"), 1) << said();
 }
 
-TEST_F(FleetCommand, MassWorkSaysWhatFailed) {
-  ASSERT_EQ(run("vernier fleet add a && vernier fleet add b && vernier fleet enqueue night 'echo {machine} "
-                "says so; test {machine} = a'"),
+// The user's words never reach a shell: names and files with blanks, quotes and $ keep their bytes.
+TEST_F(FleetCommand, BatchIsWorkedOffAndCollectedOnce) {
+  // GIVEN three machines, one without measurements
+  const std::string odd = "it's $HOME & more";
+  std::filesystem::create_directories(folder_ + "/" + odd);
+  for (const char* name : {"a", "b", "c"}) {
+    ASSERT_EQ(run(std::string("vernier fleet add ") + name), 0) << said();
+    write_file(folder_ + "/" + odd + "/" + name + ".xml", kMachineFile);
+    if (name[0] != 'c')
+      write_file(folder_ + "/" + name + ".csv",
+                 "X[mm],x[mm],u[mm]\n0,0,0.1\n100,100.1,0.1\n200,200.2,0.1\n300,300.1,0.1\n");
+  }
+  const std::string words =
+      "vernier fleet batch night compare \"it's \\$HOME & more/{machine}.xml\" {machine}.csv";
+  ASSERT_EQ(run(words), 0) << said();
+  EXPECT_NE(said().find("3 machines. Start: ./night/parallel.sh"), std::string::npos) << said();
+  EXPECT_EQ(run(words), 1) << "there is one";
+  // WHEN the tasks run as the scheduler runs them
+  EXPECT_EQ(run("vernier fleet task night a && vernier fleet task night b && vernier fleet task night b"), 0)
+      << said();
+  EXPECT_EQ(run("vernier fleet task night d"), 1) << said();
+  EXPECT_EQ(run("vernier fleet collect night --json answer.json"), 2) << said();
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder_ + "/answer.json"))["not_booked"][0]["state"], "missing");
+  EXPECT_EQ(run("vernier fleet task night c"), 2) << said();
+  EXPECT_EQ(run("vernier fleet collect night --json answer.json"), 2) << said();
+  auto collected = nlohmann::json::parse(read_file(folder_ + "/answer.json"));
+  EXPECT_EQ(collected["booked"], 0);
+  EXPECT_EQ(collected["booked_before"], 2);
+  EXPECT_EQ(collected["not_booked"][0]["state"], "failed");
+  // THEN the repeated task is booked too, and a further collect changes nothing
+  write_file(folder_ + "/c.csv", "X[mm],x[mm],u[mm]\n0,0,0.1\n100,100.1,0.1\n200,200.2,0.1\n300,300.1,0.1\n");
+  ASSERT_EQ(run("vernier fleet task night c && vernier fleet collect night"), 0) << said();
+  EXPECT_EQ(json("vernier fleet collect night")["booked"], 0);
+  const auto answers = json("vernier fleet answers night")["answers"];
+  ASSERT_EQ(answers.size(), 3u);
+  EXPECT_EQ(answers[2]["machine"], "c");
+  EXPECT_TRUE(answers[2]["result"].is_object()) << answers;
+  EXPECT_EQ(run("vernier fleet collect ."), 1) << said();
+}
+
+TEST_F(FleetCommand, SlurmScriptNumbersTheMachines) {
+  ASSERT_EQ(run("vernier fleet add a && vernier fleet add b && vernier fleet batch night --scheduler slurm "
+                "-o 'a b' "
+                "'vernier compare {machine}.xml {machine}.csv'"),
             0)
       << said();
-  EXPECT_EQ(run("vernier fleet work night --workers 2"), 2) << said();
-  const auto batch = json("vernier fleet jobs night")["batches"][0];
-  EXPECT_EQ(batch["done"], 1);
-  EXPECT_EQ(batch["jobs"][1]["said"], "b says so");
-  EXPECT_EQ(run("vernier fleet jobs night --again && vernier fleet enqueue night true"), 0) << said();
-  EXPECT_NE(said().find("0 jobs added, 2 machines had theirs"), std::string::npos) << said();
+  ASSERT_EQ(run("vernier fleet batch two --machine b --machine a compare {machine}.xml {machine}.csv && cat "
+                "two/machines"),
+            0)
+      << said();
+  EXPECT_NE(said().find("\na\nb\n"), std::string::npos) << said();
+  ASSERT_EQ(
+      run("vernier fleet batch one --machine b compare {machine}.xml {machine}.csv && cat one/machines"), 0)
+      << said();
+  EXPECT_NE(said().find("\nb\n"), std::string::npos) << said();
+  const std::string script = read_file(folder_ + "/a b/slurm.sh");
+  EXPECT_NE(script.find("#SBATCH --array=1-2\n"), std::string::npos) << script;
+  EXPECT_EQ(run("cd 'a b' && sh -n slurm.sh"), 0) << said();
+  const auto batch = nlohmann::json::parse(read_file(folder_ + "/a b/batch.json"));
+  EXPECT_EQ(batch["command"].dump(), R"(["compare","{machine}.xml","{machine}.csv","--json","-"])");
+}
+
+// Names of older versions are listed with what to do.
+TEST_F(FleetCommand, OldNameIsListedWithItsRemedy) {
+  ASSERT_EQ(run("vernier fleet add a"), 0) << said();
+  {
+    registry::Registry registry(registry::open_database(folder_ + "/fleet.db"));
+    registry.database().run(
+        "INSERT INTO machine (name, url, note, check_days, added_us) VALUES ('my mill', '', '', 0, 1)");
+  }
+  const auto machines = json("vernier fleet list")["machines"];
+  EXPECT_TRUE(machines[0]["name_allowed"]);
+  EXPECT_FALSE(machines[1]["name_allowed"]);
+  ASSERT_EQ(run("vernier fleet list"), 0) << said();
+  EXPECT_NE(said().find("vernier fleet rename 'my mill' NEW_NAME"), std::string::npos) << said();
+  EXPECT_EQ(run("vernier fleet batch night compare {machine}.xml {machine}.csv"), 1) << said();
+  EXPECT_EQ(run("vernier fleet rename 'my mill' mill && vernier fleet batch night compare {machine}.xml "
+                "{machine}.csv"),
+            0)
+      << said();
 }
 
 TEST_F(FleetCommand, GatewayAndIngestEndWhenTheyAreTold) {

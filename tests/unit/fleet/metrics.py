@@ -21,7 +21,9 @@ folder = tempfile.mkdtemp(prefix="vernier_metrics_")
 registry = os.path.join(folder, "fleet.db")
 odd = 'O\'Brien "7"\\n \u00b5'
 for name in ("plain", odd):
-    subprocess.run([vernier, "fleet", "add", name, "--registry", registry, "--check-days", "7"], check=True)
+    subprocess.run([vernier, "fleet", "add", "new", "--registry", registry, "--check-days", "7"], check=True)
+    with sqlite3.connect(registry) as file:  # an older version took any name
+        file.execute("UPDATE machine SET name = ? WHERE name = 'new'", (name,))
 with sqlite3.connect(registry) as file:
     file.execute("INSERT INTO shape VALUES ('s', ?)", (json.dumps(["Axes/X/Position", "Board/Mode", "Shares/X/a \"b\"\nc"]),))
     for name in ("plain", odd):
@@ -30,7 +32,8 @@ with sqlite3.connect(registry) as file:
                      (name, json.dumps([1.5e-7, "active", -3])))
         file.execute("INSERT INTO fault_event VALUES (?, 5, 'position-jump')", (name,))
     file.execute("INSERT INTO loss VALUES ('x', 3, 9)")
-    file.execute("INSERT INTO job VALUES ('night', 'plain', 'true', 'done', 1, 'w', 0, 0, 0, '')")
+    file.execute("INSERT INTO answer VALUES ('id', 'plain', 'night', 1, 2, '{}')")
+    file.execute("INSERT INTO not_entered VALUES (?, 'g', 7, 1)", (odd,))
 text = subprocess.run([vernier, "fleet", "metrics", "--registry", registry], check=True, capture_output=True).stdout
 server = subprocess.Popen([vernier, "fleet", "metrics", "--registry", registry, "--listen", "127.0.0.1:0"], stderr=subprocess.PIPE, text=True)
 try:
@@ -44,6 +47,7 @@ for one in (text, served):
     result = subprocess.run(["promtool", "check", "metrics"], input=one, capture_output=True)
     print(result.stdout.decode(), result.stderr.decode())
     good = good and result.returncode == 0 and not result.stderr and b'vernier_lost_samples_total 5' in one
+    good = good and b'vernier_batch_answers{batch="night",status="2"} 1' in one and b"vernier_not_entered_samples_total{" in one
     good = good and b'vernier_machine_online{machine="plain",gateway="g"} 0' in one  # nothing was heard lately
     good = good and b'vernier_machine_value{machine="plain",name="Axes/X/Position"} 1.5e-07' in one or b"1.5e-7" in one
 shutil.rmtree(folder)

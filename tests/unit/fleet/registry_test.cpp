@@ -22,8 +22,8 @@ INSTANTIATE_TEST_SUITE_P(Fleet, RegistryTest, testing::Values("sqlite", "postgre
 
 TEST_P(RegistryTest, KeepsMachinesCalibrationsAndChecks) {
   Registry registry = this->registry();
-  const std::string odd = "O'Brien's \"mill\" \u00b5; DROP TABLE machine";
-  registry.put(FleetMachine{odd, "tcp://h", "note", 7, 5});
+  const std::string odd = "O-Brien.s_mill";
+  registry.put(FleetMachine{odd, "tcp://h", "it's a \"note\" \u00b5; DROP TABLE machine", 7, 5});
   registry.put(FleetMachine{odd, "tcp://g", "other", 0.5, 9});
   ASSERT_EQ(registry.machines().size(), 1u);
   EXPECT_EQ(registry.machine(odd).url, "tcp://g");
@@ -53,6 +53,45 @@ TEST_P(RegistryTest, KeepsMachinesCalibrationsAndChecks) {
   ASSERT_EQ(registry.readings(0).size(), 1u);
   EXPECT_EQ(registry.readings(0)[0].value, 1.25e-6);
   EXPECT_TRUE(registry.readings(1001).empty());
+}
+
+// A registry of an older version: its machine keeps a name that is not allowed now until it gets another one.
+TEST_P(RegistryTest, OldNameIsReplacedWithAllEntries) {
+  Registry registry = this->registry();
+  const std::string old = "O'Brien's \"mill\" \u00b5";
+  EXPECT_THROW(registry.put(FleetMachine{old, "", "", 0, 1}), text::InputError);
+  registry.put(FleetMachine{"other", "", "", 0, 1});
+  registry.database().run(
+      "INSERT INTO machine (name, url, note, check_days, added_us) VALUES ($1, 'tcp://h', 'n', 7, 5)", {old});
+  registry.put(RecordedCalibration{old, "m.xml", "aa", "0123", "d.csv", "bb", "who", "c.csv", "cc", 100});
+  registry.put(FleetCheck{old, "monday", "valid", "", 1, 100, 1000}, {{old, "sxy", "rad", 1000, 1e-6, 1e-7}});
+  EXPECT_THROW(registry.give_name(old, "other"), text::InputError);
+  EXPECT_THROW(registry.give_name(old, "a b"), text::InputError);
+  EXPECT_THROW(registry.give_name("none", "new"), text::InputError);
+  EXPECT_EQ(registry.machine(old).url, "tcp://h");
+  registry.give_name(old, "mill");
+  EXPECT_THROW(registry.machine(old), text::InputError);
+  EXPECT_EQ(registry.machine("mill").check_days, 7);
+  EXPECT_EQ(registry.machine("mill").added_us, 5);
+  EXPECT_EQ(registry.calibrations("mill").size(), 1u);
+  EXPECT_EQ(registry.checks("mill").size(), 1u);
+  EXPECT_EQ(registry.readings(0).at(0).machine, "mill");
+}
+
+TEST_P(RegistryTest, VersionTwoIsConvertedAndItsJobsStay) {
+  {
+    Registry registry = this->registry();
+    registry.put(FleetMachine{"m", "", "", 0, 1});
+    registry.database().run("DROP TABLE answer");
+    registry.database().run("DROP TABLE not_entered");
+    registry.database().run("CREATE TABLE job (batch TEXT NOT NULL)");
+    registry.database().run("UPDATE fleet_schema SET version = 2");
+  }
+  Registry registry = this->registry();
+  EXPECT_TRUE(registry.not_entered().empty());
+  EXPECT_TRUE(registry.database().run("SELECT * FROM answer").empty());
+  EXPECT_TRUE(registry.database().run("SELECT * FROM job").empty());
+  EXPECT_EQ(registry.machines().size(), 1u);
 }
 
 TEST_P(RegistryTest, SecondProgramFindsTheTables) {

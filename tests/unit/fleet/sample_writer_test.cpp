@@ -27,6 +27,12 @@ DeviceData sample(const std::string& spool, std::uint64_t number, std::uint64_t 
 
 class SampleWriterTest : public OnBothDatabases {
  protected:
+  /// With the machines that the tests' samples are of.
+  Registry registry() const {
+    Registry registry = OnBothDatabases::registry();
+    for (const char* machine : {"m", "n"}) registry.put(FleetMachine{machine, "", "", 0, 1});
+    return registry;
+  }
   static std::vector<std::int64_t> numbers(Registry& registry, const std::string& spool) {
     std::vector<std::int64_t> all;
     for (const Row& row :
@@ -54,6 +60,37 @@ TEST_P(SampleWriterTest, RepeatedAndMissingRecordsComeOutEachOnce) {
   EXPECT_EQ(numbers(registry, "a"), (std::vector<std::int64_t>{1, 2, 3, 4}));
   EXPECT_EQ(numbers(registry, "b"), (std::vector<std::int64_t>{1}));
   EXPECT_TRUE(registry.database().run("SELECT * FROM loss").empty());
+}
+
+TEST_P(SampleWriterTest, SamplesOfAMachineThatNobodyEnteredAreCountedAndNotStored) {
+  Registry registry = this->registry();
+  SampleWriter writer(registry);
+  // GIVEN a store with records of an entered machine and of two others
+  auto receipts = writer.write({sample("a", 1, 0), sample("a", 2, 1, "odd 'name'"), sample("a", 3, 2, "late"),
+                                sample("a", 4, 3, "late", "position-jump")});
+  // THEN the gateway may forget them, and only the entered machine's is stored
+  EXPECT_EQ(receipts["gateway of a"].stored, 4u);
+  EXPECT_EQ(numbers(registry, "a"), (std::vector<std::int64_t>{1}));
+  EXPECT_EQ(registry.machines().size(), 2u);
+  EXPECT_EQ(registry.live().size(), 1u);
+  EXPECT_TRUE(registry.database().run("SELECT * FROM fault_event").empty());
+  ASSERT_EQ(registry.not_entered().size(), 2u);
+  EXPECT_EQ(registry.not_entered()[0].machine, "late");
+  EXPECT_EQ(registry.not_entered()[0].samples, 2);
+  EXPECT_EQ(writer.take_not_entered(), (std::vector<std::string>{"late", "odd 'name'"}));
+  EXPECT_TRUE(writer.take_not_entered().empty());
+  // WHEN the owner enters one, its samples are stored from then on
+  registry.put(FleetMachine{"late", "", "", 0, 1});
+  writer.write({sample("a", 5, 4, "late")});
+  EXPECT_EQ(numbers(registry, "a"), (std::vector<std::int64_t>{1, 5}));
+  EXPECT_TRUE(registry.database().run("SELECT * FROM loss").empty());
+  // Names without end take a bounded place.
+  std::vector<DeviceData> many;
+  for (std::uint64_t n = 6; n < 306; ++n) many.push_back(sample("a", n, n - 1, "x" + std::to_string(n)));
+  writer.write(many);
+  EXPECT_EQ(registry.not_entered().size(), 101u);
+  EXPECT_EQ(registry.not_entered()[0].machine, "");
+  EXPECT_EQ(registry.not_entered()[0].samples, 202);
 }
 
 TEST_P(SampleWriterTest, WhatAGatewayGaveUpIsWrittenDownAsLost) {

@@ -37,6 +37,7 @@ def main():
     listener = Service("listener", ["mosquitto_sub", "-p", port, "-q", "1", "-t", "spBv1.0/#", "-F", "%t\t%q\t%r\t%x"], heard)
     everything = [fleet.broker, listener, fleet.ingest, *fleet.board_processes, *fleet.gateways]
     try:
+        fleet.enter_machines()
         fleet.start(fleet.broker)
         time.sleep(0.5)
         for one in everything[1:]:

@@ -48,7 +48,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"evaluate", {"format", "maths", "model", "text"}},
       {"import", {"format", "maths", "model", "sheet", "text", "timebase"}},
       {"exchange", {"format", "kinematics", "maths", "model", "text"}},
-      {"lint", {"format", "model", "sheet", "text"}},
+      {"lint", {"format", "import", "model", "sheet", "text"}},
       {"part", {"fit", "format", "maths", "model", "text"}},
       {"safety", {"fit", "kinematics", "maths", "model", "text"}},
       {"compile", {"format", "maths", "model", "text"}},

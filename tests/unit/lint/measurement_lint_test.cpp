@@ -228,6 +228,8 @@ TEST(ImportCommand, IsGivenForSpreadsheetsOnly) {
   EXPECT_NE(import_command_for("X (mm),x (mm)\n1,2\n", "a.csv"), "");
   EXPECT_NE(import_command_for("X[mm],x[mm],,\n1,2,,\n", "a.csv"), "");
   EXPECT_EQ(import_command_for("<machine/>", "a.xml"), "");
+  EXPECT_EQ(import_command_for("HEADER::", "run 1.RTL"),
+            "vernier import laser 'run 1.RTL' -o 'run 1_read.csv'");
 }
 
 }  // namespace

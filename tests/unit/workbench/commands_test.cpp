@@ -3,7 +3,7 @@
 
 #include "tests/unit/workbench/rig.h"
 #include "tools/text/error.h"
-#include "tools/workbench/runs/process.h"
+#include "tools/text/process.h"
 
 namespace vernier::commands_test {
 
@@ -19,37 +19,36 @@ struct Rig {
     write_file(folder.in("rows.csv"), test::kSmallRows);
   }
   std::string typed(const json& request) const {
-    return shell_text("vernier", plan_command(request, Project(folder.project())).arguments);
+    return shell_text("vernier", table.plan(request, Project(folder.project())).arguments);
   }
   test::Folder folder;
+  CommandTable table{test::described()};
 };
 
 TEST(WorkbenchCommand, IsWhatAPersonWouldType) {
   const Rig rig;
   EXPECT_EQ(
-      rig.typed(
-          {{"command", "fit"}, {"machine", "m.xml"}, {"measurements", {"rows.csv"}}, {"output", "new.xml"}}),
+      rig.typed({{"command", "fit"}, {"machine", "m.xml"}, {"meas", {"rows.csv"}}, {"output", "new.xml"}}),
       "vernier fit m.xml rows.csv -o new.xml");
   EXPECT_EQ(
       rig.typed({{"command", "plan"},
                  {"machine", "m.xml"},
-                 {"measurements", {"rows.csv"}},
+                 {"meas", {"rows.csv"}},
                  {"separate", {"backlash:axis=X", "it's:x=(1 2)"}},
                  {"points", 12}}),
       "vernier plan m.xml rows.csv --separate backlash:axis=X --separate 'it'\\''s:x=(1 2)' --points 12");
   EXPECT_EQ(rig.typed({{"command", "compare"},
                        {"machine", "m.xml"},
-                       {"measurements", {"rows.csv"}},
+                       {"meas", {"rows.csv"}},
                        {"datum", true},
-                       {"images", true},
+                       {"images", "."},
                        {"header", {"serial number=4711", "company=Muster & Sohn"}}}),
-            "vernier compare m.xml rows.csv --datum --images=. --header 'serial number=4711' --header "
+            "vernier compare m.xml rows.csv --datum --images . --header 'serial number=4711' --header "
             "'company=Muster & Sohn'");
-  EXPECT_EQ(rig.typed({{"command", "import"},
-                       {"kind", "table"},
-                       {"files", {"rows.csv"}},
+  EXPECT_EQ(rig.typed({{"command", "import table"},
+                       {"file", "rows.csv"},
                        {"decimal", "comma"},
-                       {"deviations", {"X[um]=2"}},
+                       {"deviation", {"X[um]=2"}},
                        {"output", "read.csv"}}),
             "vernier import table rows.csv --decimal comma --deviation 'X[um]=2' -o read.csv");
   EXPECT_EQ(
@@ -60,22 +59,21 @@ TEST(WorkbenchCommand, IsWhatAPersonWouldType) {
 
 TEST(WorkbenchCommand, LooksAtAFleetAndChangesNothingOfIt) {
   const Rig rig;
-  EXPECT_EQ(rig.typed({{"command", "fleet"}, {"what", "due"}, {"registry", "postgresql://u@h/fleet"}}),
+  EXPECT_EQ(rig.typed({{"command", "fleet due"}, {"registry", "postgresql://u@h/fleet"}}),
             "vernier fleet due --registry postgresql://u@h/fleet");
-  EXPECT_EQ(rig.typed({{"command", "fleet"}, {"what", "alike"}, {"registry", "m.xml"}}),
+  EXPECT_EQ(rig.typed({{"command", "fleet alike"}, {"registry", "m.xml"}}),
             "vernier fleet alike --registry m.xml");
-  for (const char* what : {"rollout", "forget", "gateway", "work", "enqueue", "add", "", "status due"})
-    EXPECT_THROW(rig.typed({{"command", "fleet"}, {"what", what}, {"registry", "m.xml"}}), InputError)
+  for (const char* what :
+       {"rollout", "forget", "gateway", "batch", "task", "collect", "rename", "add", "", "status due"})
+    EXPECT_THROW(rig.typed({{"command", std::string("fleet ") + what}, {"registry", "m.xml"}}), InputError)
         << what;
   for (const char* place : {"../fleet.db", "/tmp/fleet.db", "none.db", "--x", "postgresqlx://h"})
-    EXPECT_THROW(rig.typed({{"command", "fleet"}, {"what", "due"}, {"registry", place}}), InputError)
-        << place;
+    EXPECT_THROW(rig.typed({{"command", "fleet due"}, {"registry", place}}), InputError) << place;
 }
 
 TEST(WorkbenchCommand, RefusesWhatIsNotInTheTable) {
   const Rig rig;
-  const json good = {
-      {"command", "fit"}, {"machine", "m.xml"}, {"measurements", {"rows.csv"}}, {"output", "new.xml"}};
+  const json good = {{"command", "fit"}, {"machine", "m.xml"}, {"meas", {"rows.csv"}}, {"output", "new.xml"}};
   const auto with = [&](const char* key, const json& value) {
     json changed = good;
     changed[key] = value;
@@ -93,9 +91,16 @@ TEST(WorkbenchCommand, RefusesWhatIsNotInTheTable) {
                           with("machine", "none.xml"),
                           with("machine", "../m.xml"),
                           with("machine", "--help"),
-                          with("measurements", "rows.csv"),
-                          with("measurements", json::array()),
-                          with("measurements", {"/etc/passwd"}),
+                          with("meas", "rows.csv"),
+                          with("meas", json::array()),
+                          with("meas", {"/etc/passwd"}),
+                          with("images", ".."),
+                          with("images", true),
+                          with("machine", "."),
+                          with("residuals", "r.csv"),  // an option of fit that the page may not use
+                          with("solver", "ceres"),
+                          with("json", "-"),
+                          with("loss", "least"),
                           with("loss", "--json=/tmp/x"),
                           with("loss", "a\nb"),
                           with("loss", ""),
@@ -104,6 +109,58 @@ TEST(WorkbenchCommand, RefusesWhatIsNotInTheTable) {
                           json::array(),
                           json("fit")})
     EXPECT_THROW(rig.typed(bad), InputError) << bad;
+}
+
+TEST(WorkbenchCommand, ThePageGetsWhatTheProgramDeclaresOfAllowedOptionsOnly) {
+  const Rig rig;
+  const auto options = [&](const std::string& name) {
+    for (const auto& command : rig.table.allowed())
+      if (command["name"] == name) return command["options"];
+    return nlohmann::ordered_json();
+  };
+  const auto option = [&](const std::string& command, const std::string& name) {
+    for (const auto& one : options(command))
+      if (one["name"] == name) return one;
+    return nlohmann::ordered_json();
+  };
+  EXPECT_EQ(option("fit", "loss")["words"], json({"squared", "huber", "cauchy"}));
+  EXPECT_EQ(option("fit", "loss")["default"], "squared");
+  EXPECT_EQ(option("diagnose", "most")["low"], 1);
+  EXPECT_EQ(option("diagnose", "most")["high"], 10);
+  EXPECT_EQ(option("fit", "machine")["kind"], "reads");
+  EXPECT_EQ(option("improve", "output")["kind"], "writes-folder");
+  // The command itself can do without it; the page must keep its result.
+  EXPECT_EQ(option("fit", "output")["required"], true);
+  EXPECT_TRUE(option("fit", "residuals").is_null());
+  EXPECT_TRUE(options("sh").is_null());
+}
+
+TEST(WorkbenchCommand, EveryAllowedOptionThatNamesAFileIsConfined) {
+  // An option that is not marked as a file at its declaration would let the page name any path.
+  const Rig rig;
+  std::size_t files = 0;
+  for (const auto& command : rig.table.allowed())
+    for (const auto& option : command["options"]) {
+      const auto kind = option["kind"].get<std::string>(), help = option["help"].get<std::string>();
+      if (kind != "text") {
+        files += kind.starts_with("reads") || kind.starts_with("writes") ? 1 : 0;
+        continue;
+      }
+      // These only tell of a file: the place of a circle in the files' order, a line of a report's head.
+      if (option["name"] == "plane" || option["name"] == "header") continue;
+      for (const char* word :
+           {"file", "folder", "directory", "(CSV", "(XML", "(HTML", ".csv", ".xml", "report"})
+        EXPECT_EQ(help.find(word), std::string::npos)
+            << command["name"] << " --" << option["name"] << ": " << help;
+    }
+  EXPECT_GT(files, 60u);
+}
+
+TEST(WorkbenchCommand, ATableThatTheProgramDoesNotFulfilIsOurFault) {
+  auto lacking = test::described();
+  for (auto& command : lacking)
+    if (command["name"] == "fit") command["options"].erase(command["options"].begin());
+  EXPECT_THROW(CommandTable{lacking}, std::logic_error);
 }
 
 TEST(WorkbenchCommand, QuotingSurvivesAShell) {

@@ -204,6 +204,26 @@ async function shown(page) {
   assert.ok(!(await page.evaluate("document.getElementById('guide').hidden")));
 }
 
+/** The fields of a command are its options: no list of the page names them. */
+async function optionsOfTheProgram(page) {
+  const described = JSON.parse(execFileSync(vernier, ['completion', 'json'], { encoding: 'utf8' }));
+  const loss = described.find((one) => one.name === 'fit').options.find((one) => one.name === 'loss');
+  await view(page, 'add');
+  const field = "details[data-command=fit] [data-option='loss']";
+  const [words, help] = await page.evaluate(
+    `(() => { const one = document.querySelector(${JSON.stringify(field)}); return [[...one.options].map((word) => word.value), one.title]; })()`,
+  );
+  assert.deepEqual(words, ['', ...loss.words]);
+  assert.equal(help, loss.help);
+  await page.choose(field, 'huber');
+  await page.click('#fit');
+  await page.until(
+    "document.querySelector('#history')?.textContent.includes('vernier fit model.xml survey.csv --loss huber -o model-fitted.xml')",
+    'the fit with that loss',
+    60,
+  );
+}
+
 /** Small screens, the dark, and paper: nothing is cut, nothing is unreadable. */
 async function everywhere(page) {
   await page.drop([
@@ -232,6 +252,7 @@ async function everywhere(page) {
     }
   }
   await emulate(page, {});
+  await optionsOfTheProgram(page);
   await view(page, 'compare');
   await page.until("document.getElementById('compare-figures')", 'the comparison');
   // Letter and A4: more than one page, and no picture lost.

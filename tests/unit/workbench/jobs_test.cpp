@@ -35,11 +35,10 @@ struct Rig {
   }
   json run(const json& request) { return finish(post("/api/jobs", request)); }
   test::Folder folder;
-  Api api{folder.project(), test::program(), "test"};
+  Api api{folder.project(), test::program(), "test", test::described()};
 };
 
-const json kFit = {
-    {"command", "fit"}, {"machine", "m.xml"}, {"measurements", {"rows.csv"}}, {"output", "new.xml"}};
+const json kFit = {{"command", "fit"}, {"machine", "m.xml"}, {"meas", {"rows.csv"}}, {"output", "new.xml"}};
 
 TEST(Job, GivesTheResultOfTheCommandItShows) {
   Rig rig;
@@ -73,10 +72,9 @@ TEST(Job, CancelEndsItAndWritesNothing) {
     rows += std::to_string(i % 100) + "," + std::to_string(i % 97) + "," + std::to_string(i) + "," +
             std::to_string(i % 100 + 0.01 * (i % 13)) + ",r" + std::to_string(i % 5) + "\n";
   write_file(rig.folder.in("rows.csv"), rows);
-  const json job = rig.post("/api/jobs", {{"command", "diagnose"},
-                                          {"machine", "m.xml"},
-                                          {"measurements", {"rows.csv"}},
-                                          {"machine_out", "new.xml"}});
+  const json job = rig.post(
+      "/api/jobs",
+      {{"command", "diagnose"}, {"machine", "m.xml"}, {"meas", {"rows.csv"}}, {"machine-out", "new.xml"}});
   ASSERT_EQ(job["state"], "running") << job;
   rig.api.reply({"DELETE", "/api/jobs", {{"id", "1"}}, ""});
   EXPECT_EQ(rig.finish(job)["state"], "cancelled");
@@ -86,7 +84,7 @@ TEST(Job, CancelEndsItAndWritesNothing) {
 TEST(History, ReplaysToTheSameBytesAndLeavesOutWhatWasUndone) {
   Rig rig;
   ASSERT_EQ(rig.run({{"command", "exclude"},
-                     {"measurement", "rows.csv"},
+                     {"meas", "rows.csv"},
                      {"lines", "3"},
                      {"reason", "it's odd"},
                      {"output", "kept.csv"}})["state"],
@@ -98,7 +96,7 @@ TEST(History, ReplaysToTheSameBytesAndLeavesOutWhatWasUndone) {
             "done");
   ASSERT_EQ(rig.run({{"command", "fit"},
                      {"machine", "added.xml"},
-                     {"measurements", {"kept.csv"}},
+                     {"meas", {"kept.csv"}},
                      {"output", "fitted.xml"}})["state"],
             "done");
   ASSERT_EQ(rig.run({{"command", "set"},
@@ -122,7 +120,9 @@ TEST(History, ReplaysToTheSameBytesAndLeavesOutWhatWasUndone) {
   EXPECT_TRUE(std::filesystem::exists(rig.folder.in("set.xml")));
   // What comes after an undone step takes its place; a new session finds the rest.
   EXPECT_EQ(rig.post("/api/history", {{"do", "redo"}})["history"].back()["undone"], false);
-  EXPECT_EQ(Api(rig.folder.project(), test::program(), "").reply({"GET", "/api/history", {}, ""}).body,
+  EXPECT_EQ(Api(rig.folder.project(), test::program(), "", test::described())
+                .reply({"GET", "/api/history", {}, ""})
+                .body,
             rig.api.reply({"GET", "/api/history", {}, ""}).body);
 }
 

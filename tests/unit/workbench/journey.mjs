@@ -87,8 +87,26 @@ async function goesStale(page, silent) {
   if ((await text(page, '#watch')) === 'Stop') await page.click('#watch');
 }
 
+/** Rows within a part of the histogram, as many as its bins count. */
+async function chooseInHistogram(page) {
+  const bars = '[role=img][aria-label^="histogram"]';
+  await page.evaluate(`document.querySelector('${bars}').scrollIntoView({ block: 'center' })`);
+  await page.until(`document.querySelector('${bars} canvas')`, 'the histogram');
+  const [x, y, w, h] = await page.evaluate(
+    `(() => { const b = document.querySelector('${bars}').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; })()`,
+  );
+  await page.drag([x + 58 + (w - 74) / 2, y + h / 2], [x + w - 17, y + h / 2]);
+  await page.until("Number(document.getElementById('chosen-count').textContent) > 0", 'the rows of the upper half');
+  const [count, sum] = await page.evaluate(
+    `(() => { const [, chosen] = document.querySelector('${bars}').options().option.series; return [Number(document.getElementById('chosen-count').textContent), chosen.data.reduce((all, [, one]) => all + one, 0)]; })()`,
+  );
+  assert.ok(count > 20 && count < 220, `about half of the 240 rows: ${count}`);
+  assert.equal(sum, count);
+}
+
 /** The chosen rows are the same in all views, and can be left out with a reason and put back. */
 async function brushAndExclude(page, rows) {
+  await chooseInHistogram(page);
   await page.evaluate("document.querySelector('.matrix canvas').scrollIntoView({ block: 'center' })");
   const box = await page.evaluate(
     "(() => { const b = document.querySelector('.matrix canvas').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; })()",
@@ -148,14 +166,14 @@ async function ballbar(page) {
   );
   await picture(page, 'project');
   await checkCompare(page, 'circle.xml', 'xy.csv');
-  await page.until("document.querySelectorAll('canvas[aria-label^=Polar]').length === 1", 'the polar plot');
-  await page.evaluate("document.querySelector('canvas[aria-label^=Polar]').scrollIntoView({ block: 'center' })");
+  await page.until("document.querySelectorAll('[role=img][aria-label^=Polar]').length === 1", 'the polar plot');
+  await page.evaluate("document.querySelector('[role=img][aria-label^=Polar]').scrollIntoView({ block: 'center' })");
   const polar = await page.evaluate(
-    "(() => { const b = document.querySelector('canvas[aria-label^=Polar]').getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2, Math.min(b.width, b.height) / 2]; })()",
+    "(() => { const b = document.querySelector('[role=img][aria-label^=Polar]').getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2, Math.min(b.width, b.height) / 2]; })()",
   );
   await page.drag([polar[0] + 0.8 * polar[2], polar[1] - 5], [polar[0] + 0.1 * polar[2], polar[1] - 0.8 * polar[2]]);
   await page.until("Number(document.getElementById('chosen-count').textContent) > 100", 'the rows of a sector');
-  await picture(page, 'polar', 'canvas[aria-label^=Polar]');
+  await picture(page, 'polar', '[role=img][aria-label^=Polar]');
   // Lines beyond the file's own are refused where they are: the dropped file with a word that is no number.
   await view(page, 'project');
   await page.drop([{ name: 'bad.csv', text: 'X[mm],x[mm]\n1,2\n3,4,5\n' }]);

@@ -46,7 +46,7 @@ struct WorkbenchReader : testing::Test {
 };
 
 TEST_F(WorkbenchReader, AFileThatKillsItsReaderHarmsItsRequestOnly) {
-  Api api(folder.project(), script(folder, "kill -SEGV $$"), "test");
+  Api api(folder.project(), script(folder, "kill -SEGV $$"), "test", test::described());
   for (const ApiRequest& request : kReading) {
     const ApiReply reply = api.reply(request);
     EXPECT_EQ(reply.status, 422) << request.path;
@@ -62,7 +62,7 @@ TEST_F(WorkbenchReader, AnotherOneReadsTheNextFile) {
   Api api(folder.project(),
           script(folder, "if [ -e '" + mark + "' ]; then rm '" + mark + "'; kill -KILL $$; fi; exec '" +
                              test::program() + "' \"$@\""),
-          "test");
+          "test", test::described());
   write_file(mark, "");
   EXPECT_EQ(api.reply(kReading[0]).status, 422);
   for (const ApiRequest& request : kReading) {
@@ -89,7 +89,7 @@ TEST_F(WorkbenchReader, OneThatTalksNonsenseIsEnded) {
 }
 
 TEST_F(WorkbenchReader, WhatNestsOrAddsWithoutEndIsRefusedWithItsPlace) {
-  Api api(folder.project(), test::program(), "test");
+  Api api(folder.project(), test::program(), "test", test::described());
   std::string nested = "<machine name=\"m\">\n", sum = "k*X";
   for (int i = 0; i < 20'000; ++i) nested += "<a>";
   for (int i = 0; i < 60'000; ++i) sum += "+1";
@@ -109,7 +109,7 @@ TEST_F(WorkbenchReader, AHistoryThatNestsTooDeeplyIsRefused) {
   write_file(folder.in(".vernier/history.json"),
              "[{\"command\":\"c\",\"undone\":false,\"on_board\":false,\"outputs\":" +
                  std::string(200'000, '[') + std::string(200'000, ']') + "}]");
-  EXPECT_THROW(Api(folder.project(), test::program(), "test"), InputError);
+  EXPECT_THROW(Api(folder.project(), test::program(), "test", test::described()), InputError);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tools/text/files.h"
+#include "tools/text/process.h"
 #include "tools/workbench/server.h"
 
 namespace vernier::test {
@@ -43,5 +44,17 @@ inline const char* kSmallRows =
 
 /// The program that was built beside the tests.
 inline std::string program() { return std::string(VERNIER_BIN_DIR) + "/vernier"; }
+
+/// Its commands and options, as it hands them to the workbench.
+inline const nlohmann::ordered_json& described() {
+  static const nlohmann::ordered_json kCommands = [] {
+    text::RunningProcess running;
+    return nlohmann::ordered_json::parse(
+        text::run_process(
+            program(), {"completion", "json"}, "/", 1 << 22, [](std::string_view) {}, running)
+            .out);
+  }();
+  return kCommands;
+}
 
 }  // namespace vernier::test

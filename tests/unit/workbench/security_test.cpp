@@ -68,7 +68,7 @@ class Attack : public testing::Test {
   }
 
   test::Folder folder_;
-  Api api_{folder_.project(), test::program(), "test"};
+  Api api_{folder_.project(), test::program(), "test", test::described()};
   WorkbenchServer server_{api_, 0};
   std::thread thread_;
 };

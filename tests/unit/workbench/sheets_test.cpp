@@ -20,7 +20,7 @@ using nlohmann::json;
 const char* const kGerman = "X soll;Abweichung X\r\nmm;\xB5m\r\n0,00;1,5\r\n100,00;-2,5\r\n200,00;3,0\r\n";
 
 struct Desk : testing::Test {
-  Desk() : api(folder.project(), test::program(), "test") {
+  Desk() : api(folder.project(), test::program(), "test", test::described()) {
     write_file(folder.in("m.xml"), test::kSmallMachine);
     write_file(folder.in("rows.csv"), test::kSmallRows);
     write_file(folder.in("german.csv"), kGerman);
@@ -58,8 +58,8 @@ TEST(Sheets, APreviewIsWhatTheImportDoes) {
 }
 
 TEST(Sheets, WordsOfARequestAreTextsAndLists) {
-  EXPECT_EQ(sheet_words(json{{"columns", {"X[mm]=1"}}, {"skip", 2}}).skip, 2u);
-  EXPECT_THROW(sheet_words(json{{"columns", "X[mm]=1"}}), InputError);
+  EXPECT_EQ(sheet_words(json{{"column", {"X[mm]=1"}}, {"skip", 2}}).skip, 2u);
+  EXPECT_THROW(sheet_words(json{{"column", "X[mm]=1"}}), InputError);
   EXPECT_THROW(sheet_words(json{{"unit", 3}}), InputError);
   EXPECT_THROW(sheet_words(json{{"set", {1}}}), InputError);
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,12 +12,13 @@
 #include "tools/commands/fleet/fleet_kinds.h"
 #include "tools/compile/compile.h"
 #include "tools/fleet/check_readings.h"
-#include "tools/fleet/sparkplug.h"
 #include "tools/model/machine_reader.h"
 #include "tools/registry/digest.h"
+#include "tools/registry/machine_name.h"
 #include "tools/registry/open_database.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
+#include "tools/text/process.h"
 #include "tools/text/wall_time.h"
 #include "tools/text/words.h"
 #include "tools/upload/client.h"
@@ -77,9 +79,7 @@ void refuse_known_key(const registry::FleetMachine& machine, const std::vector<r
 }
 
 void run_add(const AddArguments& arguments) {
-  if (!fleet::fits_a_topic(arguments.name))
-    throw text::InputError({}, arguments.name,
-                           "a machine's name is one line without + / #, of 1 to 200 bytes");
+  registry::require_machine_name(arguments.name);
   if (arguments.url && !arguments.url->empty()) upload::parse_url(*arguments.url);
   registry::Registry registry = make_registry(arguments.registry);
   registry::FleetMachine machine{arguments.name, {}, {}, 0, text::now_us()};
@@ -112,7 +112,8 @@ Json machine_json(const registry::FleetMachine& machine, const registry::Recorde
                {"board_key", or_text(machine.board_key)},
                {"note", machine.note},
                {"check_days", machine.check_days},
-               {"added", text::utc_text(machine.added_us)}};
+               {"added", text::utc_text(machine.added_us)},
+               {"name_allowed", registry::is_machine_name(machine.name)}};
   json["calibration"] = nullptr;
   if (runs != nullptr)
     json["calibration"] = {{"at", text::utc_text(runs->at_us)},
@@ -143,6 +144,10 @@ void run_list(const ListArguments& arguments) {
                newest == nullptr ? machine.note
                                  : fmt::format("{} {} signed by {} {}", newest->image, newest->model,
                                                newest->signed_by, text::utc_text(newest->at_us)));
+    // Entered by an older version, which took other names.
+    if (!registry::is_machine_name(machine.name))
+      fmt::print(out, "  this name is not allowed: vernier fleet rename {} NEW_NAME\n",
+                 text::shell_text("", {machine.name}).substr(1));
   }
   write_json(arguments.json, {{"machines", all}});
 }
@@ -197,7 +202,19 @@ void run_status(const ListArguments& arguments) {
   }
   if (!arguments.machine.empty() && all.empty())
     throw text::InputError({}, arguments.machine, "no data of this machine received yet");
-  write_json(arguments.json, {{"machines", all}});
+  Json unknown = Json::array();
+  for (const registry::NotEntered& one : registry.not_entered()) {
+    unknown.push_back({{"machine", one.machine},
+                       {"gateway", one.gateway},
+                       {"samples", one.samples},
+                       {"at", text::utc_text(one.at_us)}});
+    if (arguments.machine.empty())
+      fmt::print(out, "{} samples of {} by gateway {} were not stored: the machine is not in the registry\n",
+                 one.samples,
+                 one.machine.empty() ? "further machines" : Json(one.machine).dump(-1, ' ', true),
+                 Json(one.gateway).dump(-1, ' ', true));
+  }
+  write_json(arguments.json, {{"machines", all}, {"not_entered", unknown}});
 }
 
 struct RecordArguments {
@@ -257,7 +274,8 @@ void run_check(const CheckArguments& arguments) {
 void add_machine_kinds(CLI::App& fleet) {
   const auto add = std::make_shared<AddArguments>();
   CLI::App* command = fleet.add_subcommand("add", "enter a machine, or change its entry");
-  command->add_option("MACHINE", add->name, "its name; also the device of its topics")->required();
+  command->add_option("MACHINE", add->name, "its name, also the device of its topics: letters, digits, . _ -")
+      ->required();
   add_registry(*command, add->registry);
   command->add_option("--url", add->url, "its board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE");
   command->add_option("--board", add->board, "the name that its board must have (name in the board file)");
@@ -274,6 +292,14 @@ void add_machine_kinds(CLI::App& fleet) {
       ->check(CLI::Range(0.0, kMostDays));
   command->add_option("--note", add->note, "for people");
   command->callback([add] { run_add(*add); });
+
+  const auto names = std::make_shared<std::array<std::string, 3>>();
+  command = fleet.add_subcommand("rename", "give a machine with all its entries another name");
+  command->add_option("MACHINE", (*names)[0], "its name in the registry")->required();
+  command->add_option("NEW_NAME", (*names)[1], "letters, digits, . _ - ; the first a letter or digit")
+      ->required();
+  add_registry(*command, (*names)[2]);
+  command->callback([names] { open_registry((*names)[2]).give_name((*names)[0], (*names)[1]); });
 
   const auto list = std::make_shared<ListArguments>();
   command = fleet.add_subcommand("list", "machines, and the calibration that was last recorded for each");
@@ -321,11 +347,14 @@ void add_record_kinds(CLI::App& fleet) {
       "record", "record what runs on a machine: model, image, data, signer, data of its check");
   command->add_option("MACHINE", record->machine, "its name in the registry")->required();
   add_registry(*command, record->registry);
-  command->add_option("--model", record->model, "machine file (XML)")->required();
-  command->add_option("--image", record->image, "directory that `vernier compile` wrote");
-  command->add_option("--data", record->data, "measurement files that the model was fitted to");
+  command->add_option("--model", record->model, "machine file (XML)")->type_name(kReads)->required();
+  command->add_option("--image", record->image, "directory that `vernier compile` wrote")
+      ->type_name(kReadsFolder);
+  command->add_option("--data", record->data, "measurement files that the model was fitted to")
+      ->type_name(kReads);
   command->add_option("--signed-by", record->signed_by, "person responsible for it")->required();
-  command->add_option("--against", record->against, "measurement files that it was checked against");
+  command->add_option("--against", record->against, "measurement files that it was checked against")
+      ->type_name(kReads);
   command->footer("Files are written down by name and BLAKE2b-256. Exit status 0 done, 1 bad input.");
   command->callback([record] { run_record(*record); });
 
@@ -333,10 +362,14 @@ void add_record_kinds(CLI::App& fleet) {
   command = fleet.add_subcommand("check", "record the result of `vernier check` for a machine");
   command->add_option("MACHINE", check->machine, "its name in the registry")->required();
   add_registry(*command, check->registry);
-  command->add_option("--result", check->result, "file of `vernier check --json`")->required();
-  command->add_option(
-      "--history", check->history,
-      "file of `vernier check --history`: what its last check reads of each parameter, for `alike`");
+  command->add_option("--result", check->result, "file of `vernier check --json`")
+      ->type_name(kReads)
+      ->required();
+  command
+      ->add_option(
+          "--history", check->history,
+          "file of `vernier check --history`: what its last check reads of each parameter, for `alike`")
+      ->type_name(kReads);
   command->add_option("--at", check->at, "time of the measurement (UTC): 2026-11-23T13:05:00Z; default: now");
   command->footer("Exit status 0 done, 1 bad input, 2 this check is there already.");
   command->callback([check] { run_check(*check); });
@@ -346,6 +379,7 @@ void add_record_kinds(CLI::App& fleet) {
 
 void add_registry(CLI::App& command, std::string& place) {
   command.add_option("--registry", place, "postgresql://… or a file (or VERNIER_REGISTRY)")
+      ->type_name(kReadsOrServer)
       ->envname("VERNIER_REGISTRY");
 }
 
@@ -370,8 +404,7 @@ registry::Registry open_registry(const std::string& place) {
 
 void register_fleet(CLI::App& vernier) {
   CLI::App* fleet = vernier.add_subcommand(
-      "fleet",
-      "Manage many machines: state, due checks, common drift, images in stages, jobs on many machines");
+      "fleet", "Manage many machines: state, due checks, common drift, images in stages, batches");
   fleet->require_subcommand(1);
   add_machine_kinds(*fleet);
   add_record_kinds(*fleet);
@@ -379,7 +412,7 @@ void register_fleet(CLI::App& vernier) {
   add_services(*fleet);
   add_trends(*fleet);
   add_rollout(*fleet);
-  add_jobs(*fleet);
+  add_batch(*fleet);
 }
 
 }  // namespace vernier::commands::fleet_cli

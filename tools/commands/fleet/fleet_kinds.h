@@ -29,7 +29,7 @@ void say_line(const std::string& line);
 
 /// The kinds of `vernier fleet`, a file each.
 void add_services(CLI::App& fleet);
-void add_jobs(CLI::App& fleet);
+void add_batch(CLI::App& fleet);
 void add_trends(CLI::App& fleet);
 void add_rollout(CLI::App& fleet);
 

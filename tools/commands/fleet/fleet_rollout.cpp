@@ -9,7 +9,7 @@
 #include "tools/commands/run/upload_kinds.h"
 #include "tools/fleet/rollout.h"
 #include "tools/registry/digest.h"
-#include "tools/registry/shell_command.h"
+#include "tools/registry/machine_name.h"
 #include "tools/text/assurance.h"
 #include "tools/text/error.h"
 #include "tools/text/wall_time.h"
@@ -24,14 +24,6 @@ struct RolloutArguments {
   std::vector<std::string> machines;
   fleet::RolloutOptions options;
 };
-
-std::string folder_for(std::string pattern, const std::string& machine) {
-  const std::string mark = "{machine}";
-  for (std::size_t at = pattern.find(mark); at != std::string::npos;
-       at = pattern.find(mark, at + machine.size()))
-    pattern.replace(at, mark.size(), machine);
-  return pattern;
-}
 
 /// Required identity of the board of a machine. Without a name in the registry no identity can be proved.
 upload::BoardClaim claim_of(const registry::FleetMachine& one) {
@@ -65,7 +57,8 @@ std::vector<fleet::RolloutMachine> machines_of(const RolloutArguments& arguments
   std::vector<std::string> names = arguments.machines;
   if (names.empty())
     for (const registry::FleetMachine& one : registry.machines())
-      if (!one.url.empty() && std::filesystem::is_directory(folder_for(arguments.images, one.name)))
+      if (!one.url.empty() &&
+          std::filesystem::is_directory(registry::for_machine(arguments.images, one.name)))
         names.push_back(one.name);
   if (names.empty())
     throw text::InputError({}, arguments.images, "no machine with a board has an image there");
@@ -76,7 +69,7 @@ std::vector<fleet::RolloutMachine> machines_of(const RolloutArguments& arguments
       throw text::InputError({}, one.name, "this machine has no board: vernier fleet add --url");
     const auto stage = std::upper_bound(ends.begin(), ends.end(), i) - ends.begin();
     machines.push_back({one.name, one.url, claim_of(one),
-                        upload_cli::safe_image(folder_for(arguments.images, one.name)), stage});
+                        upload_cli::safe_image(registry::for_machine(arguments.images, one.name)), stage});
   }
   refuse_shared_boards(machines);
   return machines;
@@ -84,7 +77,7 @@ std::vector<fleet::RolloutMachine> machines_of(const RolloutArguments& arguments
 
 void write_kept(registry::Registry& registry, const RolloutArguments& arguments,
                 const fleet::RolloutMachine& machine) {
-  const std::string folder = folder_for(arguments.images, machine.name);
+  const std::string folder = registry::for_machine(arguments.images, machine.name);
   registry::RecordedCalibration one;
   one.machine = machine.name, one.model = folder + "/machine.xml";
   if (std::filesystem::exists(one.model)) one.model_hash = registry::digest_of(text::read_file(one.model));
@@ -93,7 +86,7 @@ void write_kept(registry::Registry& registry, const RolloutArguments& arguments,
   one.signed_by = arguments.signed_by;
   one.checked_against = arguments.options.judge.empty()
                             ? "watched by the rollout " + arguments.options.name
-                            : registry::command_for(arguments.options.judge, machine.name);
+                            : registry::for_machine(arguments.options.judge, machine.name);
   one.at_us = text::now_us();
   registry.put(one);
 }
@@ -199,7 +192,8 @@ void add_rollout(CLI::App& fleet) {
   command->add_option(
       "--images", arguments->images,
       "directories that `vernier compile` wrote, {machine} in the name; without it: how far it is");
-  command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)");
+  command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)")
+      ->type_name(kReads);
   command->add_option("--signed-by", arguments->signed_by,
                       "person responsible for the images; recorded in the registry");
   command->add_option("--machine", arguments->machines,

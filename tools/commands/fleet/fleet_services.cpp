@@ -85,7 +85,9 @@ void add_services(CLI::App& fleet) {
   CLI::App* gateway = fleet.add_subcommand(
       "gateway",
       "read boards and publish what they say (Sparkplug B), kept here while broker or registry is away");
-  gateway->add_option("FILE", *file, "gateway file (TOML): name, broker, store, boards")->required();
+  gateway->add_option("FILE", *file, "gateway file (TOML): name, broker, store, boards")
+      ->type_name(kReads)
+      ->required();
   gateway->footer(
       "Runs until interrupted. The broker's password is taken from VERNIER_MQTT_PASSWORD.\n"
       "Exit status 0 stopped on request, 1 bad input, 70 the store fails (full or broken medium).");
@@ -98,8 +100,10 @@ void add_services(CLI::App& fleet) {
   ingest->add_option("--broker", options->broker.address, "tcp://HOST:1883 or ssl://HOST:8883")
       ->capture_default_str();
   ingest->add_option("--user", options->broker.user, "at the broker");
-  ingest->add_option("--authority", options->broker.authority,
-                     "file (PEM) of the authority that signs the broker");
+  ingest
+      ->add_option("--authority", options->broker.authority,
+                   "file (PEM) of the authority that signs the broker")
+      ->type_name(kReads);
   ingest->add_option("--group", options->group, "Sparkplug group of the gateways")->capture_default_str();
   ingest->add_option("--host", options->host, "name of this host application, as the gateways wait for it")
       ->capture_default_str();
@@ -117,7 +121,8 @@ void add_services(CLI::App& fleet) {
   const auto metrics = std::make_shared<MetricsArguments>();
   CLI::App* command = fleet.add_subcommand("metrics", "the fleet's state for Prometheus: printed, or served");
   add_registry(*command, metrics->registry);
-  command->add_option("-o,--output", metrics->output, "file, as node_exporter's textfile collector reads it");
+  command->add_option("-o,--output", metrics->output, "file, as node_exporter's textfile collector reads it")
+      ->type_name(kWrites);
   command->add_option("--listen", metrics->listen, "serve /metrics at HOST:PORT until interrupted");
   command->footer("Exit status 0 done, 1 bad input or no registry.");
   command->callback([metrics] { run_metrics(*metrics); });

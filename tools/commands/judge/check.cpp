@@ -103,19 +103,28 @@ void register_check(CLI::App& vernier) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* command =
       vernier.add_subcommand("check", "Check with a short measurement whether a calibration is still valid");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML) as `fit` wrote it")->required();
-  command->add_option("MEAS", arguments->measurements, "measurement files (CSV) of this check")->required();
-  command->add_option(
-      "--history", arguments->history,
-      "file of all checks so far; this check is added (the file is created if it does not exist)");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML) as `fit` wrote it")
+      ->type_name(kReads)
+      ->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV) of this check")
+      ->type_name(kReads)
+      ->required();
+  command
+      ->add_option(
+          "--history", arguments->history,
+          "file of all checks so far; this check is added (the file is created if it does not exist)")
+      ->type_name(kWrites);
   command
       ->add_option("--false-alarms", arguments->false_alarms,
                    "probability of ever reporting a change if nothing changed, over all checks together")
       ->capture_default_str();
   command->add_option("--label", arguments->label, "name of this check; default: its files");
-  command->add_option("-o,--output", arguments->output,
-                      "the machine file with the changed parameter corrected, if a parameter changed");
-  command->add_option("--images", arguments->images, "folder of images, for rows measured with one running");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "the machine file with the changed parameter corrected, if a parameter changed")
+      ->type_name(kWrites);
+  command->add_option("--images", arguments->images, "folder of images, for rows measured with one running")
+      ->type_name(kReadsFolder);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Each check fits the set-up of the instrument again. Readings count as independent, normal, and as\n"

@@ -138,7 +138,7 @@ void register_evaluate(CLI::App& vernier) {
   auto arguments = std::make_shared<PositioningArguments>();
   CLI::App* kind =
       evaluate->add_subcommand("iso230-2", "Accuracy and repeatability of positioning of one axis");
-  kind->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  kind->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->type_name(kReads)->required();
   kind->add_option("--axis", arguments->axes, "the axis that was moved")->required()->allow_extra_args(false);
   kind->add_option("--reading", arguments->reading,
                    "column that was measured along it; default: the axis' name in small letters");
@@ -154,7 +154,7 @@ void register_evaluate(CLI::App& vernier) {
                    "expansion-range=2 (um/(m K)), away=3 (K from 20), drift=1.5 (range, um); again for each")
       ->allow_extra_args(false);
   add_report_header(*kind, arguments->header);
-  kind->add_option("-o,--output", arguments->output, "report (HTML)");
+  kind->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
       "Deviation = reading - position. A, R, E, B, M by ISO 230-2:2014, both approach directions, from dirX "

@@ -158,6 +158,7 @@ void add_diagonals_kind(CLI::App& evaluate) {
   CLI::App* kind =
       evaluate.add_subcommand("iso230-6", "Diagonal displacement tests of a machine's volume and faces");
   kind->add_option("MEAS", arguments->measurements, "measurement files (CSV): X Y Z and the displacement")
+      ->type_name(kReads)
       ->required();
   kind->add_option("--reading", arguments->reading, "column of the displacement along the diagonal")
       ->capture_default_str();
@@ -167,7 +168,7 @@ void add_diagonals_kind(CLI::App& evaluate) {
                    "expanded uncertainty (k = 2) of such a value: E=3um")
       ->allow_extra_args(false);
   add_report_header(*kind, arguments->header);
-  kind->add_option("-o,--output", arguments->output, "report (HTML)");
+  kind->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
       "Each diagonal is evaluated as an axis by ISO 230-2, by the distance along it from row to row; what "

@@ -163,10 +163,10 @@ void add_robot_kind(CLI::App& evaluate) {
   const auto arguments = std::make_shared<RobotArguments>();
   CLI::App* kind = evaluate.add_subcommand(
       "iso9283", "Pose accuracy and repeatability of a robot; of paths, distances, drift");
-  kind->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
+  kind->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->type_name(kReads)->required();
   kind->add_option("--machine", arguments->machine,
                    "machine file: commanded poses by its nominal chain from the axes; else px py pz")
-      ->type_name("FILE");
+      ->type_name(kReads);
   CLI::Option* path =
       kind->add_flag("--path", arguments->path, "rows are samples along one path, a cycle a run: AT and RT");
   CLI::Option* distance = kind->add_flag("--distance", arguments->distance,

@@ -265,6 +265,7 @@ void add_s_shape(CLI::App& part) {
       "s-shape",
       "The S-shaped test part of ISO 10791-7: path, predicted defect, and the machine's errors from it");
   command->add_option("--machine", a->machine, "machine file with B head and C table (default: built in)")
+      ->type_name(kReads)
       ->check(CLI::ExistingFile);
   command->add_option("--errors", a->errors, "statics to set, e.g. \"EA0B=3.2e-4rad,EX0B=0.03\"");
   command->add_option("--tool-diameter", a->tool_diameter_mm, "mm")
@@ -297,15 +298,21 @@ void add_s_shape(CLI::App& part) {
           std::map<std::string, part::ToolPath>{{"analytical", part::ToolPath::kAnalytical},
                                                 {"TP5C1", part::ToolPath::kTp5c1},
                                                 {"TP6C2", part::ToolPath::kTp6c2}}));
-  CLI::Option* recorded_option = command->add_option(
-      "--recorded", a->recorded,
-      "positions that the controller recorded (CSV: X Y Z B C): their deviations at the points");
+  CLI::Option* recorded_option =
+      command
+          ->add_option(
+              "--recorded", a->recorded,
+              "positions that the controller recorded (CSV: X Y Z B C): their deviations at the points")
+          ->type_name(kReads);
   command
       ->add_option("--recorded-zero", a->recorded_zero,
                    "recorded values at which the axes of the paths are at 0: \"X=120,Z=-40\"")
       ->needs(recorded_option);
-  CLI::Option* identify_option = command->add_option(
-      "--identify", a->identify, "measured part (CSV: sx sy sz defect, u): fit the errors to it");
+  CLI::Option* identify_option =
+      command
+          ->add_option("--identify", a->identify,
+                       "measured part (CSV: sx sy sz defect, u): fit the errors to it")
+          ->type_name(kReads);
   command->add_option("--free", a->free, "only these statics are fitted, e.g. EA0B,EX0B");
   command
       ->add_flag("--aligned", a->aligned, "the measured part was aligned by best fit: fit a rigid motion too")
@@ -322,6 +329,7 @@ void add_s_shape(CLI::App& part) {
                    "expanded uncertainty (k = 2) of the machine that measured it, mm")
       ->check(CLI::NonNegativeNumber);
   command->add_option("-o,--output", a->output, "directory for paths (CSV, G-code), defect, machine, report")
+      ->type_name(kWritesFolder)
       ->required();
   add_report_header(*command, a->header);
   command->add_option("--json", a->json, "result for programs; - for standard output");
@@ -332,7 +340,7 @@ void add_gauge_block(CLI::App& part) {
   auto a = std::make_shared<GaugeArguments>();
   CLI::App* command = part.add_subcommand(
       "gauge-block", "EA0B and EX0B from a gauge block read in Y at C = 0, 90, 180, 270 deg");
-  command->add_option("FILE", a->file, "CSV with C[deg] and y[mm]")->required();
+  command->add_option("FILE", a->file, "CSV with C[deg] and y[mm]")->type_name(kReads)->required();
   command->add_option("--pivot-length", a->pivot_mm, "B axis to tool tip, mm")
       ->required()
       ->check(CLI::PositiveNumber);

@@ -284,11 +284,14 @@ void add_conformity(CLI::App& part) {
   auto a = std::make_shared<ConformityArguments>();
   CLI::App* command = part.add_subcommand(
       "conformity", "Will a part be in tolerance, with which probability, and which errors contribute most?");
-  command->add_option("MACHINE", a->machine, "machine file (XML), fitted")->required();
+  command->add_option("MACHINE", a->machine, "machine file (XML), fitted")->type_name(kReads)->required();
   command->add_option("PART", a->part.path, "features with tolerances (CSV), or a part program (RS-274)")
+      ->type_name(kReads)
       ->required();
-  command->add_option("MEAS", a->measurements,
-                      "measurement files (CSV) to fit the machine to first; none: the state of its file");
+  command
+      ->add_option("MEAS", a->measurements,
+                   "measurement files (CSV) to fit the machine to first; none: the state of its file")
+      ->type_name(kReads);
   command->add_option("--place", a->part.place,
                       "zero of the list in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\" (mm, deg)");
   command->add_option("--zero", a->part.zero,
@@ -318,13 +321,14 @@ void add_conformity(CLI::App& part) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--seed", a->seed, "of the trials")->capture_default_str();
-  command->add_option("--effects", a->effects,
-                      "files with effects of your own, for the names; may be repeated");
+  command
+      ->add_option("--effects", a->effects, "files with effects of your own, for the names; may be repeated")
+      ->type_name(kReads);
   command->add_flag("--rotary", a->with_rotary, "correct with all axes; default: as in the machine file");
   command->add_flag("--uncorrected", a->uncorrected,
                     "the machine runs without its correction: that decides the exit status");
-  command->add_option("--images", a->images, simulate::kImagesHelp);
-  command->add_option("-o,--output", a->output, "the result as a page (HTML)");
+  command->add_option("--images", a->images, simulate::kImagesHelp)->type_name(kReadsFolder);
+  command->add_option("-o,--output", a->output, "the result as a page (HTML)")->type_name(kWrites);
   add_report_header(*command, a->header);
   command->add_option("--json", a->json, "result for programs; - for standard output");
   command->footer(

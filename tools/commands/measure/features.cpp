@@ -279,13 +279,17 @@ void register_features(CLI::App& vernier) {
   CLI::App* command = vernier.add_subcommand(
       "features", "Compute features of an accelerometer record as inputs of measured rows");
   command->add_option("RECORD", arguments->record, "CSV: t[s] and signals, evenly sampled (table_x[g], ...)")
+      ->type_name(kReads)
       ->required();
   command
       ->add_option("-o,--output", arguments->output,
                    "CSV to write: the rows with a column SIGNAL_FEATURE each")
+      ->type_name(kWrites)
       ->required();
-  command->add_option("--rows", arguments->rows,
-                      "measurement file that gets the columns; without it one row a window");
+  command
+      ->add_option("--rows", arguments->rows,
+                   "measurement file that gets the columns; without it one row a window")
+      ->type_name(kReads);
   command->add_option("--window", arguments->window,
                       "samples of a window, the last one at the row's instant (1500)");
   command->add_option("--every", arguments->every, "samples from window to window without --rows (a window)");

@@ -189,7 +189,7 @@ struct BallbarArguments {
 
 std::shared_ptr<BallbarArguments> add_common(CLI::App& kind) {
   auto arguments = std::make_shared<BallbarArguments>();
-  kind.add_option("files", arguments->files, "Files of the instrument")->required()->type_name("FILE");
+  kind.add_option("files", arguments->files, "Files of the instrument")->type_name(kReads)->required();
   kind.add_option("--pause", arguments->options.pause_s, "Time between two runs, which no file logs (s)")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
@@ -217,59 +217,52 @@ std::vector<importer::TraceCircle> circles_of(const BallbarArguments& arguments)
 
 }  // namespace
 
-void add_ballbar_kind(CLI::App& import) {
-  CLI::App* kind = import.add_subcommand("ballbar", "Result files (.b5r) of Renishaw Ballbar 20");
-  kind->footer(
+void add_ballbar_kind(CLI::App& kind) {
+  kind.footer(
       "Samples between the file's START and END are fit rows, the overshoot arcs before and after are check "
       "rows. With --repair-time-base the first whole turn that repeats is fit, the rest is check; samples of "
       "the "
       "feed-in that do not repeat have no length.");
-  const auto arguments = add_common(*kind);
-  kind->add_flag(
+  const auto arguments = add_common(kind);
+  kind.add_flag(
       "--repair-time-base", arguments->repair,
       "Find the samples that a turn takes and those that are missing from the record itself, and give "
       "each sample its own angle and time");
-  kind->callback([arguments] {
+  kind.callback([arguments] {
     std::vector<importer::BallbarFile> files;
     for (const auto& path : arguments->files) files.push_back(importer::read_b5r(path));
     write_import("ballbar", files, arguments->options, arguments->output, arguments->repair);
   });
 }
 
-void add_ballbar_trace_kind(CLI::App& import) {
-  CLI::App* kind = import.add_subcommand("ballbar-trace", "Files (JSON) of Renishaw Ballbar Trace");
-  kind->footer("Such a file holds readings only; where and how fast the circle was run must be given.");
-  const auto arguments = add_common(*kind);
+void add_ballbar_trace_kind(CLI::App& kind) {
+  kind.footer("Such a file holds readings only; where and how fast the circle was run must be given.");
+  const auto arguments = add_common(kind);
   importer::TraceSetup& setup = arguments->setup;
   const CLI::Range positive(1e-6, 1e9);
-  kind->add_option("--length", setup.length_mm, "Nominal length of the bar (mm)")
-      ->required()
+  kind.add_option("--length", setup.length_mm, "Nominal length of the bar (mm)")->required()->check(positive);
+  kind.add_option("--feed", setup.feed_mm_min, "Feed along the circle (mm/min)")->required()->check(positive);
+  kind.add_option("--radius", setup.radius_mm,
+                  "Radius of the programmed circle (mm); default: the bar's length")
       ->check(positive);
-  kind->add_option("--feed", setup.feed_mm_min, "Feed along the circle (mm/min)")
-      ->required()
-      ->check(positive);
-  kind->add_option("--radius", setup.radius_mm,
-                   "Radius of the programmed circle (mm); default: the bar's length")
-      ->check(positive);
-  kind->add_option("--plane", arguments->planes,
-                   "Plane, first axis first (XY); of a path of several circles all, as they were run: "
-                   "XY,YZ,ZX. The runs of all files go to them in that order, as many to each")
+  kind.add_option("--plane", arguments->planes,
+                  "Plane, first axis first (XY); of a path of several circles all, as they were run: "
+                  "XY,YZ,ZX. The runs of all files go to them in that order, as many to each")
       ->delimiter(',')
       ->check(CLI::IsMember({"XY", "YZ", "ZX", "YX", "ZY", "XZ"}));
-  kind->add_option(
-          "--start-angle", arguments->starts_deg,
-          "Angle of the first reading, from the first axis to the second (deg, 180): one, or one per "
-          "plane")
+  kind.add_option("--start-angle", arguments->starts_deg,
+                  "Angle of the first reading, from the first axis to the second (deg, 180): one, or one per "
+                  "plane")
       ->delimiter(',');
-  kind->add_option("--rate", setup.sample_rate_hz, "Readings per second")
+  kind.add_option("--rate", setup.sample_rate_hz, "Readings per second")
       ->capture_default_str()
       ->check(positive);
-  kind->add_option("--direction-0", arguments->direction_of_zero, "What Direction 0 means")
+  kind.add_option("--direction-0", arguments->direction_of_zero, "What Direction 0 means")
       ->capture_default_str()
       ->check(CLI::IsMember({"ccw", "cw"}));
-  kind->callback([arguments, kind] {
+  kind.callback([arguments, &kind] {
     importer::TraceSetup trace = arguments->setup;
-    if (kind->count("--radius") == 0) trace.radius_mm = trace.length_mm;
+    if (kind.count("--radius") == 0) trace.radius_mm = trace.length_mm;
     trace.direction_of_zero = arguments->direction_of_zero == "ccw" ? +1 : -1;
     write_import("ballbar-trace",
                  importer::read_trace_circles(arguments->files, trace, circles_of(*arguments)),

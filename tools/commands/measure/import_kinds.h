@@ -13,13 +13,9 @@ struct ImportOutput {
 /// Adds `-o FILE` (required) and `--json FILE` to a kind. tool.
 void add_import_output(CLI::App& kind, ImportOutput& output);
 
-// One function a kind: adds its subcommand, options and callback to `vernier import`; listed in
-// import_command.cpp.
-void add_table_kind(CLI::App& import);
-void add_ballbar_kind(CLI::App& import);
-void add_ballbar_trace_kind(CLI::App& import);
-void add_tracker_kind(CLI::App& import);
-void add_probe_kind(CLI::App& import);
-void add_laser_kind(CLI::App& import);
+// One function a kind: adds its options and callback to its subcommand.
+#define X(id, name, reads, ending) void add_##id##_kind(CLI::App& kind);
+#include "tools/import/kinds.inc"
+#undef X
 
 }  // namespace vernier::commands::import_cli

@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
 #include "tools/format/columns.h"
+#include "tools/import/tables/delimited.h"
 #include "tools/import/tables/machine_log.h"
 #include "tools/import/tables/survey.h"
 #include "tools/model/machine_reader.h"
@@ -131,68 +132,63 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
   write_survey(kind_name, arguments, table, logged);
 }
 
-CLI::App* add_survey_kind(CLI::App& import, const std::string& name, const std::string& what,
-                          const std::shared_ptr<SurveyArguments>& arguments) {
-  CLI::App* kind = import.add_subcommand(name, what);
-  kind->add_option("file", arguments->file, "table of the instrument (text)")->required()->type_name("FILE");
-  kind->add_option("--map", arguments->map, "column map: the meanings of the columns")->type_name("FILE");
-  kind->add_option("--column", arguments->columns,
-                   "one column: \"3=x[mm]\" or \"Name=x[mm]\"; again for each")
+void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& arguments) {
+  kind.add_option("file", arguments->file, "table of the instrument (text)")->type_name(kReads)->required();
+  kind.add_option("--map", arguments->map, "column map: the meanings of the columns")->type_name(kReads);
+  kind.add_option("--column", arguments->columns, "one column: \"3=x[mm]\" or \"Name=x[mm]\"; again for each")
       ->allow_extra_args(false);
-  kind->add_option("--set", arguments->constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
+  kind.add_option("--set", arguments->constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
       ->allow_extra_args(false);
-  kind->add_option("--separator", arguments->separator,
-                   "comma, semicolon, tab, space (blanks); default: auto");
-  kind->add_option("--decimal", arguments->decimal, "decimal sign")->check(CLI::IsMember({"point", "comma"}));
-  kind->add_option("--skip", arguments->skip, "number of lines at the top to skip");
-  kind->add_option("--comment", arguments->comment,
-                   "lines that begin with it are skipped; none: no such lines; default: #");
-  kind->add_flag("--header", arguments->header, "the first line names columns (implied by a column by name)");
-  kind->add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
+  kind.add_option("--separator", arguments->separator, "space: blanks; default: auto")
+      ->check(CLI::IsMember(importer::separator_words()));
+  kind.add_option("--decimal", arguments->decimal, "decimal sign")->check(CLI::IsMember({"point", "comma"}));
+  kind.add_option("--skip", arguments->skip, "number of lines at the top to skip");
+  kind.add_option("--comment", arguments->comment,
+                  "lines that begin with it are skipped; none: no such lines; default: #");
+  kind.add_flag("--header", arguments->header, "the first line names columns (implied by a column by name)");
+  kind.add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
       ->check(CLI::Range(2, 1000000));
-  kind->add_option("--machine", arguments->machine, "machine file: read the result as a fit of it would")
-      ->type_name("FILE");
-  add_import_output(*kind, arguments->output);
-  kind->callback([name, arguments, kind] { run_survey(name, *arguments, *kind); });
-  return kind;
+  kind.add_option("--machine", arguments->machine, "machine file: read the result as a fit of it would")
+      ->type_name(kReads);
+  add_import_output(kind, arguments->output);
+  kind.callback([arguments, &kind] { run_survey(kind.get_name(), *arguments, kind); });
 }
 
 }  // namespace
 
-void add_tracker_kind(CLI::App& import) {
+void add_tracker_kind(CLI::App& kind) {
   const auto arguments = std::make_shared<SurveyArguments>();
-  CLI::App* kind = add_survey_kind(
-      import, "tracker", "Laser tracker or photogrammetry: points, with orientation or without", arguments);
+  add_survey_options(kind, arguments);
   importer::LogOptions& log = arguments->log_options;
-  kind->add_option(
+  kind.add_option(
           "--log", arguments->log,
           "log of the machine (CSV: t and its axes): points are paired with its dwells, by order, ways and "
           "time; with --machine")
-      ->type_name("FILE");
-  kind->add_option("--dwell", log.dwell_s, "--log: least standstill, s")
+      ->type_name(kReads);
+  kind.add_option("--dwell", log.dwell_s, "--log: least standstill, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  kind->add_option("--still", log.still, "--log: an axis is at rest if it stays within this range, mm or deg")
+  kind.add_option("--still", log.still, "--log: an axis is at rest if it stays within this range, mm or deg")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  kind->add_option("--tolerance", log.tolerance_mm,
-                   "--log: largest difference of the distances measured and nominal, mm")
+  kind.add_option("--tolerance", log.tolerance_mm,
+                  "--log: largest difference of the distances measured and nominal, mm")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  kind->footer(
+  kind.footer(
       "Columns by the names of the measurement file, with the unit that the table has: axes, inputs, x y "
       "z,\n"
       "u, run, role … Orientation: rx ry rz (rotation vector), or rX rY rZ (angles of Rx*Ry*Rz), or\n"
       "qw qx qy qz (quaternion); the latter two become rx ry rz.");
 }
 
-void add_probe_kind(CLI::App& import) {
+void add_probe_kind(CLI::App& kind) {
   const auto arguments = std::make_shared<SurveyArguments>();
-  CLI::App* kind = add_survey_kind(import, "probe", "Touches of a probe on a surface", arguments);
-  kind->add_option("--radius", arguments->radius_mm,
-                   "radius of the stylus ball (mm), if recorded points are its centre and nominal points are "
-                   "on the surface");
-  kind->footer(
+  add_survey_options(kind, arguments);
+  kind.add_option("--radius", arguments->radius_mm,
+                  "radius of the stylus ball (mm), if recorded points are its centre and nominal points are "
+                  "on the surface");
+  kind.footer(
       "Each touch: the normal nx ny nz, the nominal point px py pz, and the deviation d or the recorded "
       "point\n"
       "mx my mz (then d = n*(m - p)), workpiece coordinates; and the axis positions at the touch.");

@@ -6,6 +6,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
+#include "tools/import/tables/delimited.h"
 #include "tools/import/tables/sheet_import.h"
 #include "tools/import/tables/survey.h"
 #include "tools/model/machine_reader.h"
@@ -107,51 +108,50 @@ void run_table(const TableArguments& arguments) {
 
 }  // namespace
 
-void add_table_kind(CLI::App& import) {
+void add_table_kind(CLI::App& kind) {
   const auto arguments = std::make_shared<TableArguments>();
-  CLI::App* kind = import.add_subcommand("table", "A spreadsheet: CSV of any kind, or .xlsx");
-  kind->add_option("file", arguments->file, "the table")->required()->type_name("FILE");
-  kind->add_option("-o,--output", arguments->output, "Measurement file to write (CSV)")->type_name("FILE");
-  kind->add_flag("--preview", arguments->preview, "show how the table was understood, write nothing");
-  kind->add_option("--column", arguments->words.columns,
-                   "meaning of a column: \"x[mm]=X ist\" (heading or number); again for each")
+  kind.add_option("file", arguments->file, "the table")->type_name(kReads)->required();
+  kind.add_option("-o,--output", arguments->output, "Measurement file to write (CSV)")->type_name(kWrites);
+  kind.add_flag("--preview", arguments->preview, "show how the table was understood, write nothing");
+  kind.add_option("--column", arguments->words.columns,
+                  "meaning of a column: \"x[mm]=X ist\" (heading or number); again for each")
       ->allow_extra_args(false);
-  kind->add_option("--deviation", arguments->words.deviations,
-                   "\"X[um]=Abweichung\": position of X plus this was measured; again for each")
+  kind.add_option("--deviation", arguments->words.deviations,
+                  "\"X[um]=Abweichung\": position of X plus this was measured; again for each")
       ->allow_extra_args(false);
-  kind->add_option("--leave", arguments->words.left, "heading of a column to leave out; again for each")
+  kind.add_option("--leave", arguments->words.left, "heading of a column to leave out; again for each")
       ->allow_extra_args(false);
-  kind->add_option("--set", arguments->words.constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
+  kind.add_option("--set", arguments->words.constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
       ->allow_extra_args(false);
-  kind->add_option("--unit", arguments->words.unit, "unit of lengths and angles whose heading has none");
-  kind->add_option("--separator", arguments->words.separator,
-                   "comma, semicolon, tab, space; default: detected and printed");
-  kind->add_option("--decimal", arguments->words.decimal, "decimal sign; default: detected and printed")
+  kind.add_option("--unit", arguments->words.unit, "unit of lengths and angles whose heading has none");
+  kind.add_option("--separator", arguments->words.separator, "default: detected and printed")
+      ->check(CLI::IsMember(importer::separator_words()));
+  kind.add_option("--decimal", arguments->words.decimal, "decimal sign; default: detected and printed")
       ->check(CLI::IsMember({"point", "comma"}));
-  kind->add_option("--sheet", arguments->words.sheet,
-                   "sheet of a workbook, name or number; default: the first with cells");
-  kind->add_option("--skip", arguments->words.skip, "number of lines at the top to skip");
-  kind->add_option("--comment", arguments->words.comment,
-                   "lines that begin with it are skipped; none: no such lines; default: #");
-  kind->add_option("--profile", arguments->profile, "read the file with the assignments of this profile")
-      ->type_name("FILE");
-  kind->add_option("--save-profile", arguments->save_profile,
-                   "write the settings as a profile for the next file")
-      ->type_name("FILE");
-  kind->add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
+  kind.add_option("--sheet", arguments->words.sheet,
+                  "sheet of a workbook, name or number; default: the first with cells");
+  kind.add_option("--skip", arguments->words.skip, "number of lines at the top to skip");
+  kind.add_option("--comment", arguments->words.comment,
+                  "lines that begin with it are skipped; none: no such lines; default: #");
+  kind.add_option("--profile", arguments->profile, "read the file with the assignments of this profile")
+      ->type_name(kReads);
+  kind.add_option("--save-profile", arguments->save_profile,
+                  "write the settings as a profile for the next file")
+      ->type_name(kWrites);
+  kind.add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
       ->check(CLI::Range(2, 1000000));
-  kind->add_option("--machine", arguments->machine,
-                   "machine file: its axes are found, the result is read as a fit would")
-      ->type_name("FILE");
-  kind->add_option("--json", arguments->json, "result for programs; - for standard output")
-      ->type_name("FILE");
-  kind->footer(
+  kind.add_option("--machine", arguments->machine,
+                  "machine file: its axes are found, the result is read as a fit would")
+      ->type_name(kReads);
+  kind.add_option("--json", arguments->json, "result for programs; - for standard output")
+      ->type_name(kWrites);
+  kind.footer(
       "Headings are read in their usual forms: X [mm], X(mm), X soll, X ist in \u00b5m,\n"
       "Abweichung X; in two lines or with a row of units too. A column a run and sense (1+ 1- 2+ 2-,\n"
       "Run 1 fwd, hin 1, Messung 1 \u2191) becomes a row a reading. \"(Soll-Ist)\", \"(nominal-actual)\"\n"
       "behind a deviation reverses its sign, and this is printed. Detected settings are printed; --preview\n"
       "prints it and writes nothing.");
-  kind->callback([arguments] { run_table(*arguments); });
+  kind.callback([arguments] { run_table(*arguments); });
 }
 
 }  // namespace vernier::commands::import_cli

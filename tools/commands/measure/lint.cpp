@@ -57,6 +57,7 @@ void register_lint(CLI::App& vernier) {
   CLI::App* command =
       vernier.add_subcommand("lint", "Report errors and unusual entries in machine and measurement files");
   command->add_option("FILE", arguments->files, "machine files (XML) and measurement files (CSV) in any mix")
+      ->type_name(kReads)
       ->required();
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(

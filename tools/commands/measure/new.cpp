@@ -21,6 +21,13 @@ struct NewArguments {
   std::vector<std::string> axes, centres, joints;
 };
 
+/// Names the types of machines in the help. It accepts any word: plan_machine gives a reason for a delta.
+CLI::Validator machine_type() {
+  std::vector<std::string> names;
+  for (const create::MachineType& type : create::machine_types()) names.emplace_back(type.name);
+  return {[](std::string&) { return std::string(); }, "{" + text::joined(names, ",") + "}"};
+}
+
 std::array<double, 3> point_of(const std::string& text, char separator, const std::string& what) {
   const std::vector<std::string> parts = text::parts_of(text, separator);
   std::array<double, 3> point{};
@@ -159,19 +166,20 @@ void register_new(CLI::App& vernier) {
   auto arguments = std::make_shared<NewArguments>();
   CLI::App* command =
       vernier.add_subcommand("new", "Create a machine file and an empty table for its survey");
-  command
-      ->add_option("TYPE", arguments->type,
-                   "gantry bridge column c-frame head-head head-table table-table arm robot")
-      ->required();
+  command->add_option("TYPE", arguments->type, "type of the machine")->check(machine_type())->required();
   command
       ->add_option("--axis", arguments->axes,
                    "NAME:MIN:MAX in mm or deg; again for each. After it, if the name does not define it: X Y "
                    "Z (along) or "
                    "A B C (about); wrap (turns without end)")
       ->allow_extra_args(false);
-  command->add_option("-o,--output", arguments->output, "the machine file (XML)")->required();
-  command->add_option("--measurements", arguments->measurements,
-                      "also a measurement file to be filled in: CSV, or a workbook (.xlsx)");
+  command->add_option("-o,--output", arguments->output, "the machine file (XML)")
+      ->type_name(kWrites)
+      ->required();
+  command
+      ->add_option("--measurements", arguments->measurements,
+                   "also a measurement file to be filled in: CSV, or a workbook (.xlsx)")
+      ->type_name(kWrites);
   command
       ->add_option("--errors", arguments->errors,
                    "parameters that a fit may find: all; positioning (along each axis, what an "
@@ -193,14 +201,18 @@ void register_new(CLI::App& vernier) {
       ->add_option("--centre", arguments->centres,
                    "NAME:X:Y:Z: a point on the line of a rotary axis, mm; repeat for each axis")
       ->allow_extra_args(false);
-  command->add_option("--dh", arguments->dh,
-                      "robot: its rows as CSV, theta[deg],d[mm],a[mm],alpha[deg] (type R or P)");
+  command
+      ->add_option("--dh", arguments->dh,
+                   "robot: its rows as CSV, theta[deg],d[mm],a[mm],alpha[deg] (type R or P)")
+      ->type_name(kReads);
   command
       ->add_option("--joint", arguments->joints,
                    "robot: a row, theta,d,a,alpha (P, before it for a prismatic joint); repeat for each")
       ->allow_extra_args(false);
-  command->add_option("--urdf", arguments->urdf,
-                      "robot: its description (URDF); rows, names and limits of the joints come from it");
+  command
+      ->add_option("--urdf", arguments->urdf,
+                   "robot: its description (URDF); rows, names and limits of the joints come from it")
+      ->type_name(kReads);
   command->add_option("--tip", arguments->tip,
                       "the URDF's link that ends the arm (default: the only one); --tool is in its frame");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");

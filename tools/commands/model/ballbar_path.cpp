@@ -59,7 +59,7 @@ void register_ballbar_path(CLI::App& vernier) {
       ->delimiter(',')
       ->expected(3);
   command->add_option("--acceleration", path.acceleration_mm_s2, "urscript: mm/s^2")->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "the program")->required();
+  command->add_option("-o,--output", arguments->output, "the program")->type_name(kWrites)->required();
   command->footer(
       "Both directions, each with its approach and its exit; it stops at the start point for the bar to be "
       "mounted.\n"

@@ -246,18 +246,20 @@ void register_compare(CLI::App& vernier) {
   auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command = vernier.add_subcommand(
       "compare", "Compare a model with measurements: size of the residual, and where the model fails");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->type_name(kReads);
   // One value each time: what follows it may be the machine file.
-  const auto files = [command](const char* option, std::vector<std::string>& list, const char* what) {
-    command->add_option(option, list, what)->expected(1)->allow_extra_args(false)->take_all();
+  const auto several = [command](const char* option, std::vector<std::string>& list, const char* what) {
+    return command->add_option(option, list, what)->expected(1)->allow_extra_args(false)->take_all();
   };
-  files("--before", arguments->before,
-        "tests whether the correction helped: measured without the correction (CSV); may be repeated");
-  files("--after", arguments->after,
-        "measured with the correction (CSV); may be repeated; MEAS is then not given");
-  files("--by", arguments->by,
-        "take the rows apart by this column (operator, coolant, tool …); may be repeated");
+  several("--before", arguments->before,
+          "tests whether the correction helped: measured without the correction (CSV); may be repeated")
+      ->type_name(kReads);
+  several("--after", arguments->after,
+          "measured with the correction (CSV); may be repeated; MEAS is then not given")
+      ->type_name(kReads);
+  several("--by", arguments->by,
+          "take the rows apart by this column (operator, coolant, tool …); may be repeated");
   command->add_option(
       "--limit", arguments->limit,
       "accept or requalify: check rows (else fit rows) must stay within 2u, 25um, 0.025deg; rms=1.5u "
@@ -265,11 +267,12 @@ void register_compare(CLI::App& vernier) {
   command->add_flag("--datum", arguments->datum,
                     "fit only the set-up of the instrument (free BaseShifts) first: offsets and turns of "
                     "the set-up are then no failure of the model");
-  command->add_option("--images", arguments->images, simulate::kImagesHelp);
-  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
+  command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
+  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
+      ->type_name(kWrites);
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
-  command->add_option("--residuals", arguments->residuals, kResidualsHelp);
+  command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
   command->footer(
       "Changes no parameter. For ball-bar data the ISO 230-4 numbers and the polar plot; for all data the\n"
       "residual against everything that was recorded, where the model fails in plain sentences, and the\n"

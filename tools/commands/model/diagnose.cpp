@@ -111,13 +111,16 @@ void register_diagnose(CLI::App& vernier) {
   CLI::App* command =
       vernier.add_subcommand("diagnose", "Find which physical effect is missing from a model");
   add_survey(*command, arguments->survey);
-  command->add_option("-o,--output", arguments->output, "report (HTML)");
+  command->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
-  command->add_option("--residuals", arguments->residuals, kResidualsHelp);
-  command->add_option("--machine-out", arguments->write,
-                      "the machine file with the effects of the stepwise model, fitted");
-  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
+  command
+      ->add_option("--machine-out", arguments->write,
+                   "the machine file with the effects of the stepwise model, fitted")
+      ->type_name(kWrites);
+  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated")
+      ->type_name(kReads);
   command->add_option("--most", arguments->most, "largest number of effects in the stepwise model")
       ->check(CLI::Range(1, 10))
       ->capture_default_str();

@@ -68,8 +68,11 @@ void register_exclude(CLI::App& vernier) {
   auto arguments = std::make_shared<ExcludeArguments>();
   CLI::App* command = vernier.add_subcommand(
       "exclude", "Exclude rows of a measurement by hand, with a reason; or include them again");
-  command->add_option("MEAS", arguments->measurement, "measurement file (CSV)")->required();
-  command->add_option("-o,--output", arguments->output, "the new measurement file (may be the same)");
+  command->add_option("MEAS", arguments->measurement, "measurement file (CSV)")
+      ->type_name(kReads)
+      ->required();
+  command->add_option("-o,--output", arguments->output, "the new measurement file (may be the same)")
+      ->type_name(kWrites);
   command->add_option("--lines", arguments->lines,
                       "lines of the rows: 12,15-20; none: list what is excluded");
   command->add_option("--reason", arguments->reason, "reason, stored with each row")->capture_default_str();
@@ -84,9 +87,11 @@ void register_exclude(CLI::App& vernier) {
 void register_set(CLI::App& vernier) {
   auto arguments = std::make_shared<SetArguments>();
   CLI::App* command = vernier.add_subcommand("set", "Set parameters of a machine by hand");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command->add_option("VALUES", arguments->values, "NAME=NUMBER, names as in the result of fit")->required();
-  command->add_option("-o,--output", arguments->output, "the new machine file")->required();
+  command->add_option("-o,--output", arguments->output, "the new machine file")
+      ->type_name(kWrites)
+      ->required();
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer("Exit status 0 done, 1 bad input (nothing written).");
   command->callback([arguments] { run_set(*arguments); });

@@ -96,7 +96,8 @@ void register_effects(CLI::App& vernier) {
   auto arguments = std::make_shared<EffectsArguments>();
   CLI::App* command = vernier.add_subcommand("effects", "Print the catalogue of effects");
   command->add_option("ID", arguments->id, "one effect, with its forms");
-  command->add_option("--effects", arguments->files, "files with effects of your own; may be repeated");
+  command->add_option("--effects", arguments->files, "files with effects of your own; may be repeated")
+      ->type_name(kReads);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer("Own effects are written in a text file, no recompilation: see tools/docs/effects.md.");
   command->callback([arguments] { run_effects(*arguments); });
@@ -109,9 +110,12 @@ void register_add(CLI::App& vernier) {
       ->add_option("EFFECT", arguments->effect,
                    "what to add: the `add` string of a candidate, or ID:axis=X,...")
       ->required();
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  command->add_option("-o,--output", arguments->output, "the new machine file")->required();
-  command->add_option("--effects", arguments->files, "files with effects of your own; may be repeated");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
+  command->add_option("-o,--output", arguments->output, "the new machine file")
+      ->type_name(kWrites)
+      ->required();
+  command->add_option("--effects", arguments->files, "files with effects of your own; may be repeated")
+      ->type_name(kReads);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Keys: axis, axis2, input, input2, branch, transform (its n), dof, reference, unit, form, sum, from, "

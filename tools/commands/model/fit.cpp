@@ -179,12 +179,14 @@ void register_fit(CLI::App& vernier) {
   auto arguments = std::make_shared<FitArguments>();
   CLI::App* command =
       vernier.add_subcommand("fit", "Estimate the free parameters of a machine from measurements");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->required();
-  command->add_option("-o,--output", arguments->output, "the fitted machine file");
-  command->add_option("--images", arguments->images, simulate::kImagesHelp);
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV)")
+      ->type_name(kReads)
+      ->required();
+  command->add_option("-o,--output", arguments->output, "the fitted machine file")->type_name(kWrites);
+  command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
-  command->add_option("--residuals", arguments->residuals, kResidualsHelp);
+  command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
   command->add_option("--loss", arguments->loss, "squared, huber or cauchy")
       ->check(CLI::IsMember({"squared", "huber", "cauchy"}))
       ->capture_default_str();

@@ -232,8 +232,10 @@ void register_improve(CLI::App& vernier) {
   command
       ->add_option("-o,--output", arguments->output,
                    "folder for machine files, improve.json and improve.html")
+      ->type_name(kWritesFolder)
       ->required();
-  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated")
+      ->type_name(kReads);
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_flag("--yes", arguments->yes, "add every effect that is found, without asking");

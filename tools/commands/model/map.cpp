@@ -200,8 +200,9 @@ void register_map(CLI::App& vernier) {
   auto arguments = std::make_shared<MapArguments>();
   CLI::App* command = vernier.add_subcommand(
       "map", "Show the error field over the working volume and how well it was measured");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
+  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
+      ->type_name(kWrites);
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--grid", arguments->grid, "nodes along each axis")
@@ -210,9 +211,11 @@ void register_map(CLI::App& vernier) {
   command->add_option("--inputs,--at", arguments->at, "inputs, motion and axes that stay: \"T=25,B=30\"");
   command->add_option("--over", arguments->over, "axes to sweep, one to three; default: the linear ones")
       ->delimiter(',');
-  command->add_option("--lines", arguments->lines,
-                      "free lines to measure (CSV): " + format::headings(format::columns::kPoint) + "," +
-                          format::columns::kRun);
+  command
+      ->add_option("--lines", arguments->lines,
+                   "free lines to measure (CSV): " + format::headings(format::columns::kPoint) + "," +
+                       format::columns::kRun)
+      ->type_name(kReads);
   command->footer(
       "Lengths and diagonals with reversal (ISO 230-6), circles (ISO 230-4), squares, a cylinder, free "
       "lines.");

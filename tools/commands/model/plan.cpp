@@ -205,8 +205,9 @@ void register_plan(CLI::App& vernier) {
   CLI::App* command = vernier.add_subcommand(
       "plan",
       "Plan the next measurement: a first survey, poses for accuracy, or poses that distinguish two effects");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  command->add_option("MEAS", arguments->measurements, "measurement files (CSV); none: the first plan");
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV); none: the first plan")
+      ->type_name(kReads);
   // One value each time: what follows it may be a measurement file.
   command
       ->add_option("--separate", arguments->separate,
@@ -214,8 +215,9 @@ void register_plan(CLI::App& vernier) {
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
-  command->add_option("-o,--output", arguments->output, "the rows, readings to be filled in (CSV)");
-  command->add_option("--gcode", arguments->gcode, "the rows as G-code");
+  command->add_option("-o,--output", arguments->output, "the rows, readings to be filled in (CSV)")
+      ->type_name(kWrites);
+  command->add_option("--gcode", arguments->gcode, "the rows as G-code")->type_name(kWrites);
   command
       ->add_option("--points", arguments->points,
                    "exactly so many points (default: as few as needed; accuracy: 200 at most)")
@@ -225,7 +227,8 @@ void register_plan(CLI::App& vernier) {
                    "probability that the measurement shows the true effect")
       ->check(CLI::Range(0.5001, 0.9999))
       ->capture_default_str();
-  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated");
+  command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated")
+      ->type_name(kReads);
   command
       ->add_option("--accuracy", arguments->accuracy_um,
                    "U95 to reach, um: of the tool point over the volume, or over --part and --region; "
@@ -243,8 +246,10 @@ void register_plan(CLI::App& vernier) {
       ->check(CLI::PositiveNumber);
   command->add_flag("--check", arguments->check,
                     "the few poses of a `vernier check` of a fitted machine (default: 10 points)");
-  command->add_option("--part", arguments->part.path,
-                      "accuracy for the features of this part (CSV, or a part program)");
+  command
+      ->add_option("--part", arguments->part.path,
+                   "accuracy for the features of this part (CSV, or a part program)")
+      ->type_name(kReads);
   command->add_option("--place", arguments->part.place,
                       "zero of the part in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\"");
   command->add_option("--zero", arguments->part.zero, "machine position of a part program's zero");
@@ -265,7 +270,7 @@ void register_plan(CLI::App& vernier) {
                    "time to settle and read one pose, s, to estimate the duration")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--images", arguments->images, simulate::kImagesHelp);
+  command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "With MEAS and --accuracy: fits, then chooses the next poses one by one that lower U95 (k = 2) over "

@@ -74,7 +74,7 @@ void register_pose(CLI::App& vernier) {
   auto arguments = std::make_shared<PoseArguments>();
   CLI::App* command = vernier.add_subcommand(
       "pose", "Compute tool position, deviation and correction at axis positions (forward solution)");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command->add_option("--at", arguments->at,
                       "axis positions, motion and inputs: \"X=100,Y=-20,dirX=1,T=25\"");
   command->add_option("--tool", arguments->tool,

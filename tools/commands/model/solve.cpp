@@ -133,7 +133,7 @@ void register_solve(CLI::App& vernier) {
   auto arguments = std::make_shared<SolveArguments>();
   CLI::App* command =
       vernier.add_subcommand("solve", "Compute the axis positions of a tool pose (inverse solution)");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command
       ->add_option(
           "--target", arguments->target,

@@ -129,10 +129,15 @@ void register_correct(CLI::App& vernier) {
   auto arguments = std::make_shared<CorrectArguments>();
   CLI::App* command = vernier.add_subcommand(
       "correct", "Write positions or a part program with the correction, for a controller without a board");
-  command->add_option("MACHINE", arguments->machine, "machine file (XML), fitted")->required();
-  command->add_option("PATH", arguments->path, "CSV of positions or targets, or a part program (RS-274)")
+  command->add_option("MACHINE", arguments->machine, "machine file (XML), fitted")
+      ->type_name(kReads)
       ->required();
-  command->add_option("-o,--output", arguments->output, "the same, corrected")->required();
+  command->add_option("PATH", arguments->path, "CSV of positions or targets, or a part program (RS-274)")
+      ->type_name(kReads)
+      ->required();
+  command->add_option("-o,--output", arguments->output, "the same, corrected")
+      ->type_name(kWrites)
+      ->required();
   command->add_option("--at", arguments->at,
                       "inputs, and positions of the axes before a program begins: \"T=25,X=0,Z=100\"");
   command->add_option("--zero", arguments->zero,

@@ -247,8 +247,8 @@ void add_type(CLI::App* command, ExchangeArguments& arguments) {
 CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,
                      const std::shared_ptr<ExchangeArguments>& arguments) {
   CLI::App* command = parent->add_subcommand(kind, what);
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->required();
-  command->add_option("-o,--output", arguments->output, output)->required();
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
+  command->add_option("-o,--output", arguments->output, output)->type_name(kWrites)->required();
   command->add_flag("--leave-out", arguments->leave_out,
                     "write what the format can represent, and list what it cannot");
   command->add_option("--at", arguments->at,
@@ -263,9 +263,13 @@ CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const
 CLI::App* add_import(CLI::App* parent, const char* kind, const char* what,
                      const std::shared_ptr<ExchangeArguments>& arguments) {
   CLI::App* command = parent->add_subcommand(kind, what);
-  command->add_option("FILE", arguments->file, "file to read")->required();
-  command->add_option("--machine", arguments->machine, "machine file that receives the tables")->required();
-  command->add_option("-o,--output", arguments->output, "machine file to write")->required();
+  command->add_option("FILE", arguments->file, "file to read")->type_name(kReads)->required();
+  command->add_option("--machine", arguments->machine, "machine file that receives the tables")
+      ->type_name(kReads)
+      ->required();
+  command->add_option("-o,--output", arguments->output, "machine file to write")
+      ->type_name(kWrites)
+      ->required();
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->callback([arguments, name = std::string(kind)] { import_tables(*arguments, name); });
   return command;

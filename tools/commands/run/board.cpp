@@ -91,8 +91,10 @@ void register_board(CLI::App& vernier) {
       ->check(CLI::IsMember({"activate", "deactivate", "clear", "hold", "release", "weight", "identify"}));
   command->add_option("--to", arguments->url, "board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE")
       ->required();
-  command->add_option("--key", arguments->key,
-                      "secret key of `vernier keys` (or VERNIER_KEY), where the board has keys");
+  command
+      ->add_option("--key", arguments->key,
+                   "secret key of `vernier keys` (or VERNIER_KEY), where the board has keys")
+      ->type_name(kReads);
   add_board_claim(*command, arguments->claim);
   command->add_option("--axis", arguments->axis, "axis of a weight");
   command->add_option("--weight", arguments->weight, "share of its correction that is applied")

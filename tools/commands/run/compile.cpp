@@ -198,10 +198,11 @@ void register_compile(CLI::App& vernier) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* const command = vernier.add_subcommand(
       "compile", "Compile a machine file to a fixed-point image and C++ with a proved error bound");
-  command->add_option("machine", arguments->machine, "machine file (XML)")->required();
+  command->add_option("machine", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command
       ->add_option("-o,--output", arguments->directory,
                    "directory for machine.xml, machine.vimg, equation.h/.cpp, bound.json")
+      ->type_name(kWritesFolder)
       ->required();
   command->add_option("--json", arguments->json, "result for programs (- is standard output)");
   command->add_option("--budget", arguments->budget,

@@ -52,7 +52,9 @@ void register_keys(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const command =
       vernier.add_subcommand("keys", "Make the key pair by which a board accepts images");
-  command->add_option("-o", arguments->directory, "directory for vernier.key (secret) and vernier.pub")
+  command
+      ->add_option("-o,--output", arguments->directory, "directory for vernier.key (secret) and vernier.pub")
+      ->type_name(kWritesFolder)
       ->capture_default_str();
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->callback([arguments] { run(*arguments); });

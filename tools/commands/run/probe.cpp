@@ -23,7 +23,7 @@ struct TableArguments {
 };
 
 void add_table(CLI::App& command, TableArguments& arguments) {
-  command.add_option("file", arguments.file, "CSV of touches")->required()->type_name("FILE");
+  command.add_option("file", arguments.file, "CSV of touches")->type_name(kReads)->required();
   command
       .add_option("--column", arguments.columns,
                   "meaning of a column: \"mean_up_um=upper[um]\"; again for each")
@@ -240,7 +240,7 @@ void register_probe_cal(CLI::App& vernier) {
                       "approach distance of the touches, mm: touches before constant speed are reported");
   command->add_option("--overtravel", arguments->overtravel, "end of the approach beyond the surface, mm");
   add_conditions(*command, arguments->setup.conditions);
-  command->add_option("-o", arguments->output, "delay as lines of a board file");
+  command->add_option("-o", arguments->output, "delay as lines of a board file")->type_name(kWrites);
   command->footer(
       "Columns: feed[mm/min]; block: upper, lower; ring, sphere: x, y, z, and a[mm/s^2] where an approach\n"
       "was not at constant feed; u. Exit status: 0 done, 1 bad input, 2 -o asked for a delay that the "
@@ -288,7 +288,7 @@ void register_probe_path(CLI::App& vernier) {
   command->add_option("--dwell", path.dwell, "turning: after a touch")->capture_default_str();
   command->add_option("--comment", path.comments, "a comment line at the top of the program; again for each")
       ->allow_extra_args(false);
-  command->add_option("-o", arguments->output, "program")->required();
+  command->add_option("-o", arguments->output, "program")->type_name(kWrites)->required();
   command->footer(
       "Exit status: 0 written, 1 bad input, 2 touches at this feed, approach or overtravel would not be "
       "valid "
@@ -316,8 +316,10 @@ void register_feature(CLI::App& vernier) {
   command->add_option("--expansion-std", arguments->expansion_std, "its standard uncertainty, um/(m K)")
       ->capture_default_str();
   command->add_option("--temperature-std", arguments->temperature_std, "K")->capture_default_str();
-  command->add_option("-o", arguments->output,
-                      "the touches as a measurement file: d along nx ny nz from the feature");
+  command
+      ->add_option("-o", arguments->output,
+                   "the touches as a measurement file: d along nx ny nz from the feature")
+      ->type_name(kWrites);
   command->footer("Columns: x, y, z; nx, ny, nz (outward normals; a block: of the face); T[degC]; u.");
   command->callback([arguments, command] { run_feature(*arguments, *command); });
 }

@@ -99,16 +99,17 @@ void register_record(CLI::App& vernier) {
       "record", "Record positions, directions, inputs and corrections of a running board as CSV for fit");
   command->add_option("--to", arguments->url, "board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE")
       ->required();
-  command->add_option("-o", arguments->output, "CSV file")->required();
+  command->add_option("-o", arguments->output, "CSV file")->type_name(kWrites)->required();
   command->add_option("--seconds", arguments->seconds, "length of the recording")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
   command->add_option("--every", arguments->every, "number of ticks per row")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  command->add_option(
-      "--machine", arguments->machine,
-      "machine file (XML) with the units of the inputs; without it these columns have no units");
+  command
+      ->add_option("--machine", arguments->machine,
+                   "machine file (XML) with the units of the inputs; without it these columns have no units")
+      ->type_name(kReads);
   command->add_option("--run", arguments->run, "label of the run column")->default_val("record");
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->callback([arguments] { run(*arguments); });

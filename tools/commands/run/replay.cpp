@@ -87,16 +87,23 @@ void register_replay(CLI::App& vernier) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       vernier.add_subcommand("replay", "Compute the readings of a measurement with the correction");
-  command->add_option("MEAS", arguments->measurements, "measurement files (CSV) with t")->required();
-  command->add_option("--image", arguments->image, "directory that compile wrote")->required();
+  command->add_option("MEAS", arguments->measurements, "measurement files (CSV) with t")
+      ->type_name(kReads)
+      ->required();
+  command->add_option("--image", arguments->image, "directory that compile wrote")
+      ->type_name(kReadsFolder)
+      ->required();
   command
       ->add_option("--dac", arguments->dac,
                    "analogue chain of 8 or 16 bit in between, beside one image unit; may be repeated")
       ->check(CLI::IsMember({8u, 16u}));
-  command->add_option("--before", arguments->before,
-                      "a simpler machine file, for comparison with the image's in the report");
-  command->add_option("--images", arguments->images, simulate::kImagesHelp);
-  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline");
+  command
+      ->add_option("--before", arguments->before,
+                   "a simpler machine file, for comparison with the image's in the report")
+      ->type_name(kReads);
+  command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
+  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
+      ->type_name(kWrites);
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(

@@ -52,15 +52,22 @@ void register_simulate(CLI::App& vernier) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       vernier.add_subcommand("simulate", "Run the firmware loop on a simulated machine with known errors");
-  command->add_option("--truth", arguments->truth, "machine file of the true machine (XML)")->required();
-  command->add_option("--image", arguments->image, "directory that compile wrote")->required();
-  command->add_option("--path", arguments->path, "path (CSV): t[s], every axis, inputs")->required();
+  command->add_option("--truth", arguments->truth, "machine file of the true machine (XML)")
+      ->type_name(kReads)
+      ->required();
+  command->add_option("--image", arguments->image, "directory that compile wrote")
+      ->type_name(kReadsFolder)
+      ->required();
+  command->add_option("--path", arguments->path, "path (CSV): t[s], every axis, inputs")
+      ->type_name(kReads)
+      ->required();
   command
       ->add_option("--dac", arguments->dac,
                    "analogue chain of 8 or 16 bit in between; default: one image unit")
       ->check(CLI::IsMember({8u, 16u}));
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
-  command->add_option("-o,--output", arguments->output, "every tick: corrections and errors (CSV)");
+  command->add_option("-o,--output", arguments->output, "every tick: corrections and errors (CSV)")
+      ->type_name(kWrites);
   command->add_option("--noise-um", arguments->loop.noise_um, "noise of the position readings, one sigma")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--delay-ticks", arguments->loop.delay_ticks, "age of the readings in ticks")

@@ -134,10 +134,11 @@ void register_touches(CLI::App& vernier) {
       "workpiece coordinates");
   command->add_option("--to", arguments->url, "board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE")
       ->required();
-  command->add_option(
-      "--key", arguments->key,
-      "secret key of `vernier keys` (or VERNIER_KEY), to set the workpiece of a board with keys");
-  command->add_option("-o", arguments->output, "CSV file");
+  command
+      ->add_option("--key", arguments->key,
+                   "secret key of `vernier keys` (or VERNIER_KEY), to set the workpiece of a board with keys")
+      ->type_name(kReads);
+  command->add_option("-o", arguments->output, "CSV file")->type_name(kWrites);
   command->add_option("--first", arguments->first, "number of the first touch")->capture_default_str();
   command->add_option("--count", arguments->count, "stop after so many touches");
   command->add_option("--seconds", arguments->seconds, "wait so long for further touches")

@@ -198,14 +198,16 @@ void register_upload(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const command = vernier.add_subcommand(
       "upload", "Sign a compiled image, send it to a board and try it; confirm or revert it");
-  command->add_option("DIR", arguments->directory, "directory that `vernier compile` wrote");
+  command->add_option("DIR", arguments->directory, "directory that `vernier compile` wrote")
+      ->type_name(kReadsFolder);
   command
       ->add_option("--to", arguments->url,
                    "board: tcp://HOST[:1502], rtu://DEVICE?baud=115200&parity=E&unit=1, "
                    "can://INTERFACE?send=0x600&receive=0x601, "
                    "serial://DEVICE?baud=115200")
       ->required();
-  command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)");
+  command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)")
+      ->type_name(kReads);
   command->add_flag("--confirm", arguments->confirm,
                     "confirm the image on trial; with DIR: immediately after the upload");
   command->add_flag("--revert", arguments->revert, "revert the image on trial");

@@ -40,14 +40,20 @@ class Lines {
   std::size_t at_ = 0, number_ = 0;
 };
 
+constexpr std::pair<const char*, char> kSeparators[] = {
+    {"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"space", ' '}, {"auto", 0}};
+
 }  // namespace
 
+std::vector<std::string> separator_words() {
+  std::vector<std::string> words;
+  for (const auto& [name, sign] : kSeparators) words.emplace_back(name);
+  return words;
+}
+
 char separator_of(const std::string& name, const text::Place& place) {
-  if (name == "auto") return 0;
-  if (name == "comma") return ',';
-  if (name == "semicolon") return ';';
-  if (name == "tab") return '\t';
-  if (name == "space") return ' ';
+  for (const auto& [known, sign] : kSeparators)
+    if (name == known) return sign;
   throw text::InputError(place, name, "a separator is comma, semicolon, tab, space or auto");
 }
 

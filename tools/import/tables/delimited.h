@@ -30,8 +30,10 @@ struct DelimitedFile {
 DelimitedFile parse_delimited(const std::string& text, const std::string& file,
                               const DelimitedFormat& format);
 
-/// Converts the name of a separator to its character: comma, semicolon, tab, space, auto. place: of the name,
-/// if the name is not an argument. Throws InputError.
+/// Returns the names of separators: comma, semicolon, tab, space, auto.
+std::vector<std::string> separator_words();
+/// Converts the name of a separator to its character. place: of the name, if the name is not an argument.
+/// Throws InputError.
 char separator_of(const std::string& name, const text::Place& place = {});
 
 }  // namespace vernier::importer

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 
+#include "tools/import/kinds.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 
@@ -34,7 +35,8 @@ FileKind kind_of(const fs::path& path) {
   const std::string extension = lower_extension(path);
   if (extension == ".xml") return FileKind::kMachine;
   if (extension == ".csv") return FileKind::kMeasurement;
-  for (const char* table : {".b5r", ".xlsx", ".txt", ".tsv", ".dat", ".asc", ".json"})
+  if (importer::import_kind_of(extension) != nullptr) return FileKind::kInstrument;
+  for (const char* table : {".xlsx", ".txt", ".tsv", ".dat", ".asc", ".json"})
     if (extension == table) return FileKind::kInstrument;
   if (extension == ".html") return FileKind::kReport;
   if (extension == ".vimg") return FileKind::kImage;

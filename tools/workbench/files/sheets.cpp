@@ -100,8 +100,8 @@ importer::SheetWords sheet_words(const nlohmann::json& request) {
   words.unit = text_or_none(request, "unit");
   if (const auto skip = request.find("skip"); skip != request.end() && skip->is_number_integer())
     words.skip = static_cast<std::size_t>(std::max<std::int64_t>(0, skip->get<std::int64_t>()));
-  words.columns = list_or_none(request, "columns");
-  words.deviations = list_or_none(request, "deviations");
+  words.columns = list_or_none(request, "column");
+  words.deviations = list_or_none(request, "deviation");
   words.left = list_or_none(request, "leave");
   words.constants = list_or_none(request, "set");
   return words;

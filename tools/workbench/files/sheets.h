@@ -17,8 +17,8 @@ bool begins_as_measurement(const std::string& text);
 nlohmann::ordered_json sheet_preview(const std::string& bytes, const std::string& file,
                                      const importer::SheetWords& words);
 
-/// The words of a request: separator, decimal, comment, sheet, unit (texts), skip (number), columns,
-/// deviations, leave, set (lists). Throws InputError.
+/// The words of a request, with the names of the options of `vernier import table`: separator, decimal,
+/// comment, sheet, unit (texts), skip (number), column, deviation, leave, set (lists). Throws InputError.
 importer::SheetWords sheet_words(const nlohmann::json& request);
 
 }  // namespace vernier::workbench

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "tools/text/error.h"
 #include "tools/text/words.h"
@@ -11,232 +12,155 @@
 namespace vernier::workbench {
 namespace {
 
-enum class FieldKind : std::uint8_t { kIn, kInList, kOut, kText, kTextList, kNumber, kFlag, kRegistry };
-
-/// A field of a request and its position in the command: after `option`, or as a separate word.
-struct Field {
-  const char* key;
-  FieldKind kind;
-  const char* option = "";
-  bool required = false;
-  const char* words = "";  // the only ones that are taken, a blank between two; empty: any
-};
+using Json = nlohmann::ordered_json;
 
 struct Allowed {
   const char* name;
   bool on_board, for_history;
-  std::vector<Field> fields;
+  const char* options;
 };
 
-/// All that the page can do; the order of the fields is that of the words.
-const std::vector<Allowed>& allowed() {
-  using K = FieldKind;
-  const Field machine{"machine", K::kIn, "", true}, rows{"measurements", K::kInList, "", true},
-      output{"output", K::kOut, "-o", true}, report{"output", K::kOut, "-o"},
-      url{"to", K::kText, "--to", true},
-      // Corrections of a board in rows that name its image: from the project's compiled images.
-      images{"images", K::kFlag, "--images=."}, header{"header", K::kTextList, "--header"};
-  static const std::vector<Allowed> kAll = {
-      {"new",
-       false,
-       true,
-       {{"type", K::kText, "", true},
-        {"axes", K::kTextList, "--axis"},
-        {"tool_side", K::kText, "--tool-side"},
-        {"work_side", K::kText, "--work-side"},
-        {"name", K::kText, "--name"},
-        {"reading", K::kText, "--reading"},
-        output,
-        {"measurements", K::kOut, "--measurements"}}},
-      {"import",
-       false,
-       true,
-       {{"kind", K::kText, "", true},
-        {"files", K::kInList, "", true},
-        {"repair_time_base", K::kFlag, "--repair-time-base"},
-        {"map", K::kIn, "--map"},
-        {"separator", K::kText, "--separator"},
-        {"decimal", K::kText, "--decimal"},
-        {"skip", K::kNumber, "--skip"},
-        {"header", K::kFlag, "--header"},
-        {"sheet", K::kText, "--sheet"},
-        {"unit", K::kText, "--unit"},
-        {"columns", K::kTextList, "--column"},
-        {"deviations", K::kTextList, "--deviation"},
-        {"leave", K::kTextList, "--leave"},
-        {"set", K::kTextList, "--set"},
-        {"check_every", K::kNumber, "--check-every"},
-        {"radius", K::kNumber, "--radius"},
-        {"plane", K::kText, "--plane"},
-        {"length", K::kNumber, "--length"},
-        {"feed", K::kNumber, "--feed"},
-        output,
-        {"save_profile", K::kOut, "--save-profile"}}},
-      {"fit", false, true, {machine, rows, images, {"loss", K::kText, "--loss"}, output}},
-      {"compare", false, false, {machine, rows, {"datum", K::kFlag, "--datum"}, images, header, report}},
-      {"diagnose",
-       false,
-       false,
-       {machine,
-        rows,
-        images,
-        {"most", K::kNumber, "--most"},
-        {"machine_out", K::kOut, "--machine-out"},
-        header,
-        report}},
-      {"evaluate",
-       false,
-       false,
-       {{"standard", K::kText, "", true},
-        rows,
-        {"axis", K::kText, "--axis", true},
-        {"tolerances", K::kTextList, "--tolerance"},
-        {"uncertainties", K::kTextList, "--uncertainty"},
-        header,
-        report}},
-      {"add", false, true, {{"effect", K::kText, "", true}, machine, output}},
-      {"set", false, true, {machine, {"values", K::kTextList, "", true}, output}},
-      {"exclude",
-       false,
-       true,
-       {{"measurement", K::kIn, "", true},
-        {"lines", K::kText, "--lines", true},
-        {"reason", K::kText, "--reason"},
-        {"restore", K::kFlag, "--restore"},
-        output}},
-      {"effects", false, false, {}},
-      {"plan",
-       false,
-       false,
-       {machine,
-        rows,
-        {"separate", K::kTextList, "--separate", true},
-        {"points", K::kNumber, "--points"},
-        {"confidence", K::kNumber, "--confidence"},
-        {"gcode", K::kOut, "--gcode"},
-        report}},
-      {"improve", false, true, {machine, rows, images, {"yes", K::kFlag, "--yes", true}, output}},
-      {"compile", false, true, {machine, {"budget", K::kText, "--budget"}, output}},
-      {"replay",
-       false,
-       false,
-       {{"measurements", K::kInList, "", true}, {"image", K::kIn, "--image", true}, report}},
-      {"keys", false, false, {output}},
-      {"image-diff",
-       false,
-       false,
-       {{"image", K::kIn, "", true},
-        {"with", K::kIn, "--with"},
-        {"to", K::kText, "--to"},
-        {"key", K::kIn, "--key"}}},
-      {"upload",
-       true,
-       true,
-       {{"image", K::kIn},
-        {"confirm", K::kFlag, "--confirm"},
-        {"revert", K::kFlag, "--revert"},
-        {"force", K::kFlag, "--force"},
-        url,
-        {"key", K::kIn, "--key"}}},
-      {"board", true, false, {{"what", K::kText, "", true}, url, {"key", K::kIn, "--key"}}},
-      {"status", true, false, {url}},
-      // Only what reads: a fleet is not changed from a page.
-      {"fleet",
-       false,
-       false,
-       {{"what", K::kText, "", true, "status due alike jobs list"},
-        {"registry", K::kRegistry, "--registry", true}}},
-  };
-  return kAll;
+/// All that the page can do: options by their names, in the order of the command that is shown. !: the page
+/// must give it though the command does not, because without it the command would ask, use a file outside of
+/// the project, or keep no result.
+constexpr Allowed kAllowed[] = {
+    {"new", false, true, "type axis tool-side work-side name reading output measurements"},
+    {"import table", false, true,
+     "file separator decimal skip sheet unit column deviation leave set check-every output! save-profile"},
+    {"import ballbar", false, true, "files repair-time-base output"},
+    {"import ballbar-trace", false, true, "files radius plane length feed output"},
+    {"import tracker", false, true, "file map separator decimal skip header column set check-every output"},
+    {"import probe", false, true,
+     "file map separator decimal skip header column set check-every radius output"},
+    {"import laser", false, true, "file output"},
+    {"fit", false, true, "machine meas images loss output!"},
+    {"compare", false, false, "machine meas! datum images header output"},
+    {"diagnose", false, false, "machine meas images most machine-out header output"},
+    {"evaluate iso230-2", false, false, "meas axis tolerance uncertainty header output"},
+    {"add", false, true, "effect machine output"},
+    {"set", false, true, "machine values output"},
+    {"exclude", false, true, "meas lines! reason restore output!"},
+    {"effects", false, false, ""},
+    {"plan", false, false, "machine meas! separate! points confidence gcode output"},
+    {"improve", false, true, "machine meas images yes! output"},
+    {"compile", false, true, "machine budget output"},
+    {"replay", false, false, "meas image output"},
+    {"keys", false, false, "output!"},
+    {"image-diff", false, false, "dir with to key"},
+    {"upload", true, true, "dir confirm revert force to key"},
+    {"board", true, false, "what to key"},
+    {"status", true, false, "to"},
+    // Only what reads: a fleet is not changed from a page.
+    {"fleet list", false, false, "registry!"},
+    {"fleet status", false, false, "registry!"},
+    {"fleet due", false, false, "registry!"},
+    {"fleet alike", false, false, "registry!"},
+    {"fleet answers", false, false, "registry!"},
+};
+
+/// The entry of a list with this "name"; throws std::logic_error without one.
+const Json& named(const Json& list, const std::string& name, const std::string& where) {
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const Json& one) { return one.at("name") == name; });
+  if (found == list.end()) throw std::logic_error("the workbench allows \"" + name + "\": not in " + where);
+  return *found;
 }
 
-[[noreturn]] void refuse(const Field& field, const std::string& what) {
-  throw text::InputError(fmt::format("\"{}\": {}", field.key, what));
+[[noreturn]] void refuse(const Json& option, const std::string& what) {
+  throw text::InputError(fmt::format("\"{}\": {}", option.at("name").get<std::string>(), what));
 }
 
-std::string text_of(const Field& field, const nlohmann::json& value) {
+std::string text_of(const Json& option, const nlohmann::json& value) {
   constexpr std::size_t kMost = 4000;
-  if (!value.is_string()) refuse(field, "must be a text");
+  if (!value.is_string()) refuse(option, "must be a text");
   const auto text = value.get<std::string>();
   if (text.empty() || text.front() == '-' || text.size() > kMost)
-    refuse(field, "must not be empty, very long or start with -");
+    refuse(option, "must not be empty, very long or start with -");
   if (std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
-    refuse(field, "must be one line of text");
+    refuse(option, "must be one line of text");
   return text;
 }
 
-std::string word_of(const Field& field, const nlohmann::json& value, const Project& project) {
-  switch (field.kind) {
-    case FieldKind::kIn:
-    case FieldKind::kInList: {
-      const std::string name = text_of(field, value);
-      project.existing(name);
-      return name;
-    }
-    case FieldKind::kOut: {
-      const std::string name = text_of(field, value);
-      project.writable(name);
-      return name;
-    }
-    case FieldKind::kRegistry: {
-      // A server, or a file of the project.
-      const std::string place = text_of(field, value);
-      if (!place.starts_with("postgresql://") && !place.starts_with("postgres://")) project.existing(place);
-      return place;
-    }
-    case FieldKind::kNumber:
-      if (!value.is_number()) refuse(field, "must be a number");
-      return fmt::format("{}", value.get<double>());
-    default: {
-      std::string text = text_of(field, value);
-      const std::vector<std::string> words = text::words_in(field.words, " ");
-      if (!words.empty() && std::find(words.begin(), words.end(), text) == words.end())
-        refuse(field, "is not one of " + std::string(field.words));
-      return text;
-    }
-  }
+/// A file or folder is one of the project; only a registry may be a server.
+void confine(const std::string& kind, const std::string& name, const Project& project) {
+  if (kind.starts_with("writes"))
+    project.writable(name);
+  else if (kind == "reads-folder" && name == ".")
+    return;  // the project itself
+  else if (kind != "reads-or-server" ||
+           (!name.starts_with("postgresql://") && !name.starts_with("postgres://")))
+    project.existing(name);
 }
 
-void add_field(const Field& field, const nlohmann::json& value, const Project& project,
-               PlannedCommand& command) {
+std::string word_of(const Json& option, const nlohmann::json& value, const Project& project) {
+  const auto kind = option.at("kind").get<std::string>();
+  if (kind == "number" || kind == "count") {
+    if (!value.is_number()) refuse(option, "must be a number");
+    return fmt::format("{}", value.get<double>());
+  }
+  std::string text = text_of(option, value);
+  if (kind != "text") confine(kind, text, project);
+  if (const auto words = option.find("words"); words != option.end())
+    if (std::find(words->begin(), words->end(), text) == words->end())
+      refuse(option, "is not one of " + words->dump());
+  return text;
+}
+
+void add_option(const Json& option, const nlohmann::json& value, const Project& project,
+                PlannedCommand& command) {
   constexpr std::size_t kMostWords = 200;
-  if (field.kind == FieldKind::kFlag) {
-    if (!value.is_boolean()) refuse(field, "must be true or false");
-    if (value.get<bool>()) command.arguments.emplace_back(field.option);
+  const auto typed = option.at("typed").get<std::string>(), kind = option.at("kind").get<std::string>();
+  if (kind == "flag") {
+    if (!value.is_boolean()) refuse(option, "must be true or false");
+    if (value.get<bool>()) command.arguments.push_back(typed);
     return;
   }
-  const bool list = field.kind == FieldKind::kInList || field.kind == FieldKind::kTextList;
+  const bool list = option.at("list").get<bool>();
   if (list && (!value.is_array() || value.empty() || value.size() > kMostWords))
-    refuse(field, "must be a list with at least one entry");
+    refuse(option, "must be a list with at least one entry");
   for (const nlohmann::json& one : list ? value : nlohmann::json::array({value})) {
-    if (*field.option != '\0') command.arguments.emplace_back(field.option);
-    command.arguments.push_back(word_of(field, one, project));
-    if (field.kind == FieldKind::kOut) command.outputs.push_back(command.arguments.back());
+    if (!typed.empty()) command.arguments.push_back(typed);
+    command.arguments.push_back(word_of(option, one, project));
+    if (kind.starts_with("writes")) command.outputs.push_back(command.arguments.back());
   }
 }
 
 }  // namespace
 
-PlannedCommand plan_command(const nlohmann::json& request, const Project& project) {
+CommandTable::CommandTable(const nlohmann::ordered_json& described) {
+  for (const Allowed& one : kAllowed) {
+    Json command = named(described, one.name, "the program");
+    Json options = Json::array();
+    for (std::string name : text::words_in(one.options, " ")) {
+      const bool demanded = name.ends_with('!');
+      if (demanded) name.pop_back();
+      options.push_back(named(command.at("options"), name, one.name));
+      if (demanded) options.back()["required"] = true;
+    }
+    command["options"] = std::move(options);
+    allowed_.push_back(std::move(command));
+  }
+}
+
+PlannedCommand CommandTable::plan(const nlohmann::json& request, const Project& project) const {
   if (!request.is_object() || !request.contains("command") || !request["command"].is_string())
     throw text::InputError("a request for a command names it: {\"command\": ...}");
   const auto name = request["command"].get<std::string>();
-  const auto found =
-      std::find_if(allowed().begin(), allowed().end(), [&](const Allowed& one) { return one.name == name; });
-  if (found == allowed().end()) throw text::InputError("\"" + name + "\": the workbench has no such command");
-  PlannedCommand command{name, {name}, {}, found->on_board, found->for_history};
+  const auto found = std::find_if(std::begin(kAllowed), std::end(kAllowed),
+                                  [&](const Allowed& one) { return one.name == name; });
+  if (found == std::end(kAllowed))
+    throw text::InputError("\"" + name + "\": the workbench has no such command");
+  PlannedCommand command{name, text::words_in(name, " "), {}, found->on_board, found->for_history};
   std::size_t known = 1;
-  for (const Field& field : found->fields) {
-    const auto value = request.find(field.key);
-    if (value == request.end() || value->is_null()) {
-      if (field.required) refuse(field, "is missing in a request for " + name);
-      known += value != request.end() ? 1 : 0;
-      continue;
-    }
-    ++known;
-    add_field(field, *value, project, command);
+  for (const Json& option : named(allowed_, name, "the table").at("options")) {
+    const auto value = request.find(option.at("name").get<std::string>());
+    known += value != request.end() ? 1 : 0;
+    if (value != request.end() && !value->is_null())
+      add_option(option, *value, project, command);
+    else if (option.at("required").get<bool>())
+      refuse(option, "is missing in a request for " + name);
   }
-  if (known != request.size()) throw text::InputError("a field that " + name + " does not have");
+  if (known != request.size()) throw text::InputError("an option that the page may not give to " + name);
   return command;
 }
 

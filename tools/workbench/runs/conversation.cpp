@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "tools/text/error.h"
-#include "tools/workbench/runs/process.h"
+#include "tools/text/process.h"
 
 namespace vernier::workbench {
 namespace {
@@ -102,7 +102,7 @@ Conversation::Conversation(const std::string& program, const std::vector<std::st
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     throw text::InputError(std::string("no way to a process: ") + std::strerror(errno));
   stream_ = ends[0];
-  child_ = start_process(program, arguments, directory, {ends[1], ends[1], STDERR_FILENO});
+  child_ = text::start_process(program, arguments, directory, {ends[1], ends[1], STDERR_FILENO});
   ::close(ends[1]);
   if (child_ >= 0) return;
   ::close(stream_);

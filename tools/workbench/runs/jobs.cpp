@@ -6,9 +6,9 @@
 #include <chrono>
 
 #include "tools/text/error.h"
+#include "tools/text/process.h"
 #include "tools/text/words.h"
 #include "tools/workbench/runs/now.h"
-#include "tools/workbench/runs/process.h"
 
 namespace vernier::workbench {
 namespace {
@@ -49,7 +49,7 @@ std::uint64_t Jobs::start(const PlannedCommand& command) {
     throw text::InputError("too many commands are running: wait for one or cancel one");
   auto job = std::make_shared<Job>();
   job->command = command;
-  job->typed = shell_text("vernier", command.arguments);
+  job->typed = text::shell_text("vernier", command.arguments);
   job->started_s = steady_s();
   const std::uint64_t id = next_++;
   jobs_[id] = job;
@@ -81,7 +81,7 @@ void Jobs::run(Job& job) {
   std::vector<std::string> arguments = job.command.arguments;
   arguments.insert(arguments.end(), {"--json", "-"});
   try {
-    const ProcessResult result = run_process(
+    const text::ProcessResult result = text::run_process(
         program_, arguments, project_.root().string(), kMostOutput,
         [&](std::string_view line) { take_line(job, line); }, job.process);
     finish(job, result.exit, result.out, result.err);

@@ -8,9 +8,9 @@
 #include <string>
 #include <thread>
 
+#include "tools/text/process.h"
 #include "tools/workbench/runs/commands.h"
 #include "tools/workbench/runs/history.h"
-#include "tools/workbench/runs/process.h"
 
 namespace vernier::workbench {
 
@@ -39,7 +39,7 @@ class Jobs {
     double fraction = 0, started_s = 0, seconds = 0;
     int exit = -1;
     nlohmann::ordered_json result;
-    RunningProcess process;
+    text::RunningProcess process;
     std::atomic<bool> over{false};
     std::thread thread;
   };

@@ -69,6 +69,11 @@ export function chart(label, options) {
   const { height } = options(1000);
   box.style.height = `${height}px`;
   box.redraw = () => draw(entry, true);
+  /** What the pointer of an event is at: values of a grid's axes, radius and angle of a polar plot; null before it is drawn. */
+  box.valueAt = (event, system) => {
+    const { left, top } = box.getBoundingClientRect();
+    return entry.instance?.convertFromPixel({ [system]: 0 }, [event.clientX - left, event.clientY - top]) ?? null;
+  };
   box.options = () => options(box.clientWidth || 1000);
   const stem = label.replace(/[^\w]+/g, '_');
   entry.exports = exportButtons([

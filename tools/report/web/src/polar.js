@@ -60,8 +60,11 @@ function series(run, least, c) {
   ].filter(Boolean);
 }
 
-/** The plot that users of a ball bar know: the deviation from the nominal circle, magnified, both senses. */
-export function polarPlot(circle) {
+/**
+ * The plot that users of a ball bar know: the deviation from the nominal circle, magnified, both senses. `more(least, colours)`:
+ * further series; the chart is the figure's `plot`.
+ */
+export function polarPlot(circle, more = () => []) {
   const [a, b] = circle.plane;
   const most = largest(circle);
   let step = kSteps.find((one) => one * kOutside >= most) ?? kSteps[kSteps.length - 1];
@@ -120,7 +123,7 @@ export function polarPlot(circle) {
             formatter: (um) => (Math.round(um / step) % 2 !== 0 ? '' : `${um > 0 ? '+' : ''}${number(um)}`),
           },
         },
-        series: [...all, zero],
+        series: [...all, zero, ...more(-kInside * step, c)],
       },
     };
   });
@@ -148,7 +151,7 @@ export function polarPlot(circle) {
         )
       : null,
   );
-  return el(
+  const figure = el(
     'figure',
     {},
     controls,
@@ -160,6 +163,8 @@ export function polarPlot(circle) {
         '(dashed); thin: measured, thick: model. Angles from the first axis towards the second.',
     ),
   );
+  figure.plot = plot;
+  return figure;
 }
 
 /** ISO 230-4 numbers of one circle. */

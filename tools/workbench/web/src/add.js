@@ -4,6 +4,7 @@ import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, postBlob, postJson, refresh, run } from './api.js';
 import { fallingFigure } from './charts.js';
 import { button, guarded, needsSubject, panel } from './parts.js';
+import { moreOptions } from './options.js';
 import { parameterPanel } from './parameters.js';
 import { redrawAll } from './plot.js';
 import { choose } from './project.js';
@@ -24,9 +25,9 @@ function note(label, machine, result) {
 }
 
 /** Fits a machine into a new file; what came out is a step. */
-async function fitInto(machine, label) {
+async function fitInto(machine, label, options = {}) {
   const output = freeName(`${unfitted(machine)}-fitted`, '.xml');
-  const { result } = await run({ command: 'fit', ...measured(), machine, output });
+  const { result } = await run({ command: 'fit', ...measured(), machine, ...options, output });
   note(label, output, result);
   await choose(output, store.measurements);
   return result;
@@ -214,7 +215,8 @@ function sliderPanel(error) {
 
 export function addView(root) {
   const error = el('div', { id: 'add-error' });
-  const fit = button('Fit the model', () => guarded(error, () => fitInto(store.machine, 'the model, fitted')), {
+  const options = moreOptions('fit', ['machine', 'meas', 'images', 'output']);
+  const fit = button('Fit the model', () => guarded(error, () => fitInto(store.machine, 'the model, fitted', options.values())), {
     id: 'fit',
     ...needsSubject,
   });
@@ -271,7 +273,7 @@ export function addView(root) {
   );
   root.append(
     error,
-    panel(null, el('div', { class: 'controls' }, fit, improve, effect, add, list), catalogue),
+    panel(null, el('div', { class: 'controls' }, fit, improve, effect, add, list), options.element, catalogue),
     stepsPanel(),
     parameterPanel(),
     sliderPanel(error),

@@ -2,6 +2,7 @@
 import { el } from '../../../report/web/src/dom.js';
 import { freeName, run } from './api.js';
 import { kTypes, machineChoice } from './machines.js';
+import { moreOptions } from './options.js';
 import { button, guarded, panel } from './parts.js';
 import { on, store } from './store.js';
 
@@ -16,6 +17,7 @@ function newMachine(choose) {
     type = chosen;
     axes.value = usual;
   });
+  const options = moreOptions('new', ['type', 'axis', 'output', 'measurements']);
   const make = button(
     'Make it',
     () =>
@@ -23,8 +25,15 @@ function newMachine(choose) {
         const stem = name.value.trim().replace(/[^\w-]+/g, '_') || 'machine';
         const output = freeName(stem, '.xml'),
           survey = freeName(`${stem}_survey`, '.csv');
-        const words = axes.value.split(/\s+/).filter(Boolean);
-        const { result } = await run({ command: 'new', type, ...(words.length ? { axes: words } : {}), output, measurements: survey });
+        const axis = axes.value.split(/\s+/).filter(Boolean);
+        const { result } = await run({
+          command: 'new',
+          type,
+          ...(axis.length ? { axis } : {}),
+          ...options.values(),
+          output,
+          measurements: survey,
+        });
         drawing.hidden = false;
         drawing.textContent = `${result.drawing}\n\n${output}, and ${survey}: positions to be measured, with empty cells for the readings`;
         await choose(output, store.measurements);
@@ -40,6 +49,7 @@ function newMachine(choose) {
       el('label', { class: 'choice' }, 'name ', name),
       make,
     ),
+    options.element,
     drawing,
     error,
   ];
@@ -57,7 +67,10 @@ export function beginPanel(choose) {
       rows = store.measurements.length > 0;
     const item = (done, words) => el('li', { class: done ? 'done' : null }, words);
     steps.replaceChildren(
-      item(rows, 'What was measured: drop any spreadsheet (.xlsx, .csv, .txt), ball-bar file (.b5r) or measurement file above.'),
+      item(
+        rows,
+        'What was measured: drop any spreadsheet (.xlsx, .csv, .txt), file of a ball bar or an interferometer (.b5r, .rtl) or measurement file above.',
+      ),
       item(machine, 'Which machine: drop its machine file (.xml), or make one below.'),
       item(false, 'Then go to Compare: where the model fails, and from there along the path at the top.'),
     );

@@ -4,9 +4,13 @@ import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, run } from './api.js';
 import { budgetFigure } from './charts.js';
 import { livePanel } from './live.js';
+import { moreOptions, option } from './options.js';
 import { safetyPanel } from './safety.js';
 import { button, guarded, panel } from './parts.js';
 import { emit, on, store } from './store.js';
+
+/** Needs an axis and a weight; prints a key for a person. */
+const kNotHere = ['weight', 'identify'];
 
 const folders = () => [
   ...new Set(store.files.filter((file) => /\/machine\.vimg$/.test(file.name)).map((file) => file.name.replace(/\/machine\.vimg$/, ''))),
@@ -63,8 +67,8 @@ export function boardView(root) {
     key = el('select', { id: 'key', 'aria-label': 'key' }),
     other = el('select', { 'aria-label': 'other image' });
   const url = el('input', { type: 'text', id: 'board-url', value: 'tcp://127.0.0.1:1502', 'aria-label': 'board', spellcheck: 'false' });
-  const limit = el('input', { type: 'text', placeholder: 'budget, e.g. 0.1um', 'aria-label': 'budget' });
-  limit.style.minWidth = '9em';
+  const compileOptions = moreOptions('compile', ['machine', 'output']),
+    uploadOptions = moreOptions('upload', ['dir', 'confirm', 'revert', 'to', 'key']);
   const signed = () => (key.value ? { key: key.value } : {});
   const draw = () => {
     const keys = store.files.filter((file) => file.kind === 'key' && file.name.endsWith('.key')).map((file) => file.name);
@@ -77,7 +81,7 @@ export function boardView(root) {
     'Compile',
     async () => {
       const output = freeName(`image-${store.machine.replace(/.*\//, '').replace(/\.xml$/i, '')}`, '');
-      const { result } = await run({ command: 'compile', machine: store.machine, ...(limit.value ? { budget: limit.value } : {}), output });
+      const { result } = await run({ command: 'compile', machine: store.machine, ...compileOptions.values(), output });
       draw();
       image.value = output;
       const summary = el(
@@ -97,7 +101,7 @@ export function boardView(root) {
     async () => {
       const { result } = await run({
         command: 'image-diff',
-        image: image.value,
+        dir: image.value,
         ...(other.value ? { with: other.value } : { to: url.value, ...signed() }),
       });
       difference.replaceChildren(...differenceWords(result));
@@ -122,7 +126,7 @@ export function boardView(root) {
   );
   const upload = step(
     'Upload (on trial)',
-    async () => showSlots(await run({ command: 'upload', image: image.value, to: url.value, key: key.value })),
+    async () => showSlots(await run({ command: 'upload', dir: image.value, ...uploadOptions.values(), to: url.value, key: key.value })),
     { id: 'upload' },
   );
   const confirm = step('Confirm', async () => showSlots(await run({ command: 'upload', confirm: true, to: url.value, ...signed() })), {
@@ -143,13 +147,23 @@ export function boardView(root) {
   root.append(
     error,
     safety.element,
-    panel('Compile', el('div', { class: 'controls' }, compile, limit), budget),
+    panel('Compile', el('div', { class: 'controls' }, compile), compileOptions.element, budget),
     panel(
       'Board',
       el('div', { class: 'controls' }, image, url, key, makeKey),
       el('div', { class: 'controls' }, diff, el('span', {}, 'against ', other)),
       difference,
-      el('div', { class: 'controls' }, upload, confirm, revert, ...['activate', 'deactivate', 'clear', 'hold', 'release'].map(tell)),
+      el(
+        'div',
+        { class: 'controls' },
+        upload,
+        confirm,
+        revert,
+        ...option('board', 'what')
+          .words.filter((what) => !kNotHere.includes(what))
+          .map(tell),
+      ),
+      uploadOptions.element,
       slots,
     ),
     livePanel(() => url.value, getJson),

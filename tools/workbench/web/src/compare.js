@@ -8,7 +8,7 @@ import { redrawAll } from './plot.js';
 import { polarPlot } from './polar.js';
 import { along, chosenLines, compared, lineWords, loadRows } from './rows.js';
 import { pointKey, scatter } from './scatter.js';
-import { histogram, sortedGroup, spreadWords } from './spread.js';
+import { histogram, sorted, spreadWords } from './spread.js';
 import { emit, on, select, selection, store } from './store.js';
 import { rowTable } from './table.js';
 import { vectorPlot } from './vectors.js';
@@ -92,7 +92,7 @@ function probability() {
     height: 230,
     name: 'probability',
     data: () => {
-      const one = sortedGroup(group());
+      const one = sorted(group());
       return { x: one.value, y: one.score, row: one.row, check: store.rows.row_check, overlay: null };
     },
     words: () => ({ title: 'normal probability', x: `residual ${group().kind} [${group().unit}]`, y: 'normal score' }),
@@ -109,7 +109,7 @@ function exclusion(error) {
   const change = (name, fields) =>
     guarded(error, async () => {
       const output = target(name);
-      await run({ command: 'exclude', measurement: name, ...fields, output });
+      await run({ command: 'exclude', meas: name, ...fields, output });
       store.measurements = store.measurements.map((one) => (one === name ? output : one));
       select(new Uint8Array(store.rows.n_rows));
       await loadRows();
@@ -167,7 +167,8 @@ export function compareView(root) {
     numbers = el('div', { id: 'compare-numbers' }),
     where = el('div', {}),
     linked = el('div', {});
-  let table = null;
+  let table = null,
+    charts = [];
   const datum = el('input', { type: 'checkbox', id: 'datum', checked: '' });
   datum.addEventListener('change', () => {
     store.datum = datum.checked;
@@ -222,18 +223,13 @@ export function compareView(root) {
         grid.reset();
         normal.reset();
         redrawAll();
+        bars.plot.redraw();
       },
     );
-    const spatial = [vectorPlot(rows.circular.length ? 380 : 420), ...rows.circular.slice(0, 3).map((circle) => polarPlot(circle, 400))];
+    const polar = rows.circular.slice(0, 3).map((circle) => polarPlot(circle));
+    charts = [bars, ...polar].map((one) => one.plot);
     linked.append(
-      panel(
-        'In space',
-        el(
-          'div',
-          { class: 'beside-equal' },
-          spatial.map((plot) => plot.element),
-        ),
-      ),
+      panel('In space', el('div', { class: 'beside-equal' }, vectorPlot(rows.circular.length ? 380 : 420).element, polar)),
       panel(
         'Against everything',
         el('div', { class: 'controls' }, kinds),
@@ -246,7 +242,7 @@ export function compareView(root) {
           'Drag: choose rows, Ctrl adds to the choice. Shift-drag or arrow keys: move. + and − or the wheel (while in focus): zoom. 0 or double click: the whole. Escape: choose nothing.',
         ),
       ),
-      panel('How they scatter', el('div', { class: 'beside-equal' }, bars.element, normal.element)),
+      panel('How they scatter', el('div', { class: 'beside-equal' }, bars, normal.element)),
       panel('Rows', exclusion(error), table.element),
     );
     table.draw();
@@ -257,6 +253,7 @@ export function compareView(root) {
   on('selection', () => {
     table?.draw();
     const { started } = selection;
+    for (const one of charts) one.redraw();
     redrawAll(() => {
       document.body.dataset.redrawMs = (performance.now() - started).toFixed(1);
     });

@@ -5,10 +5,11 @@ import { next, title, verdict } from '../../../report/web/src/diagnosis.js';
 import { fileAddress, freeName, run } from './api.js';
 import { addEffect } from './add.js';
 import { ladderFigure } from './charts.js';
+import { moreOptions } from './options.js';
 import { showExplanation } from './overlay.js';
 import { button, guarded, needsSubject, nothingYet, panel, showError } from './parts.js';
 import { redrawAll } from './plot.js';
-import { along, measured, subject, valuesOf } from './rows.js';
+import { along, measured, valuesOf } from './rows.js';
 import { scatter } from './scatter.js';
 import { emit, on, store } from './store.js';
 import { vectorPlot } from './vectors.js';
@@ -135,13 +136,22 @@ function planPanel(result, error) {
   let [a, b] = names;
   const options = result.candidates.map((one) => [one.add, title(one)]);
   const box = el('div', { id: 'plan' });
+  const more = moreOptions('plan', ['machine', 'meas', 'separate', 'gcode', 'output']);
   const ask = button(
     'What would I have to measure to be sure?',
     () =>
       guarded(error, async () => {
         const output = freeName('plan', '.csv'),
           gcode = freeName('plan', '.nc');
-        const { result: plan } = await run({ command: 'plan', ...subject(), separate: [a, b], output, gcode });
+        const { result: plan } = await run({
+          command: 'plan',
+          machine: store.machine,
+          meas: store.measurements,
+          separate: [a, b],
+          ...more.values(),
+          output,
+          gcode,
+        });
         const rows = plan.rows ?? [];
         const axes = Object.keys(rows[0]?.axes ?? {}),
           inputs = Object.keys(rows[0]?.inputs ?? {});
@@ -181,6 +191,7 @@ function planPanel(result, error) {
       }),
       ask,
     ),
+    more.element,
     box,
   );
 }
@@ -188,11 +199,12 @@ function planPanel(result, error) {
 export function diagnoseView(root) {
   const error = el('div', {}),
     box = el('div', { id: 'diagnosis' });
+  const options = moreOptions('diagnose', ['machine', 'meas', 'images', 'header', 'output']);
   const go = button(
     'Diagnose: what is missing?',
     () =>
       guarded(error, async () => {
-        const { result } = await run({ command: 'diagnose', ...measured() });
+        const { result } = await run({ command: 'diagnose', ...measured(), ...options.values() });
         store.diagnosis = result;
         store.diagnosed.add(store.measurements.join('|'));
         show(result);
@@ -232,7 +244,7 @@ export function diagnoseView(root) {
     [explained] = plots;
     redrawAll();
   }
-  root.append(error, panel(null, el('div', { class: 'controls' }, go)), box);
+  root.append(error, panel(null, el('div', { class: 'controls' }, go), options.element), box);
   on('rows', () => {
     box.replaceChildren(store.rows ? '' : nothingYet());
     store.diagnosis = explained = null;

@@ -53,7 +53,7 @@ export function fleetView(root) {
   const error = el('div', { id: 'fleet-error' }),
     machines = el('div', { id: 'fleet-machines' }),
     drifts = el('ul', { id: 'fleet-drifts' }),
-    jobs = el('ul', { id: 'fleet-jobs' });
+    batches = el('ul', { id: 'fleet-batches' });
   const registry = el('input', {
     type: 'text',
     id: 'fleet-registry',
@@ -65,7 +65,7 @@ export function fleetView(root) {
     const there = store.files.find((file) => file.name === 'fleet.db');
     if (!registry.value && there) registry.value = there.name;
   });
-  const ask = async (what) => (await run({ command: 'fleet', what, registry: registry.value })).result;
+  const ask = async (what) => (await run({ command: `fleet ${what}`, registry: registry.value })).result;
   const look = button(
     'Look',
     () =>
@@ -73,13 +73,13 @@ export function fleetView(root) {
         const status = await ask('status'),
           due = await ask('due'),
           alike = await ask('alike'),
-          work = await ask('jobs');
+          booked = (await ask('answers')).answers;
         machines.replaceChildren(machinesTable(status, due));
         drifts.replaceChildren(...alike.quantities.flatMap(driftWords).map((text) => el('li', {}, text)));
         if (!alike.quantities.length) drifts.replaceChildren(el('li', {}, 'no readings of checks yet'));
-        jobs.replaceChildren(
-          ...work.batches.map((one) =>
-            el('li', {}, `${one.batch}: ${one.done} done, ${one.failed} failed, ${one.waiting + one.taken} to do`),
+        batches.replaceChildren(
+          ...[...new Set(booked.map((one) => one.name))].map((name) =>
+            el('li', {}, `${name}: ${booked.filter((one) => one.name === name).length} answers`),
           ),
         );
       }),
@@ -89,7 +89,7 @@ export function fleetView(root) {
     error,
     panel('Machines', el('div', { class: 'controls' }, registry, look), machines),
     panel('What drifts', drifts),
-    panel('Jobs on many machines', jobs),
+    panel('Batches', batches),
   );
   return { show() {} };
 }

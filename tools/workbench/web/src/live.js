@@ -1,28 +1,70 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { axisStyle, colours, legendStyle } from '../../../report/web/src/chart.js';
 import { el, tiles } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
-import { button, panel } from './parts.js';
-import { Plot, axes, range } from './plot.js';
+import { button, figure, panel } from './parts.js';
 
 const kSeconds = 20;
 const kHealth = ['overruns', 'skipped', 'missing_readings', 'saturated', 'slewing', 'beyond_range', 'faults'];
 
-/** Values of an axis' correction over the last seconds. */
-function trace(samples, c) {
-  const names = Object.keys(samples.at(-1)?.axes ?? {}),
+/** Corrections of each axis over the last seconds. */
+function traces(samples) {
+  const c = colours(),
     inks = [c.fit, c.check, c.ccw, c.cw, c.accent2, c.soft];
-  const end = samples.at(-1)?.at_s ?? 0;
-  return names.map((name, k) => ({
-    name,
-    colour: inks[k % inks.length],
-    unit: samples.at(-1).axes[name].unit === 'deg' ? 'mdeg' : 'µm',
-    x: samples.map((one) => one.at_s - end),
-    y: samples.map((one) => 1e3 * (one.axes[name]?.correction ?? NaN)),
-  }));
+  const last = samples.at(-1) ?? { axes: {}, at_s: 0 };
+  const names = Object.keys(last.axes);
+  const axis = (name, nameGap) => ({ ...axisStyle(c), type: 'value', name, nameLocation: 'middle', nameGap });
+  return {
+    height: 230,
+    option: {
+      color: inks,
+      legend: { ...legendStyle(c), top: 0, left: 58 },
+      grid: { left: 66, right: 16, top: 30, bottom: 44 },
+      xAxis: { ...axis('seconds', 26), min: -kSeconds, max: 0 },
+      yAxis: {
+        ...axis(`correction [${last.axes[names[0]]?.unit === 'deg' ? 'mdeg' : 'µm'}]`, 46),
+        scale: true,
+        axisLine: { onZero: false },
+      },
+      series: names.map((name) => ({
+        name,
+        type: 'line',
+        showSymbol: false,
+        lineStyle: { width: 1.6 },
+        data: samples.map((one) => [one.at_s - last.at_s, 1e3 * (one.axes[name]?.correction ?? NaN)]),
+      })),
+    },
+  };
 }
 
 /** "X of transform 2 (tool): BX*dirX": where in the chain it stands is of no use while a machine runs. */
 const inShort = (effect) => effect.replace(/ of transform \d+ \(\w+\)/, '');
+
+/** What each effect adds just now, the largest first. */
+function shares(last) {
+  const c = colours();
+  const list = [...(last?.shares ?? [])].sort((a, b) => Math.abs(b.correction) - Math.abs(a.correction)).slice(0, 11);
+  return {
+    height: 230,
+    option: {
+      grid: { left: 8, right: 60, top: 8, bottom: 40, containLabel: true },
+      xAxis: { ...axisStyle(c), type: 'value', name: 'what each effect adds [µm or mdeg]', nameLocation: 'middle', nameGap: 26 },
+      yAxis: {
+        ...axisStyle(c),
+        type: 'category',
+        inverse: true,
+        axisTick: { show: false },
+        data: list.map((one) => `${one.axis}  ${inShort(one.effect)}`),
+        axisLabel: { color: c.soft, fontSize: 11, width: 260, overflow: 'truncate' },
+      },
+      series: {
+        type: 'bar',
+        label: { show: true, position: 'right', color: c.ink, formatter: ({ value }) => number(value, 3) },
+        data: list.map((one) => ({ value: 1e3 * one.correction, itemStyle: { color: one.correction < 0 ? c.check : c.fit } })),
+      },
+    },
+  };
+}
 
 /** What runs, since when, and how much of it arrives: no correction must not look like one. */
 function runs(last) {
@@ -41,50 +83,9 @@ export function livePanel(url, getJson) {
     drawn = [];
   const figures = el('div', { id: 'live-figures' }),
     words = el('p', { class: 'note', role: 'status', id: 'live-state' }, 'not watching');
-  const lines = new Plot('corrections over time', {
-    height: 230,
-    name: 'live_corrections',
-    paint(pen, c) {
-      const traces = trace(samples, c);
-      const area = { x: 56, y: 18, w: pen.width - 66, h: pen.height - 50 };
-      if (!traces.length) return;
-      const view = { x: [-kSeconds, 0], y: range(traces.flatMap((one) => one.y).filter(Number.isFinite), 0.1) };
-      axes(pen, area, view, { x: 'seconds', y: `correction [${traces[0].unit}]`, title: 'correction of each axis' }, c);
-      traces.forEach((one, k) => {
-        const points = [];
-        one.x.forEach((x, i) =>
-          points.push(
-            area.x + Math.max(0, 1 + x / kSeconds) * area.w,
-            area.y + area.h * (1 - (one.y[i] - view.y[0]) / (view.y[1] - view.y[0])),
-          ),
-        );
-        pen.line(points, one.colour, 1.6);
-        pen.text(area.x + area.w - 8 - 26 * (traces.length - 1 - k), 9, one.name, { colour: one.colour, bold: true, align: 'right' });
-      });
-    },
-  });
-  const shares = new Plot('what each effect adds', {
-    height: 230,
-    name: 'live_effects',
-    paint(pen, c) {
-      const list = [...(samples.at(-1)?.shares ?? [])].sort((a, b) => Math.abs(b.correction) - Math.abs(a.correction)).slice(0, 11);
-      const most = Math.max(1e-9, ...list.map((one) => Math.abs(one.correction)));
-      pen.text(4, 8, 'what each effect adds just now [µm or mdeg]', { colour: c.ink, bold: true });
-      const middle = pen.width * 0.72,
-        half = pen.width * 0.2;
-      list.forEach((one, i) => {
-        const y = 20 + i * 19,
-          w = (half * one.correction) / most;
-        pen.text(4, y + 8, `${one.axis}  ${inShort(one.effect).slice(0, Math.max(8, Math.floor((middle - half) / 6.4)))}`, {
-          colour: c.soft,
-        });
-        pen.rect(Math.min(middle, middle + w), y, Math.abs(w), 15, one.correction < 0 ? c.check : c.fit);
-        pen.text(pen.width - 4, y + 8, number(1e3 * one.correction, 3), { colour: c.ink, align: 'right' });
-      });
-      pen.line([middle, 18, middle, pen.height], c.line);
-    },
-  });
-  const pictures = el('div', { class: 'live', hidden: '' }, lines.element, shares.element);
+  const lines = figure('corrections over time', () => traces(samples)),
+    bars = figure('what each effect adds', () => shares(samples.at(-1)));
+  const pictures = el('div', { class: 'live', hidden: '' }, lines, bars);
   function show(last) {
     pictures.hidden = false;
     const rate = drawn.length > 1 ? (drawn.length - 1) / (drawn.at(-1) - drawn[0]) : 0;
@@ -101,8 +102,7 @@ export function livePanel(url, getJson) {
         ...kHealth.map((name) => ({ label: name.replace(/_/g, ' '), value: String(last.health[name]) })),
       ]),
     );
-    lines.draw();
-    shares.draw();
+    for (const one of [lines, bars]) one.firstElementChild.redraw();
   }
   async function follow() {
     while (running) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
+import { option } from './options.js';
 
 /**
  * The usual kinds of machines: [type, what carries what, axes to begin with, picture]. A picture is made of boxes [x, y, w, h],
@@ -95,10 +96,12 @@ function picture(parts) {
 
 /** A choice among the machines by their pictures; calls back with [type, axes]. */
 export function machineChoice(chosen, change) {
+  // A type without a picture is offered too: the program knows how to make it.
+  const types = option('new', 'type').words.map((name) => kTypes.find(([type]) => type === name) ?? [name, name, '', []]);
   return el(
     'div',
     { class: 'machines', role: 'radiogroup', 'aria-label': 'type of machine' },
-    kTypes.map(([type, words, axes, parts]) => {
+    types.map(([type, words, axes, parts]) => {
       const input = el('input', { type: 'radio', name: 'machine-type', value: type, checked: type === chosen ? '' : null });
       input.addEventListener('change', () => change(type, axes));
       return el('label', { class: 'machine-type', title: words }, input, picture(parts), el('span', {}, words));

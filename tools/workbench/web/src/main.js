@@ -3,7 +3,7 @@ import { redrawCharts } from '../../../report/web/src/chart.js';
 import { el } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { addView } from './add.js';
-import { cancel, job, refresh } from './api.js';
+import { cancel, getJson, job, refresh } from './api.js';
 import { boardView } from './board.js';
 import { compareView } from './compare.js';
 import { diagnoseView } from './diagnose.js';
@@ -12,6 +12,7 @@ import { guide } from './guide.js';
 import { rememberTheWay } from './memory.js';
 import { redrawAll } from './plot.js';
 import { choose, projectView } from './project.js';
+import { fileNames } from './options.js';
 import { emit, on, store } from './store.js';
 
 const kViews = [
@@ -108,6 +109,7 @@ function remembered() {
 }
 
 async function start() {
+  store.commands = await getJson('/api/commands');
   await refresh();
   const title = el('strong', {}, 'Vernier');
   const nav = el('nav', { 'aria-label': 'Steps' });
@@ -128,6 +130,7 @@ async function start() {
     way.root,
     main,
     commandBar(),
+    fileNames(),
   );
   main.id = 'main';
   for (const [id, name, build] of kViews) {

@@ -40,11 +40,10 @@ export class CanvasPen {
     }
   }
   /** points: [x0, y0, x1, y1 ...]; NaN breaks the line. */
-  line(points, colour, width = 1, dash = []) {
+  line(points, colour, width = 1) {
     const c = this.context;
     c.strokeStyle = colour;
     c.lineWidth = width;
-    c.setLineDash(dash);
     c.beginPath();
     let open = false;
     for (let i = 0; i + 1 < points.length; i += 2) {
@@ -57,7 +56,6 @@ export class CanvasPen {
       open = true;
     }
     c.stroke();
-    c.setLineDash([]);
   }
   text(x, y, words, { colour, align = 'left', size = 11, turn = 0, bold = false }) {
     const c = this.context;
@@ -140,7 +138,7 @@ export class SvgPen {
         `${stroke ? ` stroke="${escaped(stroke)}"` : ''}${opacity < 1 ? ` fill-opacity="${opacity}"` : ''}/>`,
     );
   }
-  line(points, colour, width = 1, dash = []) {
+  line(points, colour, width = 1) {
     let path = '',
       open = false;
     for (let i = 0; i + 1 < points.length; i += 2) {
@@ -151,9 +149,7 @@ export class SvgPen {
       path += `${open ? 'L' : 'M'}${short(points[i])} ${short(points[i + 1])}`;
       open = true;
     }
-    this.parts.push(
-      `<path d="${path}" fill="none" stroke="${escaped(colour)}" stroke-width="${width}"${dash.length ? ` stroke-dasharray="${dash.join(' ')}"` : ''}/>`,
-    );
+    this.parts.push(`<path d="${path}" fill="none" stroke="${escaped(colour)}" stroke-width="${width}"/>`);
   }
   text(x, y, words, { colour, align = 'left', size = 11, turn = 0, bold = false }) {
     const anchor = { left: 'start', center: 'middle', right: 'end' }[align];

@@ -2,6 +2,7 @@
 import { el } from '../../../report/web/src/dom.js';
 import { fileAddress, freeName, getJson, postJson, putFile, refresh, run } from './api.js';
 import { beginPanel } from './begin.js';
+import { optionFields } from './options.js';
 import { button, panel, showError } from './parts.js';
 import { loadRows } from './rows.js';
 import { importSheet } from './sheet.js';
@@ -48,13 +49,17 @@ async function isSheet(name) {
   return (await kinds.get(key)).kind === 'sheet';
 }
 
+/** The kind of `vernier import` that reads a file of the project without further options. */
+const importerOf = (name) => store.files.find((one) => one.name === name)?.importer;
+
 /** Makes a measurement of a file of the project, as its kind asks for. */
 async function importFile(name, box, repair) {
   const done = (output) => choose(store.machine, [output]);
-  if (/\.b5r$/i.test(name)) {
-    const stem = name.replace(/\.b5r$/i, '');
-    const output = freeName(stem, '.csv');
-    await run({ command: 'import', kind: 'ballbar', files: [name], repair_time_base: repair, output });
+  const kind = importerOf(name);
+  if (kind) {
+    const output = freeName(name.replace(/\.[^.]*$/, ''), '.csv');
+    const fields = kind === 'ballbar' ? { files: [name], ...repair } : { file: name };
+    await run({ command: `import ${kind}`, ...fields, output });
     return done(output);
   }
   return importSheet(box, name, done);
@@ -67,7 +72,7 @@ async function take(file, repair, box) {
   await putFile(name, bytes);
   await refresh();
   if (/\.xml$/i.test(name)) return choose(name, store.measurements);
-  if (/\.b5r$/i.test(name) || (kSheet.test(name) && (await isSheet(name)))) return importFile(name, box, repair);
+  if (importerOf(name) || (kSheet.test(name) && (await isSheet(name)))) return importFile(name, box, repair);
   if (/\.csv$/i.test(name)) return choose(store.machine, [name]);
   return null;
 }
@@ -147,20 +152,20 @@ function history() {
 export function projectView(root) {
   const error = el('div', { id: 'drop-error' }),
     box = el('div', { id: 'import-box' });
-  const repair = el('input', { type: 'checkbox' });
+  const repair = optionFields('import ballbar', ['files', 'output']);
   const pick = el('input', { type: 'file', multiple: '', id: 'file-input', 'aria-label': 'Files to take into the project' });
   const zone = el(
     'div',
     { class: 'drop', id: 'drop' },
-    el('p', {}, 'Drop what was measured (.csv, .xlsx, .txt, .b5r) and machine files (.xml) here, or choose them: '),
+    el('p', {}, 'Drop what was measured (.csv, .xlsx, .txt, files of an instrument) and machine files (.xml) here, or choose them: '),
     pick,
-    el('label', { class: 'choice' }, repair, ' repair the time base of ball-bar files'),
+    repair.elements,
   );
   const takeAll = async (files) => {
     error.replaceChildren();
     for (const file of files) {
       try {
-        await take(file, repair.checked, box);
+        await take(file, repair.values(), box);
       } catch (why) {
         await showBadLine(error, file, why.message);
         return;
@@ -184,7 +189,7 @@ export function projectView(root) {
   const files = el('tbody', { id: 'files' });
   const again = async (name) => {
     error.replaceChildren();
-    await importFile(name, box, repair.checked).catch((why) => showError(error, why));
+    await importFile(name, box, repair.values()).catch((why) => showError(error, why));
   };
   let drawing = 0;
   const draw = async () => {

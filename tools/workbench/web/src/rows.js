@@ -83,9 +83,10 @@ function varies(column) {
   return false;
 }
 
+/** For requests to the reader of files. */
 export const subject = () => ({ machine: store.machine, measurements: store.measurements });
-/** The same for commands that read rows as a fit does: what a board had added to them is found in the project's images. */
-export const measured = () => ({ ...subject(), ...(store.rows?.corrected ? { images: true } : {}) });
+/** For commands that read rows as a fit does: what a board had added to them is found in the project's images. */
+export const measured = () => ({ machine: store.machine, meas: store.measurements, ...(store.rows?.corrected ? { images: '.' } : {}) });
 /** The same for the comparison. */
 export const compared = () => ({ ...measured(), ...(store.datum ? { datum: true } : {}) });
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { choice, el } from '../../../report/web/src/dom.js';
 import { freeName, postJson, run } from './api.js';
+import { optionFields } from './options.js';
 import { button, guarded, panel } from './parts.js';
 import { store } from './store.js';
 
@@ -22,35 +23,18 @@ function likely(preview) {
 
 const withUnit = (one) => `${one.name}${one.unit ? `[${one.unit}]` : ''}`;
 
-/** The fields of `vernier import` for what stands on the panel. */
-function request(name, kind, wishes, preview) {
-  const separator = preview.separator === 'blanks' ? 'space' : preview.separator;
-  if (kind === 'table')
-    return {
-      command: 'import',
-      kind,
-      files: [name],
-      ...(wishes.separator ? { separator: wishes.separator } : {}),
-      ...(wishes.decimal ? { decimal: wishes.decimal } : {}),
-      ...(wishes.sheet ? { sheet: wishes.sheet } : {}),
-      ...(wishes.unit ? { unit: wishes.unit } : {}),
-      ...(wishes.columns.length ? { columns: wishes.columns } : {}),
-      ...(wishes.deviations.length ? { deviations: wishes.deviations } : {}),
-      ...(wishes.leave.length ? { leave: wishes.leave } : {}),
-      ...(wishes.checkEvery ? { check_every: wishes.checkEvery } : {}),
-    };
-  return {
-    command: 'import',
-    kind,
-    files: [name],
-    separator,
-    decimal: preview.decimal,
-    skip: (preview.heading_line ?? 1) - 1,
-    header: true,
-    columns: preview.columns.filter((one) => one.use === 'column').map((one) => `${one.heading}=${withUnit(one)}`),
-    ...(wishes.checkEvery ? { check_every: wishes.checkEvery } : {}),
-  };
-}
+/** What the table of columns and the preview say; all other options of the import have fields. */
+const kInTable = ['file', 'output', 'column', 'deviation', 'leave'];
+const kOfPreview = [...kInTable, 'separator', 'decimal', 'skip', 'header'];
+
+/** The options of an import without the preview's help: a tracker's and a probe's table. */
+const ofPreview = (preview) => ({
+  separator: preview.separator === 'blanks' ? 'space' : preview.separator,
+  decimal: preview.decimal,
+  skip: (preview.heading_line ?? 1) - 1,
+  header: true,
+  column: preview.columns.filter((one) => one.use === 'column').map((one) => `${one.heading}=${withUnit(one)}`),
+});
 
 /** One column: its heading, its first cells, and what it is; a change is a wish. */
 function columnRow(column, k, preview, change) {
@@ -96,40 +80,31 @@ function columnRow(column, k, preview, change) {
  * asked for here. `done(measurement)` is called with the name of the measurement file.
  */
 export async function importSheet(box, name, done) {
-  const wishes = { separator: '', decimal: '', sheet: '', unit: '', checkEvery: 0, columns: [], deviations: [], leave: [] };
   const said = new Map();
   let kind = null,
     turn = 0;
   const error = el('div', {});
-  const ask = () =>
-    postJson('/api/sheet', {
-      name,
-      machine: store.machine,
-      ...Object.fromEntries(Object.entries(wishes).filter(([, value]) => typeof value === 'string' && value)),
-      columns: wishes.columns,
-      deviations: wishes.deviations,
-      leave: wishes.leave,
-    });
+  const forms = Object.fromEntries(
+    kReadAs.map(([one]) => [one, optionFields(`import ${one}`, one === 'table' ? kInTable : kOfPreview, () => one === 'table' && draw())]),
+  );
+  /** The table of columns as options of `import table`. */
+  const columns = () => {
+    const lists = { leave: [], deviation: [], column: [] };
+    for (const [k, one] of said) {
+      if (one.use === 'left') lists.leave.push(String(k + 1));
+      else lists[one.use].push(`${withUnit(one)}=${k + 1}`);
+    }
+    return Object.fromEntries(Object.entries(lists).filter(([, list]) => list.length));
+  };
+  const ask = () => postJson('/api/sheet', { name, machine: store.machine, ...forms.table.values(), ...columns() });
   const doImport = (preview) =>
     guarded(error, async () => {
       const output = freeName(`${name.replace(/\.[^.]*$/, '')}_read`, '.csv');
-      await run({ ...request(name, kind, wishes, preview), output });
+      const options = kind === 'table' ? columns() : ofPreview(preview);
+      await run({ command: `import ${kind}`, file: name, ...options, ...forms[kind].values(), output });
       box.replaceChildren(panel(null, el('p', { id: 'imported' }, `${name}: ${preview.how}. Read into `, el('strong', {}, output), '.')));
       await done(output);
     });
-  const assign = () => {
-    for (const list of ['columns', 'deviations', 'leave']) wishes[list] = [];
-    for (const [k, one] of said) {
-      if (one.use === 'left') wishes.leave.push(String(k + 1));
-      else if (one.use === 'deviation') wishes.deviations.push(`${withUnit(one)}=${k + 1}`);
-      else wishes.columns.push(`${withUnit(one)}=${k + 1}`);
-    }
-    return draw();
-  };
-  const wish = (key) => (value) => {
-    wishes[key] = value;
-    return draw();
-  };
   async function draw(preview = null) {
     const mine = ++turn;
     error.replaceChildren();
@@ -139,7 +114,6 @@ export async function importSheet(box, name, done) {
     kind ??= likely(now);
     const go = button('Import', () => doImport(now), { id: 'do-import' });
     go.disabled = kind === 'table' && now.message !== null;
-    const units = ['', 'mm', 'um', 'm', 'deg', 'inch'].map((one) => [one, one || 'as written']);
     box.replaceChildren(
       panel(
         `What is in ${name}?`,
@@ -152,41 +126,7 @@ export async function importSheet(box, name, done) {
             kind = value;
             return draw(now);
           }),
-          choice(
-            'decimal sign',
-            [
-              ['', 'guessed'],
-              ['comma', 'comma'],
-              ['point', 'point'],
-            ],
-            wishes.decimal,
-            wish('decimal'),
-          ),
-          choice(
-            'columns separated by',
-            [
-              ['', 'guessed'],
-              ['semicolon', ';'],
-              ['comma', ','],
-              ['tab', 'tab'],
-              ['space', 'blanks'],
-            ],
-            wishes.separator,
-            wish('separator'),
-          ),
-          choice('unit where a heading has none', units, wishes.unit, wish('unit')),
-          choice(
-            'kept from the fit as check rows',
-            [
-              ['0', 'none'],
-              ['4', 'every 4th'],
-              ['5', 'every 5th'],
-            ],
-            String(wishes.checkEvery),
-            (value) => {
-              wishes.checkEvery = Number(value);
-            },
-          ),
+          forms[kind].elements,
         ),
         el(
           'div',
@@ -209,7 +149,7 @@ export async function importSheet(box, name, done) {
               now.columns.map((column, k) =>
                 columnRow(column, k, now, (at, one) => {
                   said.set(at, one);
-                  return assign();
+                  return draw();
                 }),
               ),
             ),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { axisStyle, chart, colours, tooltipStyle } from '../../../report/web/src/chart.js';
 import { number } from '../../../report/web/src/data.js';
-import { Plot, axes } from './plot.js';
+import { el } from '../../../report/web/src/dom.js';
+import { dragged } from './drag.js';
 import { select, selection, store } from './store.js';
 
 const kBins = 60;
@@ -23,7 +25,7 @@ function normalQuantile(p) {
 }
 
 /** The group in increasing order: values, normal scores and the place in the group; worked out once. */
-function sorted(group) {
+export function sorted(group) {
   if (group.sorted) return group.sorted;
   const n = group.value.length;
   const order = Uint32Array.from({ length: n }, (_, i) => i).sort((i, j) => group.value[i] - group.value[j]);
@@ -39,75 +41,70 @@ function sorted(group) {
   return group.sorted;
 }
 
-export const sortedGroup = sorted;
-
-/** Histogram of a group's residuals; drag: choose the rows within. */
+/** Histogram of a group's residuals; drag: choose the rows within. A figure with its chart as `plot`. */
 export function histogram(label, height, group) {
-  let drag = null;
-  const areaOf = (pen) => ({ x: 50, y: 18, w: Math.max(10, pen.width - 60), h: Math.max(10, pen.height - 50) });
-  const limitsOf = (one) => {
+  let limits = [];
+  const plot = chart(label, () => {
+    const c = colours(),
+      one = group();
     const { value } = sorted(one);
-    const most = Math.max(Math.abs(value[0]), Math.abs(value[value.length - 1])) || 1;
-    return [-most * 1.02, most * 1.02];
-  };
-  const plot = new Plot(label, {
-    height,
-    name: 'histogram',
-    paint(pen, c) {
-      const one = group();
-      if (!one) return;
-      const [low, high] = limitsOf(one),
-        area = areaOf(pen);
-      const all = new Uint32Array(kBins),
-        chosen = new Uint32Array(kBins);
-      for (let i = 0; i < one.value.length; ++i) {
-        const bin = Math.min(kBins - 1, Math.floor(((one.value[i] - low) / (high - low)) * kBins));
-        ++all[bin];
-        if (selection.count && selection.rows[one.row[i]]) ++chosen[bin];
-      }
-      const most = Math.max(...all) * 1.08;
-      axes(pen, area, { x: [low, high], y: [0, most] }, { x: `residual ${one.kind} [${one.unit}]`, y: 'rows', title: 'histogram' }, c);
-      const bar = (counts, colour, opacity) =>
-        counts.forEach((count, bin) => {
-          if (count)
-            pen.rect(
-              area.x + (bin * area.w) / kBins + 0.5,
-              area.y + area.h * (1 - count / most),
-              area.w / kBins - 1,
-              (area.h * count) / most,
-              colour,
-              null,
-              opacity,
-            );
-        });
-      bar(all, selection.count ? c.soft : c.fit, selection.count ? 0.35 : 0.8);
-      bar(chosen, c.accent2, 1);
-      if (drag) pen.rect(Math.min(drag.x0, drag.x1), area.y, Math.abs(drag.x1 - drag.x0), area.h, c.accent2, c.accent2, 0.15);
-    },
-  });
-  const xOf = (event) => event.clientX - plot.canvas.getBoundingClientRect().left;
-  plot.canvas.addEventListener('pointerdown', (event) => {
-    drag = { x0: xOf(event), x1: xOf(event) };
-    plot.canvas.setPointerCapture(event.pointerId);
-  });
-  plot.canvas.addEventListener('pointermove', (event) => {
-    if (drag) {
-      drag.x1 = xOf(event);
-      plot.draw();
+    const most = 1.02 * (Math.max(Math.abs(value[0]), Math.abs(value[value.length - 1])) || 1);
+    const counts = { all: new Uint32Array(kBins), chosen: new Uint32Array(kBins) };
+    for (let i = 0; i < one.value.length; ++i) {
+      const bin = Math.min(kBins - 1, Math.floor(((one.value[i] + most) / (2 * most)) * kBins));
+      ++counts.all[bin];
+      if (selection.count && selection.rows[one.row[i]]) ++counts.chosen[bin];
     }
+    const bars = (name, color, opacity) => ({
+      name,
+      type: 'bar',
+      barWidth: '92%',
+      barGap: '-100%',
+      itemStyle: { color, opacity },
+      data: Array.from(counts[name], (count, bin) => [-most + ((bin + 0.5) * 2 * most) / kBins, count]),
+    });
+    const axis = (name, nameGap) => ({ ...axisStyle(c), type: 'value', name, nameLocation: 'middle', nameGap });
+    const series = [bars('all', selection.count ? c.soft : c.fit, selection.count ? 0.35 : 0.8), bars('chosen', c.accent2, 1)];
+    if (limits.length)
+      series[0].markLine = {
+        silent: true,
+        symbol: 'none',
+        label: { show: false },
+        lineStyle: { color: c.accent2 },
+        data: limits.map((xAxis) => ({ xAxis })),
+      };
+    return {
+      height,
+      option: {
+        tooltip: { ...tooltipStyle(c), trigger: 'axis' },
+        grid: { left: 58, right: 16, top: 18, bottom: 46 },
+        xAxis: {
+          ...axis(`residual ${one.kind} [${one.unit}]`, 28),
+          min: -most,
+          max: most,
+          axisLabel: { ...axisStyle(c).axisLabel, formatter: (x) => number(x, 3) },
+        },
+        yAxis: axis('rows', 38),
+        series,
+      },
+    };
   });
-  plot.canvas.addEventListener('pointerup', () => {
-    if (!drag || !group()) return;
-    const one = group(),
-      area = areaOf({ width: plot.canvas.clientWidth, height }),
-      [low, high] = limitsOf(one);
-    const [from, to] = [Math.min(drag.x0, drag.x1), Math.max(drag.x0, drag.x1)].map((x) => low + ((x - area.x) / area.w) * (high - low));
-    drag = null;
-    const rows = new Uint8Array(store.rows.n_rows);
-    if (to > from) for (let i = 0; i < one.value.length; ++i) if (one.value[i] >= from && one.value[i] <= to) rows[one.row[i]] = 1;
-    select(rows);
-  });
-  return plot;
+  dragged(
+    plot,
+    (event) => plot.valueAt(event, 'gridIndex')?.[0] ?? null,
+    (from, to) => {
+      limits = from === null ? [] : [from, to];
+      plot.redraw();
+    },
+    (a, b) => {
+      const one = group(),
+        [from, to] = [Math.min(a, b), Math.max(a, b)];
+      const rows = new Uint8Array(store.rows.n_rows);
+      if (to > from) for (let i = 0; i < one.value.length; ++i) if (one.value[i] >= from && one.value[i] <= to) rows[one.row[i]] = 1;
+      select(rows);
+    },
+  );
+  return Object.assign(el('figure', {}, plot), { plot });
 }
 
 /** Mean and spread of a group in words. */

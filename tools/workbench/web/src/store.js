@@ -7,6 +7,7 @@ export const store = {
   folder: '',
   version: '',
   files: [],
+  commands: [], // what the page may run, as the program declares it: options.js
   history: [],
   machine: '',
   measurements: [],

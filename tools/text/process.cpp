@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/workbench/runs/process.h"
+#include "tools/text/process.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -13,8 +13,9 @@
 #include <cstring>
 
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 
-namespace vernier::workbench {
+namespace vernier::text {
 namespace {
 
 constexpr int kNotStarted = 127, kOurBug = 70;
@@ -23,7 +24,7 @@ constexpr int kNotStarted = 127, kOurBug = 70;
 struct Pipe {
   Pipe() {
     if (::pipe2(end.data(), O_CLOEXEC) != 0)
-      throw text::InputError(std::string("no pipe to a command: ") + std::strerror(errno));
+      throw InputError(std::string("no pipe to a command: ") + std::strerror(errno));
   }
   ~Pipe() {
     close_end(0);
@@ -131,7 +132,7 @@ ProcessResult run_process(const std::string& program, const std::vector<std::str
   const pid_t child = start_process(program, arguments, directory, {nothing, out.end[1], err.end[1]});
   const int failed = errno;
   ::close(nothing);
-  if (child < 0) throw text::InputError(std::string("a command cannot be started: ") + std::strerror(failed));
+  if (child < 0) throw InputError(std::string("a command cannot be started: ") + std::strerror(failed));
   running.group = child;
   if (running.cancelled) running.cancel();
   out.close_end(1);
@@ -158,6 +159,14 @@ void RunningProcess::cancel() {
   if (running > 0) ::kill(-running, SIGKILL);
 }
 
+std::string last_line(std::string_view output) {
+  constexpr std::size_t kLongest = 400;
+  std::string line;
+  for (const std::string& one : words_in(output, "\n"))
+    if (!trimmed(one).empty()) line = trimmed(one);
+  return line.substr(0, kLongest);
+}
+
 std::string shell_text(const std::string& program, const std::vector<std::string>& arguments) {
   std::string text = program;
   constexpr std::string_view kPlain =
@@ -175,4 +184,4 @@ std::string shell_text(const std::string& program, const std::vector<std::string
   return text;
 }
 
-}  // namespace vernier::workbench
+}  // namespace vernier::text

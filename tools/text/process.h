@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vernier::workbench {
+namespace vernier::text {
 
 /// Exit status of a program, and its output.
 struct ProcessResult {
@@ -42,7 +42,10 @@ struct StandardStreams {
 pid_t start_process(const std::string& program, const std::vector<std::string>& arguments,
                     const std::string& directory, const StandardStreams& streams);
 
+/// The last line of a program's output that is not empty, without blanks around it, 400 bytes at most. tool.
+std::string last_line(std::string_view output);
+
 /// A command for a shell: words are quoted if necessary.
 std::string shell_text(const std::string& program, const std::vector<std::string>& arguments);
 
-}  // namespace vernier::workbench
+}  // namespace vernier::text

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { el } from '../../../report/web/src/dom.js';
+import { on, store } from './store.js';
+
+/** What the program declares of an option that the page may use: {name, kind, list, required, help, words, low, high, default}. */
+export const option = (command, name) => store.commands.find((one) => one.name === command).options.find((one) => one.name === name);
+
+/** An input for an option. Its `value()` is that of a request; undefined: not given. */
+function input(one) {
+  const common = { 'data-option': one.name, 'aria-label': one.name, title: one.help };
+  if (one.kind === 'flag') {
+    const node = el('input', { ...common, type: 'checkbox' });
+    return { node, value: () => node.checked || undefined };
+  }
+  if (one.words && !one.list) {
+    const node = el(
+      'select',
+      common,
+      el('option', { value: '' }, one.default ?? ''),
+      ...one.words.map((word) => el('option', { value: word }, word)),
+    );
+    return { node, value: () => node.value || undefined };
+  }
+  const number = one.kind === 'number' || one.kind === 'count';
+  const limits = number ? { min: one.low ?? (one.kind === 'count' ? 0 : null), max: one.high, step: one.kind === 'count' ? 1 : 'any' } : {};
+  const files = one.kind.startsWith('reads') ? { list: 'files-of-project' } : {};
+  const node = el('input', {
+    ...common,
+    ...limits,
+    ...files,
+    type: number ? 'number' : 'text',
+    placeholder: one.default,
+    spellcheck: 'false',
+  });
+  const read = (word) => (number ? Number(word) : word);
+  return {
+    node,
+    value: () => {
+      const words = node.value.trim();
+      if (!words) return undefined;
+      return one.list ? words.split(/\s*;\s*/).map(read) : read(words);
+    },
+  };
+}
+
+/**
+ * Fields for the options of a command but those that the page gives in another way: their names, help, allowed words, types
+ * and ranges are those of the program. `change` is called with each change. {elements, values(): the part of a request}.
+ */
+export function optionFields(command, given, change = () => {}) {
+  const all = store.commands.find((one) => one.name === command).options;
+  const fields = all
+    .filter((one) => !given.includes(one.name))
+    .map((one) => {
+      const { name } = one,
+        { node, value } = input(one);
+      node.addEventListener('change', change);
+      return {
+        name,
+        value,
+        label: el(
+          'label',
+          { class: 'choice', title: one.help },
+          `${name.replaceAll('-', ' ')}${one.list ? ' (; between two)' : ''} `,
+          node,
+        ),
+      };
+    });
+  return {
+    elements: fields.map((one) => one.label),
+    values: () => Object.fromEntries(fields.map((one) => [one.name, one.value()]).filter(([, value]) => value !== undefined)),
+  };
+}
+
+/** The same, folded away. */
+export function moreOptions(command, given) {
+  const fields = optionFields(command, given);
+  return {
+    element: el(
+      'details',
+      { class: 'options', 'data-command': command },
+      el('summary', {}, `options of ${command}`),
+      el('div', { class: 'controls' }, fields.elements),
+    ),
+    values: fields.values,
+  };
+}
+
+/** The names that fields for files offer. */
+export function fileNames() {
+  const list = el('datalist', { id: 'files-of-project' });
+  on('project', () => list.replaceChildren(...store.files.map((file) => el('option', { value: file.name }))));
+  return list;
+}
