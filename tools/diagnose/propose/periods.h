@@ -47,12 +47,30 @@ FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::
 Eigen::VectorXd carrier_of(const Evidence& evidence, const effects::Candidate& candidate,
                            const FinePeriods& fine);
 
-/// Returns the most promising short periods of several candidates of one axis, refined, from the periodogram
-/// of the residual outside the part that the model absorbs. Periods below the level of chance are excluded.
-/// Two periods are returned: the best, and the longest of those that fit nearly as well (the best may be an
-/// alias of it).
+/// A cyclic error sin(2 pi f q), cos(2 pi f q) of the positions q of an axis, times a carrier per reading.
+struct WaveOfAxis {
+  std::size_t axis = 0;
+  Eigen::VectorXd carrier;  // of each reading
+};
+
+/// Returns the exact decrease of chi^2 by a wave at the frequencies first + k * step, beside the
+/// part that the model absorbs and the orthonormal columns `beside`. `residual`: outside of both.
+/// A gain is 0 where the wave is not independent of both. tool.
+Eigen::VectorXd wave_gains(const Evidence& evidence, const WaveOfAxis& wave, double first, double step,
+                           Eigen::Index count, const Eigen::MatrixXd& beside,
+                           const Eigen::VectorXd& residual);
+
+/// True if exact gains (wave_gains) at `count` frequencies are affordable. A long record uses a periodogram
+/// instead: there, waves are nearly orthogonal to the part that the model absorbs.
+bool is_affordable(const Evidence& evidence, Eigen::Index count, const Eigen::MatrixXd& beside);
+
+/// Returns the most promising short periods for each of several candidates of one axis, refined:
+/// the best ones, and the longest of those that fit nearly as well (the best may be its alias).
+/// promising_periods uses the exact gain of each period beside the orthonormal columns `beside` if that is
+/// affordable, else the periodogram of `residual`. Periods below the level of chance are excluded.
 std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
                                                    const std::vector<const FinePeriods*>& of_axis,
+                                                   const Eigen::MatrixXd& beside,
                                                    const Eigen::VectorXd& residual);
 
 }  // namespace vernier::diagnose

@@ -58,6 +58,9 @@ class Scanner {
   void scan_part(std::size_t first, std::size_t step, const Eigen::MatrixXd& beside,
                  const Eigen::VectorXd& residual, std::vector<Scored>& best,
                  const std::function<void(double)>& progress) const;
+  /// Difference of chi^2 within which two periods fit alike, beside a wave that leaves a chi^2 of
+  /// `left`. If that exceeds the noise, it is the scale.
+  double alike_within(double left) const;
   /// Best of a candidate's periods, by the full decrease of the residual.
   Scored best_period(std::size_t candidate, const std::vector<double>& periods, const Eigen::MatrixXd& beside,
                      const Eigen::VectorXd& residual) const;
@@ -67,6 +70,10 @@ class Scanner {
   /// data there.
   double gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
                  const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
+  /// Returns frequencies at which a wave may fit as well as one at `own`, up to `most`: by the
+  /// positions' own window, and, if affordable, all peaks of its exact gain near `mine`.
+  std::vector<double> possible_aliases(const Scored& scored, double own, double most, double mine,
+                                       const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
   bool score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected, const Eigen::MatrixXd& beside,
              const Eigen::VectorXd& residual, Scored& scored) const;
 
