@@ -24,7 +24,7 @@ model::States offered_poses(const model::Machine& machine, std::size_t count, st
     const auto range = model::work_range(machine, axis);
     if (!range)
       throw text::InputError({machine.file, machine.axes[axis].line}, machine.axes[axis].name,
-                             "a plan needs min and max of every axis");
+                             "the plan needs min and max of this axis in the machine file");
     for (std::size_t i = 0; i < count; ++i) {
       double share = maths::radical_inverse(from + i + 1, kPrimes[axis % std::size(kPrimes)]);
       // A third of the poses are at the ends of an axis, taken from another sequence.

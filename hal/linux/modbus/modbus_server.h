@@ -13,12 +13,12 @@ struct _modbus;
 namespace vernier {
 
 /// A Modbus server over TCP for a few clients, or over a serial line (which libmodbus opens). No client can
-/// block it: it reads and writes what is available. It closes a connection whose request is not complete
-/// within half a second of its first byte, or whose reply is not taken within a second.
+/// block the server: the server reads and writes only what is available. The server closes a connection if a
+/// request is not complete within half a second of its first byte, or a reply is not taken within a second.
 class ModbusServer : public CommandLink {
  public:
-  /// address: numeric, "127.0.0.1"; port 0 takes any free one. Null with `error` set if it cannot listen.
-  /// setup.
+  /// address: numeric, "127.0.0.1"; port 0: any free port. Returns null with `error` set if the server cannot
+  /// listen. setup.
   static std::unique_ptr<ModbusServer> tcp(const std::string& address, int port, const ModbusLayout& layout,
                                            std::string& error);
   /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; unit: 1..247. setup.
@@ -30,7 +30,7 @@ class ModbusServer : public CommandLink {
 
   HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
   std::uint32_t handles(int* handles, std::uint32_t room) const noexcept override;
-  /// The port that it listens on; 0 on a serial line.
+  /// Returns the port on which the server listens; 0 on a serial line.
   int port() const noexcept { return port_; }
 
  private:
