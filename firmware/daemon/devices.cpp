@@ -23,6 +23,7 @@
 #include "hal/linux/file_lock.h"
 #include "hal/linux/hardware_watchdog.h"
 #include "hal/linux/iio/iio_buffer.h"
+#include "hal/linux/modbus/modbus_input.h"
 #include "hal/linux/monotonic_clock.h"
 #include "hal/linux/sampled_input.h"
 #include "hal/linux/wake_up.h"
@@ -461,6 +462,10 @@ void Devices::say_held() const {
       std::fprintf(stderr, "vernierd: axis.%s.output was held at the end of its range in %llu ticks\n",
                    parts_->file.axes[output.axis].wiring.name.c_str(),
                    static_cast<unsigned long long>(output.device->held_at_end()));
+  for (const auto& [place, line] : parts_->lines)
+    if (line && line->wrong_answers() > 0)
+      std::fprintf(stderr, "vernierd: Modbus at %s: %llu answers were damaged or not to the request\n",
+                   place.c_str(), static_cast<unsigned long long>(line->wrong_answers()));
   for (const auto& [device, buffer] : parts_->buffers) {
     const IioBufferCounts& counts = buffer->counts();
     if (counts.skipped + counts.missing + counts.malformed + counts.broken == 0) continue;
