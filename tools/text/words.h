@@ -21,6 +21,11 @@ std::vector<std::string> parts_of(std::string_view text, char separator);
 /// "a,b": the words with a separator between them. tool.
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
 
+/// A text from outside as it may be shown on a terminal and written to JSON: control characters, marks that
+/// change the writing direction and bytes that are not UTF-8 become "?". Texts of a board come through this
+/// function (upload::Client). tool.
+std::string printable(std::string_view text);
+
 /// True if the brackets of a JSON text nest deeper than `most`. Text in strings does not count. Call this
 /// before the parser for any text from outside: deep nesting would exhaust the stack of the parser, or of
 /// code that walks its tree.

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "tests/unit/firmware/upload_rig.h"
+#include "tools/text/words.h"
 #include "tools/upload/client.h"
 
 namespace vernier::link_test {
@@ -72,6 +73,60 @@ TEST_F(LinkTest, WholeJourneyOfAnImage) {
   board.command(Command::kDeactivate);
   rig_.run(1000);
   EXPECT_EQ(board.newest().mode, Mode::kReady);
+}
+
+TEST(Printable, ReplacesControlsDirectionMarksAndWhatIsNotUtf8) {
+  const std::pair<std::string, std::string> kCases[] = {
+      {"mill 7/A", "mill 7/A"},
+      {"Fr\u00e4se \u2116 7 \U0001f6e0", "Fr\u00e4se \u2116 7 \U0001f6e0"},
+      {"\x1b]0;owned\x07", "?]0;owned?"},
+      {"a\tb\r\nc\x7f", "a?b??c?"},
+      {"\u009b31m", "?31m"},  // a C1 control in UTF-8
+      {"\x9b\x33", "?3"},     // and as one byte
+      {"\u202egpj.exe", "?gpj.exe"},
+      {"\xc0\x9b|\xe0\x80\x9b|\xed\xa0\x80", "??|???|???"},  // too long, a surrogate
+      {"\xe2\x82", "??"}};
+  for (const auto& [text, shown] : kCases) EXPECT_EQ(printable(text), shown);
+}
+
+TEST_F(LinkTest, NamesOfABoardHaveNoControlCharacters) {
+  rig_.run(10);
+  identity_.board = Name(std::string_view("\x1b[2Jmill"));
+  const Wiring wiring{{{"X\x1b[31m"}, {"Y"}}, {"T\x9b\x07"}};
+  Link link(const_cast<Exchange&>(rig_.service().exchange()), rig_.uploader(), wiring, TimeUs(1000),
+            identity_);
+  Client board(std::make_unique<Direct>(link, rig_));
+  EXPECT_EQ(board.info().board, "?[2Jmill");
+  EXPECT_EQ(board.info().axes[0].name, "X?[31m");
+  EXPECT_EQ(board.info().inputs[0], "T??");
+}
+
+/// A board that refuses each upload and names what is wrong as it likes.
+struct Refuses : Direct {
+  using Direct::Direct;
+  std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
+    if (request[0] != static_cast<std::uint8_t>(LinkOp::kConfirm)) return Direct::ask(request);
+    std::vector<std::uint8_t> reply = {request[0],
+                                       request[1],
+                                       static_cast<std::uint8_t>(LinkStatus::kRefused),
+                                       static_cast<std::uint8_t>(UploadFault::kForeignMachine),
+                                       0,
+                                       static_cast<std::uint8_t>(BindFault::kUnknownAxis)};
+    for (const char c : {'Q', '\x1b', '[', 'A'}) reply.push_back(static_cast<std::uint8_t>(c));
+    return reply;
+  }
+};
+
+TEST_F(LinkTest, ReasonOfARefusalHasNoControlCharacters) {
+  rig_.run(10);
+  Client board(std::make_unique<Refuses>(link_, rig_));
+  try {
+    board.confirm();
+    FAIL() << "refused";
+  } catch (const LimitNotMet& refusal) {
+    EXPECT_NE(std::string(refusal.what()).find("Q?[A"), std::string::npos) << refusal.what();
+    EXPECT_EQ(printable(refusal.what()), refusal.what());
+  }
 }
 
 /// Goes through the service's own link.
