@@ -11,6 +11,11 @@ namespace vernier {
 class CommandHandler {
  public:
   virtual ~CommandHandler() = default;
+  /// The connection of the next requests: a number that the link uses for no other connection later. A link
+  /// without connections does not call it. setup.
+  virtual void comes_over(std::uint64_t connection) { static_cast<void>(connection); }
+  /// That connection has ended. setup.
+  virtual void ends(std::uint64_t connection) { static_cast<void>(connection); }
   /// A reply that takes its time: a medium is at work.
   static constexpr std::uint32_t kLater = UINT32_MAX;
 

@@ -87,6 +87,7 @@ void World::start() {
   options.activate = true;
   options.ticks_kept = 64, options.touches_kept = 8;
   for (auto& byte : options.nonce) byte = static_cast<std::uint8_t>(random_());
+  for (auto& byte : options.seed) byte = static_cast<std::uint8_t>(~options.nonce[0]);
   for (int i = 0; i < 2; ++i) {
     options.limits.axis[i].own = true;
     options.limits.axis[i].limits = options.limits.linear;

@@ -84,7 +84,7 @@ std::vector<std::uint8_t> Client::request_of(LinkOp op, const std::vector<std::u
   SignedRequestHead head{};
   std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
   std::memcpy(head.nonce, challenge.nonce, sizeof(head.nonce));
-  head.counter = challenge.counter;
+  std::memcpy(head.challenge, challenge.challenge, sizeof(head.challenge));
   std::memcpy(head.board, info_.hello.board, sizeof(head.board));
   std::vector<std::uint8_t> rest;
   put(rest, static_cast<std::uint8_t>(op));

@@ -31,8 +31,11 @@ class ModbusConversation {
   ModbusConversation(const ModbusLayout& layout, int unit, InstantNs frame_time) noexcept
       : layout_(layout), unit_(unit), frame_time_(frame_time) {}
 
-  /// It counts as having asked something at `when`.
-  void begin(InstantNs when) noexcept { last_request_ = when; }
+  /// It counts as having asked something at `when`. connection: its number (CommandHandler::comes_over).
+  void begin(InstantNs when, std::uint64_t connection) noexcept {
+    last_request_ = when, connection_ = connection;
+  }
+  std::uint64_t connection() const noexcept { return connection_; }
 
   /// Where received bytes go, and how many fit now.
   std::uint8_t* space() noexcept { return in_ + used_; }
@@ -54,7 +57,6 @@ class ModbusConversation {
   /// If more clients connect than can be served, the one with the lowest number is removed: first a client
   /// that does not take its reply, then the client whose last request is oldest; never a client that waits
   /// for the medium.
-  /// medium.
   std::int64_t worth() const noexcept {
     return waiting() > 0 ? -1 : waits_for_reply_ ? INT64_MAX : last_request_.count;
   }
@@ -74,6 +76,7 @@ class ModbusConversation {
 
   ModbusLayout layout_;
   int unit_;
+  std::uint64_t connection_ = 0;
   InstantNs frame_time_, frame_began_, reply_began_, last_request_, last_byte_;
   std::uint8_t in_[kMostFrame] = {}, out_[kMostFrame] = {};
   std::uint32_t used_ = 0, out_size_ = 0, sent_ = 0;

@@ -105,7 +105,13 @@ bool ModbusServer::has_room(InstantNs now) const noexcept {
   return clients_.size() < kMostClients || first_to_go()->talk.worth() <= (now - kIdle).count;
 }
 
-void ModbusServer::accept_clients(InstantNs now) {
+void ModbusServer::remove(std::size_t client, CommandHandler& handler) noexcept {
+  handler.ends(clients_[client].talk.connection());
+  ::close(clients_[client].fd);
+  clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(client));
+}
+
+void ModbusServer::accept_clients(CommandHandler& handler, InstantNs now) {
   for (int i = 0; i < kMostAccepted && has_room(now); ++i) {
     const int fd = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd < 0) return;
@@ -114,13 +120,10 @@ void ModbusServer::accept_clients(InstantNs now) {
     const int buffer = 4096;
     ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
     ::setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &buffer, sizeof(buffer));
-    if (clients_.size() >= kMostClients) {
-      const auto first = first_to_go();
-      ::close(first->fd);
-      clients_.erase(first);
-    }
+    if (clients_.size() >= kMostClients)
+      remove(static_cast<std::size_t>(first_to_go() - clients_.begin()), handler);
     clients_.push_back({fd, ModbusConversation(layout_, unit_, frame_time_)});
-    clients_.back().talk.begin(now - kIdle + kIntroduction);
+    clients_.back().talk.begin(now - kIdle + kIntroduction, ++connections_);
   }
 }
 
@@ -171,11 +174,9 @@ HalFault ModbusServer::serve(CommandHandler& handler, TimeUs wait) noexcept {
     return errno == EINTR ? HalFault::kNone : HalFault::kRefused;
   const InstantNs now = now_ns();
   for (std::size_t i = clients_.size(); i-- > 0;) {
-    if (serve_client(clients_[i], handler, now) || line_ != nullptr) continue;
-    ::close(clients_[i].fd);
-    clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(i));
+    if (!serve_client(clients_[i], handler, now) && line_ == nullptr) remove(i, handler);
   }
-  if (listening_ >= 0) accept_clients(now);
+  if (listening_ >= 0) accept_clients(handler, now);
   return HalFault::kNone;
 }
 

@@ -41,7 +41,8 @@ class ModbusServer : public CommandLink {
 
   ModbusServer(const ModbusLayout& layout, int unit, InstantNs frame_time)
       : layout_(layout), unit_(unit), frame_time_(frame_time) {}
-  void accept_clients(InstantNs now);
+  void accept_clients(CommandHandler& handler, InstantNs now);
+  void remove(std::size_t client, CommandHandler& handler) noexcept;
   std::vector<Client>::const_iterator first_to_go() const noexcept;
   bool has_room(InstantNs now) const noexcept;
   bool serve_client(Client& client, CommandHandler& handler, InstantNs now) noexcept;
@@ -54,6 +55,7 @@ class ModbusServer : public CommandLink {
   _modbus* line_ = nullptr;  // of a serial line, which is the only client then
   int listening_ = -1, port_ = 0;
   std::vector<Client> clients_;
+  std::uint64_t connections_ = 0;  // so far
 };
 
 }  // namespace vernier

@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <random>
+#include <set>
 
 #include "tests/unit/firmware/upload_rig.h"
 #include "tools/text/words.h"
@@ -145,6 +148,7 @@ struct Through : Transport, CommandLink {
       return HalFault::kNone;
     }
     answer.resize(kMaxReplyBytes);
+    handler.comes_over(connection);
     answer.resize(handler.answer(pending.data(), static_cast<std::uint32_t>(pending.size()), answer.data()));
     return HalFault::kNone;
   }
@@ -157,6 +161,7 @@ struct Through : Transport, CommandLink {
   UploadRig& rig;
   LinkRights rights;
   std::uint16_t registers = 0;
+  std::uint64_t connection = 0;
   bool given = false;
   std::vector<std::uint8_t> pending, answer;
 };
@@ -264,13 +269,13 @@ TEST_F(GateTest, SignedRequestIsTakenOnceAndByThisStartOfThisBoardOnly) {
     return challenge;
   };
   const ChallengeReply challenge = challenge_of(*way_);
-  const auto request_with = [&](std::uint8_t nonce_bit, std::uint32_t counter, const char* board,
+  const auto request_with = [&](std::uint8_t nonce_bit, const ChallengeReply& answers, const char* board,
                                 Command command) {
     SignedRequestHead head{};
     std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
     std::memcpy(head.nonce, challenge.nonce, sizeof(head.nonce));
     head.nonce[3] = static_cast<std::uint8_t>(head.nonce[3] ^ nonce_bit);
-    head.counter = counter;
+    std::memcpy(head.challenge, answers.challenge, sizeof(head.challenge));
     std::memcpy(head.board, board, std::strlen(board));
     const std::vector<std::uint8_t> rest = {static_cast<std::uint8_t>(LinkOp::kCommand),
                                             static_cast<std::uint8_t>(command)};
@@ -284,21 +289,56 @@ TEST_F(GateTest, SignedRequestIsTakenOnceAndByThisStartOfThisBoardOnly) {
   const auto status = [&](const std::vector<std::uint8_t>& request) {
     return static_cast<LinkStatus>(way_->ask(request).at(2));
   };
-  const auto good = request_with(0, challenge.counter, "", Command::kHold);
-  EXPECT_EQ(status(request_with(1, challenge.counter, "", Command::kHold)), LinkStatus::kBadSignature);
-  EXPECT_EQ(status(request_with(0, challenge.counter, "mill-2", Command::kHold)), LinkStatus::kBadSignature);
+  const auto good = request_with(0, challenge, "", Command::kHold);
+  EXPECT_EQ(status(request_with(1, challenge, "", Command::kHold)), LinkStatus::kBadSignature);
+  EXPECT_EQ(status(request_with(0, challenge, "mill-2", Command::kHold)), LinkStatus::kBadSignature);
   std::vector<std::uint8_t> changed = good;
   changed.back() = static_cast<std::uint8_t>(Command::kActivate);
   EXPECT_EQ(status(changed), LinkStatus::kBadSignature);
   EXPECT_EQ(status(good), LinkStatus::kDone);
   EXPECT_EQ(status(good), LinkStatus::kStale) << "replayed";
-  EXPECT_EQ(status(request_with(0, challenge.counter + 5, "", Command::kHold)), LinkStatus::kStale)
-      << "of no challenge";
+  ChallengeReply guessed = challenge_of(*way_);
+  guessed.challenge[15] = static_cast<std::uint8_t>(guessed.challenge[15] ^ 1);
+  EXPECT_EQ(status(request_with(0, guessed, "", Command::kHold)), LinkStatus::kStale) << "of no challenge";
+  // A challenge belongs to its connection.
+  way_->connection = 1;
+  const auto of_first = request_with(0, challenge_of(*way_), "", Command::kHold);
+  way_->connection = 2;
+  const auto of_second = request_with(0, challenge_of(*way_), "", Command::kHold);
+  EXPECT_EQ(status(of_first), LinkStatus::kStale) << "over another connection";
+  EXPECT_EQ(status(of_second), LinkStatus::kDone) << "the attempt did not use it up";
+  way_->connection = 1;
+  EXPECT_EQ(status(of_first), LinkStatus::kDone);
   // What was held back on its way is worth nothing after ten seconds, though nothing else was signed since.
   const ChallengeReply later = challenge_of(*way_);
-  const auto held_back = request_with(0, later.counter, "", Command::kRelease);
+  const auto held_back = request_with(0, later, "", Command::kRelease);
   rig_.run(10'100);
   EXPECT_EQ(status(held_back), LinkStatus::kStale);
+}
+
+ChallengeBytes challenge_in(const ChallengeReply& reply) {
+  ChallengeBytes bytes;
+  std::memcpy(bytes.data(), reply.challenge, bytes.size());
+  return bytes;
+}
+
+// With a counter of 32 bits a used request was valid again 2^32 challenges later.
+TEST(Challenges, NeverRepeatAndDifferBetweenStarts) {
+  const BoardIdentity identity(new_key().public_part());
+  Gate gate(identity, Nonce{1}, ChallengeSeed{1}), same_nonce(identity, Nonce{1}, ChallengeSeed{2}),
+      same_seed(identity, Nonce{2}, ChallengeSeed{1});
+  std::set<ChallengeBytes> seen;
+  std::array<int, 128> ones{};
+  constexpr int kChallenges = 20'000;
+  for (int i = 0; i < kChallenges; ++i)
+    for (Gate* const one : {&gate, &same_nonce, &same_seed}) {
+      const ChallengeBytes bytes = challenge_in(one->challenge(LinkAccess::kUpload, {}, TimeUs(i)));
+      EXPECT_TRUE(seen.insert(bytes).second);
+      for (std::size_t bit = 0; bit < ones.size(); ++bit) ones[bit] += bytes[bit / 8] >> (bit % 8) & 1;
+    }
+  // Each bit is one in half of them, within six standard deviations of a fair coin.
+  const double mean = 1.5 * kChallenges, most = 6 * std::sqrt(0.75 * kChallenges);
+  for (const int count : ones) EXPECT_NEAR(count, mean, most);
 }
 
 TEST_F(LinkTest, RefusalTellsTheReason) {
