@@ -22,6 +22,8 @@ class CommandHandler {
   /// request: any bytes; reply: room for the longest. Returns the bytes of the reply, 0: no reply, or kLater:
   /// the link calls later() for it, and serves others meanwhile. setup.
   virtual std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) = 0;
+  /// True if the request of the last answer() had a valid signature. setup.
+  virtual bool was_signed() const { return false; }
   /// Argument for later(), valid right after answer() returned kLater. setup.
   virtual std::uint32_t ticket() const { return 0; }
   /// The deferred reply: its bytes, kLater while it is being made, 0 if no reply is pending. setup.

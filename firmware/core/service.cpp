@@ -226,6 +226,7 @@ HalFault Service::serve(CommandLink& link, TimeUs wait, const LinkRights& rights
 }
 
 std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) {
+  signed_ = false;
   if (Gate::is_challenge(request, size)) {
     const ChallengeReply challenge = gate_.challenge(rights_.access, caller_, now());
     std::memcpy(reply + kReplyHeaderBytes, &challenge, sizeof(challenge));
@@ -245,6 +246,7 @@ std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, s
   const bool may_need_store = options_.store_beside && Link::may_need_store(request, size);
   if (may_need_store && !desk_.free()) return Link::answer_busy(request, reply);
   const Gate::Opened opened = gate_.open(request, size, rights_.access, caller_, now());
+  signed_ = opened.is_signed;
   if (opened.status != LinkStatus::kDone) return Link::answer_with(opened.status, request, reply);
   if (!may_need_store || !Link::needs_store(opened.request, opened.size)) {
     const std::uint32_t answered = link_.answer(opened.request, opened.size, reply, now());

@@ -106,6 +106,7 @@ class Service : private CommandHandler {
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;
   void comes_over(std::uint64_t connection) override { caller_.connection = connection; }
   void ends(std::uint64_t connection) override { gate_.forget({caller_.link, connection}); }
+  bool was_signed() const override { return signed_; }
   std::uint32_t ticket() const override { return ticket_; }
   std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override {
     return desk_.collect(ticket, reply);
@@ -131,8 +132,9 @@ class Service : private CommandHandler {
   Runner runner_;
   Link link_;
   Gate gate_;
-  LinkRights rights_;  // of the link that is being served
-  Caller caller_;      // of the request that is being answered
+  LinkRights rights_;    // of the link that is being served
+  Caller caller_;        // of the request that is being answered
+  bool signed_ = false;  // the last request
   std::optional<Probing> probing_;
   StoreDesk desk_;
   std::uint32_t ticket_ = 0;  // the links'

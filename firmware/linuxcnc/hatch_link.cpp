@@ -24,6 +24,7 @@ HalFault HatchLink::serve(CommandHandler& handler, TimeUs wait) noexcept {
       handler.comes_over(call_.connection);
       size = handler.answer(call_.bytes, std::min(call_.size, Call::kMostBytes), reply);
       if (size == CommandHandler::kLater) call_.offset = handler.ticket();
+      call_.result = handler.was_signed() ? 1 : 0;
       break;
     case LinkCall::kLater:
       size = handler.later(call_.offset, reply);
@@ -55,7 +56,9 @@ bool HatchHandler::ask(LinkCall op, std::uint32_t offset, const std::uint8_t* by
 }
 
 std::uint32_t HatchHandler::answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) {
+  signed_ = false;
   if (size > Call::kMostBytes || !ask(LinkCall::kAnswer, 0, request, size)) return 0;
+  signed_ = hatch_.link.result == 1;
   if (hatch_.link.size == kLater) return ticket_ = hatch_.link.offset, kLater;
   std::copy_n(hatch_.link.bytes, std::min(hatch_.link.size, kMaxReplyBytes), reply);
   return hatch_.link.size;

@@ -27,6 +27,7 @@ class HatchHandler : public CommandHandler {
   void comes_over(std::uint64_t connection) override { connection_ = connection; }
   void ends(std::uint64_t connection) override;
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;
+  bool was_signed() const override { return signed_; }
   std::uint32_t ticket() const override { return ticket_; }
   std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override;
   void fill_registers(std::uint16_t* values) override;
@@ -40,6 +41,7 @@ class HatchHandler : public CommandHandler {
   const std::atomic<bool>& stop_;
   std::uint32_t ticket_ = 0;
   std::uint64_t connection_ = 0;
+  bool signed_ = false;
 };
 
 }  // namespace vernier

@@ -134,7 +134,6 @@ Gate::Opened Gate::open(const std::uint8_t* request, std::uint32_t size, LinkAcc
                         const Caller& from, TimeUs now) noexcept {
   Opened opened{LinkStatus::kDone, request, size};
   if (size < kRequestHeaderBytes || size > kMaxRequestBytes) return opened;
-  bool is_signed = false;
   if (request[0] == static_cast<std::uint8_t>(LinkOp::kSigned)) {
     constexpr std::uint32_t kHead = kRequestHeaderBytes + static_cast<std::uint32_t>(sizeof(SignedRequest));
     if (size <= kHead) return {LinkStatus::kBadLength, request, size};
@@ -142,7 +141,7 @@ Gate::Opened Gate::open(const std::uint8_t* request, std::uint32_t size, LinkAcc
     if (access_needed(inner) > access) return {LinkStatus::kNotAllowed, request, size};
     if (const LinkStatus status = check(request, size, from, now); status != LinkStatus::kDone)
       return {status, request, size};
-    is_signed = true;
+    opened.is_signed = true;
     inner_[0] = request[kHead];
     inner_[1] = request[1];
     opened.size = kRequestHeaderBytes + size - kHead - 1;
@@ -152,7 +151,7 @@ Gate::Opened Gate::open(const std::uint8_t* request, std::uint32_t size, LinkAcc
   const auto op = static_cast<LinkOp>(opened.request[0]);
   if (access_needed(op) > access)
     opened.status = LinkStatus::kNotAllowed;
-  else if (signature_needed(op) && !is_signed && !identity_.keys.empty())
+  else if (signature_needed(op) && !opened.is_signed && !identity_.keys.empty())
     opened.status = LinkStatus::kUnsigned;
   return opened;
 }

@@ -39,6 +39,7 @@ class Gate {
     LinkStatus status;
     const std::uint8_t* request;
     std::uint32_t size;
+    bool is_signed = false;  // with a valid signature
   };
   /// from: of the request; now: of any clock, the same as challenge()'s. setup.
   Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, const Caller& from,

@@ -54,12 +54,13 @@ class ModbusConversation {
   /// The peer sends a wrong length, is too slow, or does not take its reply: a connection must be closed. A
   /// serial line continues: the received bytes are discarded.
   bool broken(InstantNs now) noexcept;
-  /// If more clients connect than can be served, the one with the lowest number is removed: first a client
-  /// that does not take its reply, then the client whose last request is oldest; never a client that waits
-  /// for the medium.
-  std::int64_t worth() const noexcept {
-    return waiting() > 0 ? -1 : waits_for_reply_ ? INT64_MAX : last_request_.count;
-  }
+  /// A reply waits to be taken.
+  bool has_reply() const noexcept { return waiting() > 0; }
+  /// The client waits for the medium.
+  bool waits_for_medium() const noexcept { return waits_for_reply_; }
+  /// A request of the client had a valid signature.
+  bool is_signed() const noexcept { return signed_; }
+  InstantNs last_request() const noexcept { return last_request_; }
 
  private:
   bool tcp() const noexcept { return unit_ == 0; }
@@ -83,7 +84,7 @@ class ModbusConversation {
   std::uint8_t mailbox_[2 * kMostMailbox] = {};  // written by the peer
   std::uint8_t reply_[256] = {};
   std::uint32_t reply_size_ = 0, ticket_ = 0;
-  bool waits_for_reply_ = false, senseless_ = false;
+  bool waits_for_reply_ = false, senseless_ = false, signed_ = false;
 };
 
 /// CRC of an RTU frame (Modbus over Serial Line V1.02, 6.2.2).

@@ -341,6 +341,56 @@ TEST(Challenges, NeverRepeatAndDifferBetweenStarts) {
   for (const int count : ones) EXPECT_NEAR(count, mean, most);
 }
 
+/// A signed command that answers a challenge.
+std::vector<std::uint8_t> signed_hold(const SigningKey& key, const ChallengeReply& answers) {
+  SignedRequestHead head{};
+  std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
+  std::memcpy(head.nonce, answers.nonce, sizeof(head.nonce));
+  std::memcpy(head.challenge, answers.challenge, sizeof(head.challenge));
+  const std::vector<std::uint8_t> rest = {static_cast<std::uint8_t>(LinkOp::kCommand),
+                                          static_cast<std::uint8_t>(Command::kHold)};
+  const SignedRequest proof = sign_request(key, head, rest);
+  std::vector<std::uint8_t> request = {static_cast<std::uint8_t>(LinkOp::kSigned), 1};
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&proof);
+  request.insert(request.end(), bytes, bytes + sizeof(proof));
+  request.insert(request.end(), rest.begin(), rest.end());
+  return request;
+}
+
+// Four clients without a key that asked for challenges were enough.
+TEST(Challenges, OfOthersDoNotUseUpTheOperatorsOne) {
+  const SigningKey key = new_key();
+  const BoardIdentity identity(key.public_part());
+  Gate gate(identity, Nonce{1}, ChallengeSeed{1});
+  constexpr Caller kOperator{1, 1};
+  const auto opened = [&](const ChallengeReply& challenge) {
+    const auto request = signed_hold(key, challenge);
+    return gate
+        .open(request.data(), static_cast<std::uint32_t>(request.size()), LinkAccess::kCommand, kOperator,
+              TimeUs(2000))
+        .status;
+  };
+  // WHEN all other places of the operator's link ask a thousand times, and another link's, at any rate
+  ChallengeReply challenge = gate.challenge(LinkAccess::kCommand, kOperator, TimeUs(0));
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    gate.challenge(LinkAccess::kCommand, {1, 2 + i % 19}, TimeUs(1000));
+    gate.challenge(LinkAccess::kCommand, {2, i % 20}, TimeUs(1000));
+    gate.challenge(LinkAccess::kRead, {3, i}, TimeUs(1000));
+  }
+  EXPECT_EQ(opened(challenge), LinkStatus::kDone);
+  // WHEN another link opens ever new connections: ended ones leave no challenge, open ones use up their own
+  challenge = gate.challenge(LinkAccess::kCommand, kOperator, TimeUs(0));
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    gate.challenge(LinkAccess::kCommand, {2, 100 + i}, TimeUs(1000));
+    if (i % 2 == 0) gate.forget({2, 100 + i});
+  }
+  EXPECT_EQ(opened(challenge), LinkStatus::kDone);
+  gate.challenge(LinkAccess::kCommand, kOperator, TimeUs(0));
+  gate.forget(kOperator);
+  EXPECT_EQ(opened(gate.challenge(LinkAccess::kCommand, {1, 2}, TimeUs(0))), LinkStatus::kStale)
+      << "of another connection";
+}
+
 TEST_F(LinkTest, RefusalTellsTheReason) {
   rig_.run(10);
   Client board = client();
