@@ -18,7 +18,7 @@ struct AxisInput {
   std::int8_t sense = 0;        // -1, 0, +1: direction of the last motion
 };
 
-/// All that the error equation may depend on at one tick. Indices as in the image's axes and inputs.
+/// Values of one tick that the error equation may use. Indices as in the image's axes and inputs.
 struct CycleInput {
   AxisInput axis[kMaxAxes];
   InputMicro input[kMaxInputs];
@@ -43,7 +43,7 @@ enum class ChannelKind : std::uint8_t {
 };
 constexpr std::uint8_t kChannelKindCount = static_cast<std::uint8_t>(ChannelKind::kVisit) + 1;
 
-/// Turns one quantity of the CycleInput into the program's format: limit to [low, high], then
+/// Converts one quantity of the CycleInput to the program's format: limit to [low, high], then
 /// round(round(value / 2^pre_shift) * multiplier / 2^shift). 32 bytes, as in the image.
 struct Channel {
   ChannelKind kind;
@@ -61,8 +61,8 @@ static_assert(offsetof(Channel, kind) == 0 && offsetof(Channel, index) == 1 &&
               offsetof(Channel, multiplier) == 4 && offsetof(Channel, low) == 8 &&
               offsetof(Channel, high) == 16 && offsetof(Channel, wrap) == 24);
 
-/// Takes one result of the equation to an axis: deviation = round(register * multiplier / 2^shift) in axis
-/// counts.
+/// Converts one result of the equation to the deviation of an axis: round(register * multiplier / 2^shift) in
+/// axis counts.
 struct Output {
   std::uint16_t axis;
   std::uint16_t source;  // register
@@ -86,7 +86,8 @@ struct Program {
 };
 
 /// Deviation: actual minus nominal along an axis. Correction: the value that is added to the command of the
-/// axis. Axis counts. Two types prevent a mix of the signs.
+/// axis. Axis counts. Deviation and Correction are separate types, so that the compiler finds a mix of their
+/// signs.
 struct Deviation {
   std::int32_t counts = 0;
 };
@@ -100,7 +101,8 @@ constexpr Correction correction_for(Deviation deviation) noexcept {
 /// The correction of a linear axis as a length.
 constexpr LengthNm length_of(Correction correction) { return LengthNm(correction.counts); }
 
-/// Limits in force in this tick. They are always reported and never latched.
+/// Flags for the limits that act on the corrections in this tick. A flag is reported in each tick in which
+/// its limit acts; a flag is never latched.
 enum CycleFlag : std::uint32_t {
   kBeyondRange = 1u << 0,  // a channel outside its declared range: its edge was held
   kSaturated = 1u << 1,    // a correction at its limit
@@ -114,8 +116,8 @@ struct CycleOutput {
   std::uint32_t beyond_channels = 0;  // number of channels beyond their range
 };
 
-/// A value limited to the range of its channel, in the format of the program; monotone, so the limits give
-/// its range. realtime.
+/// Returns the value of an input of the tick, limited to the range of its channel, in the format of the
+/// program. The result is monotone, so the limits give the range. realtime.
 std::int32_t channel_value(const Channel& channel, std::int64_t value) noexcept;
 
 struct ShareProgram;
@@ -128,8 +130,8 @@ struct EquationState {
   LagState lag[kMaxLags] = {};
 };
 
-/// The printed form of a program (`vernier compile`, equation.cpp): deviations of the outputs, in their order
-/// and formats, from the channels. realtime.
+/// The printed form of a program (`vernier compile`, equation.cpp): computes the deviations of the outputs
+/// from the channels, in the order and formats of the program. realtime.
 using PrintedEquation = void (*)(const std::int32_t* channel, LagState* lag, bool starting,
                                  std::int32_t* deviation) noexcept;
 
@@ -140,13 +142,13 @@ class Compensator {
   /// setup.
   explicit Compensator(const Program& program) noexcept;
 
-  /// The correction of this tick. Call it once per tick (the program's slew and lags count ticks).
-  /// weight: 0..kFullWeight, the fraction of the correction applied (ramp-in, ramp-out). Never fails.
-  /// realtime.
+  /// Returns the correction of this tick. Call step() once per tick: the slew limit and the lags count ticks.
+  /// weight: 0..kFullWeight, the fraction of the correction that is applied (ramp-in, ramp-out). step() never
+  /// fails. realtime.
   CycleOutput step(const CycleInput& input, WeightQ16 weight = kFullWeight) noexcept;
 
-  /// The slew of an axis goes on from a correction that its drive already has, so that taking a program over
-  /// makes no step. setup.
+  /// Starts the slew limit of an axis from the correction that its drive already has. A change of the program
+  /// then makes no step. setup.
   void start_from(std::uint32_t axis, Correction held) noexcept { slew_[axis].start_from(held.counts); }
 
   /// Forgets lags and slew state: the next step starts from zero correction. setup.
@@ -156,8 +158,8 @@ class Compensator {
   /// Copies only existing channels and lags. realtime.
   void state(EquationState& state) const noexcept;
 
-  /// Runs the printed form instead of executing the program: the same corrections to the last bit, in a sixth
-  /// to a third of the instructions. equation: printed from this program. setup.
+  /// Makes step() run the printed form instead of the program. The corrections are identical to the last bit
+  /// and need a sixth to a third of the instructions. equation: printed from this program. setup.
   void use_printed(PrintedEquation equation) noexcept { printed_ = equation; }
   bool printed() const noexcept { return printed_ != nullptr; }
 

@@ -9,7 +9,7 @@
 
 namespace vernier {
 
-/// Limits that size the memory of the cycle and bound its time.
+/// Limits of a program: these constants fix the memory of the cycle and bound its time.
 constexpr std::uint32_t kMaxAxes = 8;
 constexpr std::uint32_t kMaxInputs = 24;
 constexpr std::uint32_t kMaxRegisters = 1024;
@@ -20,8 +20,8 @@ constexpr std::int32_t kMaxFactor = std::int32_t{1} << 30;
 constexpr unsigned kMaxShift = 61;
 
 /// Operation of an instruction on its operands a, b, c (registers, or an index where stated) and immediates
-/// k, l. All registers are int32 in a binary format that the compiler chose; this machine does not need to
-/// know it.
+/// k, l. All registers are int32 in a binary format that the compiler chose; the code here does not use the
+/// format.
 enum class OpCode : std::uint8_t {
   kLinear = 0,    // (a*k + b*l) >> shift, rounded
   kMultiply = 1,  // (a*b) >> shift, rounded
@@ -40,7 +40,8 @@ enum class OpCode : std::uint8_t {
 constexpr std::uint8_t kOpCodeCount = static_cast<std::uint8_t>(OpCode::kLag) + 1;
 
 /// One product of a sum of products: (register a * register b) >> shift, truncated. A factor may be one of
-/// the constants. The compiler gives the sum so many guard bits that the truncation does not show.
+/// the constants. The compiler gives the sum of products enough guard bits: the truncation has no visible
+/// effect.
 struct ProductTerm {
   std::uint16_t a, b;
   std::uint16_t shift;  // 0..62
@@ -50,7 +51,8 @@ static_assert(offsetof(ProductTerm, a) == 0 && offsetof(ProductTerm, b) == 2 &&
               offsetof(ProductTerm, shift) == 4);
 constexpr std::uint32_t kMaxTerms = 4096;
 
-/// One step of the straight-line program; its results go to the next registers. 16 bytes, as in the image.
+/// One step of the straight-line program; the results of the step go to the next registers. 16 bytes, as in
+/// the image.
 struct Instruction {
   OpCode op;
   std::uint8_t shift;
@@ -63,8 +65,8 @@ static_assert(offsetof(Instruction, op) == 0 && offsetof(Instruction, shift) == 
               offsetof(Instruction, c) == 6 && offsetof(Instruction, k) == 8 &&
               offsetof(Instruction, l) == 12);
 
-/// The error equation of a machine. The registers are first the constants, then the channels, then the
-/// results in order (static single assignment: an instruction reads only earlier registers). Non-owning.
+/// The error equation of a machine. Order of the registers: constants, channels, results. An instruction
+/// reads only earlier registers (static single assignment). Non-owning.
 struct Equation {
   View<std::int32_t> constants;
   std::uint32_t channel_count = 0;
@@ -80,17 +82,17 @@ struct Equation {
   constexpr std::uint32_t register_count() const { return first_result() + result_count; }
 };
 
-/// Number of results of an instruction; 0 if its table does not exist.
+/// Returns the number of results of an instruction; 0 if the table of the instruction does not exist.
 constexpr std::uint32_t results_of(const Instruction& step, View<ErrorTable> tables) noexcept {
   if (step.op == OpCode::kSineCosine) return 2;
   if (step.op != OpCode::kLookUp) return 1;
   return step.b < tables.size ? tables[step.b].columns : 0;
 }
 
-/// Executes a VERIFIED equation (comp/verify.h): the constants and channels are in `registers`, the results
-/// are added. registers: register_count() long; lags: lag_count states; `starting` puts every lag on its
-/// input. Time: one pass over the instructions. No overflow, no access outside, by the verifier's proof.
-/// realtime.
+/// Executes a VERIFIED equation (comp/verify.h). `registers` contains the constants and channels;
+/// run_equation adds the results. registers: register_count() long; lags: lag_count states; `starting` sets
+/// every lag to its input. Time of run_equation: one pass over the instructions. The verifier proves that
+/// run_equation has no overflow and no access outside the memory. realtime.
 void run_equation(const Equation& equation, std::int32_t* registers, LagState* lags, bool starting) noexcept;
 
 }  // namespace vernier

@@ -7,11 +7,12 @@
 
 namespace vernier {
 
-/// One as a fraction of a segment (Q30), reached at the far end of a segment.
+/// The number 1 as a fraction of a segment (Q30): the far end of the segment.
 constexpr std::int32_t kFractionOne = std::int32_t{1} << 30;
 
-/// The stretch between two neighbouring stations of a table, in counts of the position's register. Its ends
-/// are nodes: station i is the start of segment i, the last station the end of the last segment.
+/// The stretch between two neighbouring stations of a table, in counts of the position's register. The ends
+/// of a segment are stations: station i is the start of segment i, the last station is the end of the last
+/// segment.
 struct Segment {
   std::int32_t start;    // position of the station at the near end
   std::uint32_t length;  // to the next station, > 0
@@ -37,12 +38,13 @@ static_assert(offsetof(Wrap, first) == 0 && offsetof(Wrap, period) == 4 && offse
               offsetof(Wrap, shift) == 12);
 
 /// Errors of one axis as functions of its position: polynomial pieces between stations. All columns of a
-/// piece are beside each other; an interpolation reads one or two cache lines. Non-owning.
+/// piece are neighbours in memory: an interpolation reads one or two cache lines. Non-owning.
 ///
-/// Record of a piece: the four words of its Segment, then for each column its coefficients in the column's
-/// format, in powers of the fraction: two where degree is 1 (value at the near station, rise to the far one),
-/// four where it is 3. Node rule: station i is the start of piece i, the last station the end of the last
-/// piece. Edge rule: beyond the first and the last station their values hold.
+/// Record of a piece: the four words of its Segment, then the coefficients of each column in the column's
+/// format, in powers of the fraction. Degree 1: two coefficients (value at the near station, rise to the far
+/// station); degree 3: four. Node rule: station i is the start of piece i, the last station the end of the
+/// last piece. Edge rule: before the first station the table gives the value of the first station, after the
+/// last station the value of the last station.
 struct ErrorTable {
   const std::int32_t* records = nullptr;
   std::uint32_t pieces = 0;   // > 0
@@ -64,9 +66,10 @@ constexpr Segment segment_at(const std::int32_t* record) noexcept {
           static_cast<std::uint32_t>(record[3])};
 }
 
-/// Piece of an evenly spaced table. Exact within one count beyond a station, where both pieces have the same
-/// value; never a piece that starts beyond the position. Beyond the last station it is the last piece.
-/// position: from the first station on. One multiplication. realtime.
+/// Piece of an evenly spaced table. grid_piece is exact within one count beyond a station, where both pieces
+/// have the same value. A piece that starts beyond the position is never returned. Beyond the last station
+/// grid_piece returns the last piece. position: at or after the first station. grid_piece needs one
+/// multiplication. realtime.
 constexpr std::uint32_t grid_piece(const ErrorTable& table, std::int32_t position) noexcept {
   const std::uint64_t inside =
       static_cast<std::uint32_t>(position) - static_cast<std::uint32_t>(table.records[0]);
@@ -74,9 +77,9 @@ constexpr std::uint32_t grid_piece(const ErrorTable& table, std::int32_t positio
   return static_cast<std::uint32_t>(lower<std::uint64_t>(piece, table.pieces - 1));
 }
 
-/// Number of the piece that contains `position`, which is not before the first station; beyond the last
-/// station it is the last piece. The work depends only on the table, never on the position: one
-/// multiplication if the stations are even, else a branch-free bisection. realtime.
+/// Returns the number of the piece that contains `position`; beyond the last station the last piece.
+/// position: at or after the first station. The work of piece_of depends only on the table, not on the
+/// position: one multiplication for evenly spaced stations, else a bisection without branches. realtime.
 constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position) noexcept {
   if (table.grid_multiplier != 0) return grid_piece(table, position);
   std::uint32_t base = 0;
@@ -88,9 +91,9 @@ constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position)
   return base;
 }
 
-/// Position within the segment as a fraction 0..kFractionOne (Q30), for a position not before its start;
-/// limited to one beyond the end. Truncates: error < 2^-30 + 2^-31 of the segment, exact at both ends (the
-/// verifier accepts no reciprocal that misses one at the far end). realtime.
+/// Returns the position within the segment as a fraction 0..kFractionOne (Q30); limited to 1 beyond the end.
+/// position: at or after the start of the segment. fraction_in truncates: error < 2^-30 + 2^-31 of the
+/// segment, exact at both ends (the verifier rejects a reciprocal that misses 1 at the far end). realtime.
 constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position) noexcept {
   const std::uint32_t distance =
       static_cast<std::uint32_t>(position) - static_cast<std::uint32_t>(segment.start);
@@ -98,22 +101,23 @@ constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position
   return static_cast<std::int64_t>((inside * segment.reciprocal) >> segment.shift);
 }
 
-/// Value between two stations: near + fraction * rise, c = {near, rise}, rounded once, ties up (<= 1/2 LSB of
-/// the column). Stays within the two; product < 2^62. realtime.
+/// Returns the value between two stations: near + fraction * rise, c = {near, rise}, rounded once, ties up
+/// (<= 1/2 LSB of the column). Stays within the two; product < 2^62. realtime.
 constexpr std::int32_t linear_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   return c[0] + narrow(round_shift(c[1] * fraction, 30));
 }
 
-/// Value of the cubic c[0] + f (c[1] + f (c[2] + f c[3])), f the fraction (Q30), all in the column's format.
-/// The inner two products are truncated, the last is rounded: together within -5/2 and +1/2 LSB. Every
-/// partial sum is below 2^31 (proved by the verifier). realtime.
+/// Returns the value of the cubic c[0] + f (c[1] + f (c[2] + f c[3])), f the fraction (Q30), all in the
+/// column's format. The inner two products are truncated, the last is rounded: together within -5/2 and +1/2
+/// LSB. Every partial sum of the cubic is below 2^31 (proved by the verifier). realtime.
 constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   const std::int32_t second = c[2] + narrow((c[3] * fraction) >> 30);
   const std::int32_t first = c[1] + narrow((second * fraction) >> 30);
   return c[0] + narrow(round_shift(first * fraction, 30));
 }
 
-/// Values of kColumns columns of one record. Recursion, so that the compiler removes the loop. realtime.
+/// Computes the values of kColumns columns of one record. piece_values is recursive, so that the compiler
+/// removes the loop. realtime.
 template <unsigned kDegree, unsigned kColumns>
 constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::int32_t* out) noexcept {
   static_assert(kDegree == 1 || kDegree == 3);
@@ -121,9 +125,9 @@ constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::i
   if constexpr (kColumns > 1) piece_values<kDegree, kColumns - 1>(c + kDegree + 1, fraction, out + 1);
 }
 
-/// All columns of a table at `position`; the table has kDegree and kColumns. out: kColumns values, each in
-/// the format of its column. Error: <= 1/2 LSB of the column (linear) or 5/2 LSB (cubic), and the fraction's
-/// 2^-29 of the rise. realtime.
+/// Interpolates all columns of a table at `position`. The table has kDegree and kColumns. out: kColumns
+/// values, each in the format of its column. Error: <= 1/2 LSB of the column (linear) or 5/2 LSB (cubic), and
+/// the fraction's 2^-29 of the rise. realtime.
 template <unsigned kDegree, unsigned kColumns>
 inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
@@ -132,7 +136,8 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
   piece_values<kDegree, kColumns>(record + kSegmentWords, fraction_in(segment_at(record), held), out);
 }
 
-/// The same for degree and columns that are known only at run time; the same values. realtime.
+/// Interpolates like look_up<kDegree, kColumns>, with the degree and number of columns read from the table at
+/// run time. The values are identical. realtime.
 inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
   const std::int32_t* const record = table.record(piece_of(table, held));
@@ -146,9 +151,9 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
   }
 }
 
-/// position brought into [first, first + period) by whole periods. Exact if the verifier accepted the wrap
-/// for the range of the position: the estimate of the number of periods then has an error of one at most.
-/// realtime.
+/// position brought into [first, first + period) by whole periods. wrapped() is exact if the verifier
+/// accepted the wrap for the range of the position: then the estimated number of periods has an error of at
+/// most 1. realtime.
 inline std::int32_t wrapped(const Wrap& wrap, std::int32_t position) noexcept {
   const std::int64_t distance = std::int64_t{position} - wrap.first;
   const std::int64_t periods = (distance * wrap.reciprocal) >> wrap.shift;

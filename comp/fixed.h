@@ -26,8 +26,9 @@ constexpr std::int64_t round_shift(std::int64_t value, unsigned shift) noexcept 
   return (value + half) >> shift;
 }
 
-/// A register's value in flight: at least 32 bits, the size that the processor multiplies fastest. It holds
-/// an int32 on every target (proved by the verifier), so that results do not depend on its width.
+/// A register's value in flight: at least 32 bits, the size that the processor multiplies fastest. A Word
+/// holds an int32 on every target (proved by the verifier), so that results do not depend on the width of
+/// Word.
 using Word = std::int_fast32_t;
 
 /// A value that the caller has proved to fit int32, as a Word: no instruction if Word has 64 bits. realtime.
@@ -36,14 +37,15 @@ constexpr Word word_of(std::int64_t value) noexcept { return static_cast<Word>(v
 /// The low 32 bits of a value that the caller has proved to fit (program verifier). realtime.
 constexpr std::int32_t narrow(std::int64_t value) noexcept { return static_cast<std::int32_t>(value); }
 
-/// Returns value if it fits int32, else the nearest limit; then `saturated` is set (never cleared). realtime.
+/// Returns value if the value fits int32, else the nearest limit of int32 and sets `saturated`. `saturated`
+/// is never cleared. realtime.
 constexpr std::int32_t saturate(std::int64_t value, bool& saturated) noexcept {
   const std::int64_t limited = clamp<std::int64_t>(value, INT32_MIN, INT32_MAX);
   saturated = saturated || limited != value;
   return narrow(limited);
 }
 
-/// a * b, exact: two registers' values, below 2^62. realtime.
+/// Returns a * b, exact: the product of two register values, below 2^62. realtime.
 constexpr std::int64_t product(Word a, Word b) noexcept { return std::int64_t{a} * b; }
 
 /// a * b / 2^shift. a: format Qm, b: Qn, result: Q(m+n-shift); 64-bit product, one rounding (<= 1/2 LSB).

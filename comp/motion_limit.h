@@ -6,20 +6,20 @@
 
 namespace vernier {
 
-/// An acceleration that limits nothing: any distance is covered in one tick.
+/// An acceleration so large that it limits nothing: any distance is covered in one tick.
 constexpr std::int64_t kAnyAcceleration = std::int64_t{1} << 40;
 
-/// Most that a correction may move its axis, in counts a tick, and change that by, in counts a tick each
-/// tick.
+/// Limits of a correction: the largest change in counts per tick, and the largest change of this change, in
+/// counts per tick per tick.
 struct MotionBounds {
   std::int64_t slew = INT32_MAX;                 // 0 .. 2^31 - 1
   std::int64_t acceleration = kAnyAcceleration;  // 1 .. 2^31 - 1, or that
 };
 
-/// Moves a value towards its target within a speed and an acceleration, and brakes in time: it does not
-/// overshoot a target at rest. |change| <= slew and |change of change| <= acceleration hold for every
-/// sequence of targets while the limits do not change. A target that comes nearer than the braking distance
-/// is overshot, within the acceleration.
+/// Moves a value towards its target within a speed and an acceleration limit. The value brakes in time: it
+/// does not overshoot a target at rest. |change| <= slew and |change of change| <= acceleration hold for
+/// every sequence of targets while the limits do not change. A target that comes nearer than the braking
+/// distance is overshot, within the acceleration.
 class MotionLimit {
  public:
   /// target: counts, |target| <= 2^31. Returns the new value. Time: constant (31 steps). realtime.
@@ -39,9 +39,9 @@ class MotionLimit {
   /// Sets the value, with speed zero: a drive that refused to move, or a start.
   constexpr void stop_at(std::int64_t value) noexcept { value_ = value, speed_ = 0; }
 
-  /// A speed from which `way` counts are enough to stop: (v + a/2)^2 <= 2 a way. This is at least the sum v +
-  /// (v - a) + (v - 2a) ... of the ticks to a stop, and at most a/8 more; `way` itself if one tick is enough.
-  /// way: >= 0; acceleration: as in MotionBounds; both sides stay below 2^64. realtime.
+  /// A speed from which `way` counts are enough to stop: (v + a/2)^2 <= 2 a way. The result is at least the
+  /// sum v + (v - a) + (v - 2a) ... of the ticks to a stop, and at most a/8 more; `way` if one tick is
+  /// enough. way: >= 0; acceleration: as in MotionBounds; both sides stay below 2^64. realtime.
   static constexpr std::int64_t braking_speed(std::int64_t way, std::int64_t acceleration) noexcept {
     if (way <= acceleration) return way;
     const auto a = static_cast<std::uint64_t>(acceleration);

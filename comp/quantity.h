@@ -6,8 +6,8 @@
 namespace vernier {
 
 /// One integer with its unit in the type. Conversion to or from a bare integer is always explicit; sums and
-/// differences keep the unit. No operation saturates or wraps on purpose: callers keep the ranges. Context:
-/// realtime.
+/// differences keep the unit. The operators of Quantity have no saturation and no check of overflow: callers
+/// keep the ranges. Context: realtime.
 template <class Unit, class Integer>
 struct Quantity {
   using Count = Integer;
@@ -50,14 +50,14 @@ using LengthNm = Quantity<unit::Nanometre, std::int32_t>;
 using AngleNrad = Quantity<unit::Nanoradian, std::int32_t>;
 /// Position of a linear axis; 64 bit because 20 m at 1 nm do not fit 32.
 using PositionNm = Quantity<unit::NanometrePosition, std::int64_t>;
-/// Position of a rotary axis in 2^-32 turn; whole turns above bit 32, so that a rollover is a mask.
+/// Position of a rotary axis in 2^-32 turn. Whole turns are above bit 32, so that a mask removes them.
 using TurnsQ32 = Quantity<unit::TurnFraction, std::int64_t>;
 /// A temperature, 1 mK above absolute zero or as a difference.
 using TempMilliK = Quantity<unit::Millikelvin, std::int32_t>;
 /// A time or a duration.
 using TimeUs = Quantity<unit::Microsecond, std::int64_t>;
-/// A moment of a monotonic clock, or the time between two; finer than TimeUs because a tick computes for
-/// about one microsecond and a probe's edge is stamped in nanoseconds.
+/// A moment of a monotonic clock, or a duration. Finer than TimeUs, because a tick computes for about one
+/// microsecond and a probe's edge has a time in nanoseconds.
 using InstantNs = Quantity<unit::InstantNanosecond, std::int64_t>;
 
 /// Motion of an axis, in the axis' own count: 1 nm (linear) or 2^-32 turn (rotary); per s, per s^2.
@@ -70,7 +70,7 @@ using AxisAcceleration = Quantity<unit::AxisAccelerationCount, std::int64_t>;
 using FeedNmPerMin = Quantity<unit::FeedNanometrePerMinute, std::int64_t>;
 /// Path curvature, 1e-9 per mm.
 using CurvatureNanoPerMm = Quantity<unit::CurvatureNanoPerMillimetre, std::int64_t>;
-/// A measured input, 1e-6 of the unit that the machine file declares for it (degC, V, N ...).
+/// A measured input in 1e-6 of the unit that the machine file declares for the input (degC, V, N ...).
 using InputMicro = Quantity<unit::InputMicro, std::int64_t>;
 /// Rows (stops) since the start of the run.
 using VisitCount = Quantity<unit::Visit, std::int64_t>;
@@ -78,7 +78,7 @@ using VisitCount = Quantity<unit::Visit, std::int64_t>;
 using WeightQ16 = Quantity<unit::WeightQ16, std::int32_t>;
 
 constexpr WeightQ16 kFullWeight{65536};
-/// Counts of one turn of a rotary axis.
+/// Number of counts in one turn of a rotary axis.
 constexpr std::int64_t kTurnCounts = std::int64_t{1} << 32;
 
 /// A reading of a thermometer for an input declared in degC. absolute: mK above absolute zero.

@@ -7,22 +7,22 @@
 
 namespace vernier {
 
-/// Sine and cosine of one angle, 30 fraction bits.
+/// Sine and cosine of the same angle, 30 fraction bits.
 struct SineCosine {
   std::int32_t sine, cosine;
 };
 
-/// Largest |result| of sine_cosine: one and its error.
+/// Largest |result| of sine_cosine: 1 plus the error of sine_cosine.
 constexpr std::int32_t kSineLimit = (std::int32_t{1} << 30) + 2;
 
-/// Proved bound of |result - exact| in thousandths of 2^-30: rounding of the node 500 (and 500 times 0.0062
-/// for the other one), omitted terms of the series 63, its truncations 50, the last rounding 500.
+/// Proved bound of |result - exact| in thousandths of 2^-30. Parts: rounding of the node 500 (and 500 times
+/// 0.0062 for the other node), omitted terms 63, truncations of the series 50, last rounding 500.
 constexpr std::int32_t kSineErrorMilliLsb = 1120;
 
-/// Sine and cosine of `turns`, 2^-32 turn, any value: the whole circle without an edge. Nearest of 512 nodes,
-/// then the angle d from it (|d| <= pi/512) by the addition theorem with sin d = d - d^3/6 (remainder below
-/// 8e-14) and cos d = 1 - d^2/2 (remainder d^4/24 < 6e-11), in 37 fraction bits. No branch, no division; the
-/// work never depends on the angle. realtime.
+/// Sine and cosine of `turns`, 2^-32 turn, any value: the whole circle without an edge. Method: take the
+/// nearest of 512 nodes, then add the angle d from the node (|d| <= pi/512) by the addition theorem, in 37
+/// fraction bits. sin d = d - d^3/6 (remainder below 8e-14), cos d = 1 - d^2/2 (remainder d^4/24 < 6e-11).
+/// sine_cosine has no branch and no division; the work does not depend on the angle. realtime.
 constexpr SineCosine sine_cosine(std::uint32_t turns) noexcept {
   constexpr std::int64_t kRadPerCount = 1686629713;  // 2 pi 2^(37 + 23 - 32), rounded
   constexpr std::int64_t kSixth = 715827883;         // 2^32 / 6
@@ -37,8 +37,8 @@ constexpr SineCosine sine_cosine(std::uint32_t turns) noexcept {
           narrow(at.cosine - round_shift(at.sine * sine + at.cosine * bend, 37))};
 }
 
-/// Angle in a register's format as turns: angle * multiplier / 2^shift, truncated, modulo one turn. The
-/// product is below 2^62. realtime.
+/// Converts an angle in a register's format to turns: angle * multiplier / 2^shift, truncated, modulo one
+/// turn. The product is below 2^62. realtime.
 constexpr std::uint32_t turns_of(std::int32_t angle, std::int32_t multiplier, unsigned shift) noexcept {
   return static_cast<std::uint32_t>((std::int64_t{angle} * multiplier) >> shift);
 }

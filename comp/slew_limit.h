@@ -6,8 +6,8 @@
 
 namespace vernier {
 
-/// Moves a value towards its target by at most `step` a tick. The invariant |change| <= step holds for every
-/// sequence of targets. Moving to a correction is thereby separate from looking it up.
+/// Moves a value towards its target by at most `step` per tick. The invariant |change| <= step holds for
+/// every sequence of targets. SlewLimit separates the motion of a correction from its table interpolation.
 class SlewLimit {
  public:
   /// target: counts; step: counts a tick, >= 0. Returns the new value. realtime.
@@ -19,9 +19,9 @@ class SlewLimit {
     return value_;
   }
   constexpr std::int32_t value() const noexcept { return value_; }
-  /// True if the last step could not reach its target.
+  /// True if the value did not reach its target in the last step.
   constexpr bool limiting() const noexcept { return moving_; }
-  /// Continues from another value than the present one.
+  /// Continues from `value` instead of the present value.
   constexpr void start_from(std::int32_t value) noexcept { value_ = value, moving_ = false; }
   constexpr void reset() noexcept { value_ = 0, moving_ = false; }
 

@@ -21,32 +21,33 @@ enum class ProgramFault : std::uint8_t {
   kOutput = 10,   // output axis, source, shift or limits out of range
 };
 
-/// All values that a register can take, for all inputs.
+/// Smallest and largest value that a register can have, for all inputs.
 struct ValueRange {
   std::int64_t low = 0;
   std::int64_t high = 0;
 };
 
 /// Proves by interval analysis of the integers that no run of the program can overflow, shift wrongly or read
-/// outside. ranges: room for kMaxRegisters, gets the range of every register. Assumes only the sizes of the
-/// views. setup.
+/// outside the memory. ranges: room for kMaxRegisters; receives the range of every register. Assumes only the
+/// sizes of the views. setup.
 ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept;
 
-/// How much a tick of a verified program, or one evaluation of its shares, does: about one for each product
-/// of a sum. Instructions, terms, steps of searches, columns, sines and lags are counted with the weights
-/// that they were measured to have against each other (tests/bench/weights). setup.
+/// Returns the work of one tick of a verified program, or of one evaluation of its shares. Unit: about one
+/// product of a sum. Instructions, terms, steps of searches, columns, sines and lags are weighted.
+/// tests/bench/weights measured the weights. setup.
 std::uint64_t work_of(const Equation& equation, std::uint32_t channels) noexcept;
 
-/// Lines of memory (64 bytes) that the tables of one run may read, with empty caches: the steps of a search
-/// that are further apart than a line, and the record found. setup.
+/// Returns the number of cache lines (64 bytes) of the tables that one run may read when the caches are
+/// empty: the steps of a search that are further apart than a line, and the record found. setup.
 std::uint64_t lines_of(const Equation& equation) noexcept;
 
-/// Whether grid_piece finds every piece from one count after its start to one before its end; at a station
-/// both neighbours have the same value. The segments must be in order. setup.
+/// True if grid_piece finds every piece from one count after its start to one count before its end. At a
+/// station both neighbours have the same value. The segments must be in order. setup.
 bool grid_finds_every_piece(const ErrorTable& table) noexcept;
 
-/// Ranges of the results of one instruction (results_of many), given the ranges of all earlier registers; the
-/// compiler chooses formats with it. `position` is the first register that the instruction writes. setup.
+/// Computes the ranges of the results of one instruction (results_of many) from the ranges of all earlier
+/// registers. The compiler chooses formats with these ranges. `position` is the first register that the
+/// instruction writes. setup.
 ProgramFault range_of(const Equation& equation, const Instruction& step, std::uint32_t position,
                       const ValueRange* ranges, ValueRange* results) noexcept;
 

@@ -4,9 +4,9 @@
 
 namespace vernier {
 
-/// A two's complement integer of 128 bits in two words, for exact sums beyond 64 bits. Every operation is
-/// modulo 2^128: a result that fits is exact even if intermediate values overflow. The same bits on every
-/// target.
+/// A two's complement integer of 128 bits in two words, for exact sums beyond 64 bits. Every operation of
+/// Wide is modulo 2^128: a result that fits is exact even if intermediate values overflow. Results of Wide
+/// have the same bits on every target.
 struct Wide {
   std::uint64_t high = 0, low = 0;
   constexpr bool operator==(const Wide&) const = default;
@@ -27,7 +27,7 @@ constexpr Wide operator-(Wide a, Wide b) noexcept {
 }
 constexpr Wide operator-(Wide a) noexcept { return Wide{} - a; }
 
-/// a * b of two unsigned words, exact: four products of halves. realtime.
+/// Returns the exact product of two unsigned words, as four products of halves. realtime.
 constexpr Wide long_product(std::uint64_t a, std::uint64_t b) noexcept {
   constexpr std::uint64_t kHalf = 0xffffffff;
   const std::uint64_t low = (a & kHalf) * (b & kHalf);
@@ -36,7 +36,7 @@ constexpr Wide long_product(std::uint64_t a, std::uint64_t b) noexcept {
   return {(a >> 32) * (b >> 32) + (left >> 32) + (right >> 32), (right << 32) | (low & kHalf)};
 }
 
-/// a * b modulo 2^128. realtime.
+/// Returns a * b modulo 2^128. realtime.
 constexpr Wide operator*(Wide a, Wide b) noexcept {
   Wide result = long_product(a.low, b.low);
   result.high += a.low * b.high + a.high * b.low;

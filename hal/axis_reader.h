@@ -5,7 +5,8 @@
 
 namespace vernier {
 
-/// State of one axis from its controller: counts of the axis (1 nm, or 2^-32 turn), per s, per s^2.
+/// State of one axis as its controller gives it: counts of the axis (1 nm, or 2^-32 turn), counts per s,
+/// counts per s^2.
 struct AxisReading {
   AxisPosition position;
   AxisSpeed velocity;
@@ -16,7 +17,7 @@ struct AxisReading {
   bool restarted = false;  // counts from another zero than the reading before: the difference is no travel
 };
 
-/// State of the path from its controller.
+/// State of the path as its controller gives it.
 struct PathReading {
   FeedNmPerMin feed;
   bool tells_feed = false;  // else the firmware takes the speed of the linear axes together
@@ -28,15 +29,15 @@ struct PathReading {
 class AxisReader {
  public:
   virtual ~AxisReader() = default;
-  /// A tick of the firmware begins: readings that came in until now are those of this tick, and stay the same
-  /// until the next call. Never waits. realtime.
+  /// Begins a tick of the firmware. Readings that came in until now are the readings of this tick and do not
+  /// change until the next call. begin_tick() never waits. realtime.
   virtual void begin_tick() noexcept {}
   /// Newest reading of an axis. kNoReading: no reading since the last tick. realtime.
   virtual HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept = 0;
-  /// Feed and curvature, as far as the controller knows them. realtime.
+  /// Reads feed and curvature of the path, as far as the controller knows them. realtime.
   virtual HalFault read_path(PathReading& reading) noexcept = 0;
-  /// True if the controller itself gives velocity, acceleration, direction and since. If not, only position
-  /// is filled and the firmware derives the rest. setup.
+  /// True if the controller itself gives velocity, acceleration, direction and since. If false, only the
+  /// position is filled and the firmware derives the other values. setup.
   virtual bool gives_motion() const noexcept = 0;
 };
 

@@ -11,7 +11,7 @@
 
 namespace vernier {
 
-/// All devices of a board, non-owning. Null: not wired.
+/// All devices of a board; the pointers do not own the devices. Null: the board does not have the device.
 struct Board {
   Clock& clock;
   AxisReader& axes;

@@ -9,10 +9,11 @@ namespace vernier {
 class CorrectionWriter {
  public:
   virtual ~CorrectionWriter() = default;
-  /// correction: axis counts (1 nm, or 2^-32 turn). After a fault the device holds the old or the new value.
+  /// correction: axis counts (1 nm, or 2^-32 turn). After a fault the device has the old or the new value.
   /// realtime.
   virtual HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept = 0;
-  /// Output of the device for a correction: the same value, or the end of its range. realtime.
+  /// Returns the output of the device for a correction: the correction, or the end of the device's range.
+  /// realtime.
   virtual AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept {
     return static_cast<void>(axis), correction;
   }

@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// A line that is on or off, after its polarity is applied, as the machine controller sets it.
+/// A line that the machine controller sets on or off; the polarity is already applied.
 class DigitalInput {
  public:
   virtual ~DigitalInput() = default;
@@ -16,7 +16,7 @@ class DigitalInput {
 class DigitalOutput {
  public:
   virtual ~DigitalOutput() = default;
-  /// kRefused: the line may be as it was. realtime.
+  /// kRefused: the line may have its old state. realtime.
   virtual HalFault write_line(bool on) noexcept = 0;
 };
 

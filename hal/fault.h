@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// Reason why a device could not execute a call. A read that fails does not change its result.
+/// Reason why a device could not execute a call. A failed read does not change its result argument.
 enum class HalFault : std::uint8_t {
   kNone,
   kNoReading,  // no answer of the device in time, or no reading yet

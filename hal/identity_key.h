@@ -6,7 +6,8 @@
 
 namespace vernier {
 
-/// The board's own key pair (Ed25519). It is made on the board, and the secret half never leaves the board.
+/// The board's own key pair (Ed25519). The key pair is made on the board; the secret half never leaves the
+/// board.
 class IdentityKey {
  public:
   static constexpr std::uint32_t kPublicBytes = 32, kSignatureBytes = 64;

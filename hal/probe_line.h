@@ -15,10 +15,11 @@ struct ProbeEdge {
 class ProbeLine {
  public:
   virtual ~ProbeLine() = default;
-  /// Oldest edge that has not been read yet. kNoReading: no edge is waiting. kRefused: edges were lost since
-  /// the last call; the next call continues with the remaining edges. Never waits. realtime.
+  /// Reads the oldest edge that has not been read yet. kNoReading: no edge is waiting. kRefused: edges were
+  /// lost since the last call; the next call continues with the remaining edges. read_edge() never waits.
+  /// realtime.
   virtual HalFault read_edge(ProbeEdge& edge) noexcept = 0;
-  /// Largest distance of `at` from the edge; 0 if the device does not know. setup.
+  /// Returns the largest time between `at` and the edge; 0 if the device does not know this time. setup.
   virtual InstantNs resolution() const noexcept = 0;
 };
 

@@ -8,16 +8,16 @@ namespace vernier {
 
 /// Memory that survives a power failure: two slots for images, and two places for a small record. A write
 /// that is cut leaves any mixture of old and new bytes in the stretch that was being written; no other byte
-/// changes. Never called in the tick.
+/// changes. A SlotStore is never used in the tick.
 class SlotStore {
  public:
   virtual ~SlotStore() = default;
-  /// Bytes that a slot holds.
+  /// Returns the number of bytes that a slot can contain.
   virtual std::uint32_t capacity() const noexcept = 0;
-  /// kNoReading: the slot was never written; a flash may return the contents of an erased one, all bits one.
-  /// kRefused: the slot contains fewer bytes than requested, or it cannot be read. setup.
+  /// kNoReading: the slot was never written. A flash may instead return the contents of an erased slot, all
+  /// bits one. kRefused: the slot contains fewer bytes than requested, or cannot be read. setup.
   virtual HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept = 0;
-  /// Returns when the bytes are on the medium. kRefused: they may be there in part. setup.
+  /// Returns when the bytes are on the medium. kRefused: the medium may have a part of the bytes. setup.
   virtual HalFault write_record(std::uint32_t place, const std::uint8_t* bytes,
                                 std::uint32_t size) noexcept = 0;
   /// kNoReading: beyond the written bytes. setup.
@@ -26,7 +26,7 @@ class SlotStore {
   /// kNoDevice: beyond the capacity; kRefused: the medium is full or broken. setup.
   virtual HalFault write_image(std::uint32_t slot, std::uint32_t offset, const std::uint8_t* bytes,
                                std::uint32_t size) noexcept = 0;
-  /// Cuts the slot to `size` bytes and returns when they are on the medium. setup.
+  /// Cuts the slot to `size` bytes and returns when the bytes are on the medium. setup.
   virtual HalFault finish_image(std::uint32_t slot, std::uint32_t size) noexcept = 0;
 };
 

@@ -5,12 +5,12 @@
 
 namespace vernier {
 
-/// The controller's sign that its cycle begins, which starts a tick.
+/// The controller's signal that its cycle begins; each signal starts a tick.
 class TickSync {
  public:
   virtual ~TickSync() = default;
   /// Waits for the next sync signal. kNoReading: no signal came until `latest`; kRefused: the device is
-  /// broken, returned immediately. Several signals since the last call count as one. realtime.
+  /// broken, returned immediately. Several signals since the last call count as one signal. realtime.
   virtual HalFault wait_for_sync(InstantNs latest) noexcept = 0;
 };
 

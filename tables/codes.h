@@ -2,11 +2,11 @@
 #pragma once
 #include <cstdint>
 
-/// The state of a board by number: the codes of link messages and records, and their words for people.
+/// Numbers of the state of a board: the codes of link messages and records, and their texts for people.
 namespace vernier {
 
-/// Where the firmware stands. Correction is zero in Boot, Checking, Faulted and, until told to activate,
-/// Ready.
+/// Mode of the firmware: a step of the state machine below. The correction is zero in Boot, Checking and
+/// Faulted, and in Ready until an operator activates the correction.
 ///
 ///   Boot -> Checking -> Ready -> Active -> RampOut -> Ready
 ///                ^        |         |          |
@@ -21,10 +21,10 @@ enum class Mode : std::uint8_t {
   kFaulted = 5,   // correction is out, the fault is latched
 };
 
-/// One line for people: "ramp-out".
+/// Returns the name of the mode for people: "ramp-out".
 const char* name_of(Mode mode) noexcept;
 
-/// Why the correction was taken out. One enumerator per cause; the first one latches.
+/// Reason why the correction was removed. Each cause has one enumerator; the first fault latches.
 enum class Fault : std::uint8_t {
   kNone = 0,
   kPositionMissing = 1,   // an axis gave no reading for longer than tolerated
@@ -39,11 +39,11 @@ enum class Fault : std::uint8_t {
   kImageLost = 10,        // the confirmed image cannot be loaded: no correction
 };
 
-/// One line for people: "position-missing".
+/// Returns the name of the fault for people: "position-missing".
 const char* name_of(Fault fault) noexcept;
 constexpr std::uint8_t kFaultCount = static_cast<std::uint8_t>(Fault::kImageLost) + 1;
 
-/// What an operator may ask for. A command that does not fit the mode is refused and counted.
+/// A request of an operator to the firmware. A command that does not fit the mode is refused and counted.
 enum class Command : std::uint8_t {
   kNone = 0,
   kActivate = 1,
@@ -54,7 +54,7 @@ enum class Command : std::uint8_t {
 };
 constexpr std::uint8_t kCommandCount = static_cast<std::uint8_t>(Command::kRelease) + 1;
 
-/// Why an upload, or a step of one, is refused.
+/// Reason why the board refuses an upload, or a step of an upload.
 enum class UploadFault : std::uint8_t {
   kNone = 0,
   kNoUpload = 1,         // data or an end without a beginning

@@ -7,9 +7,10 @@
 #include "comp/shares.h"
 
 /// The only definition of the machine image (`machine.vimg`), shared by compiler, uploader and firmware.
-/// Little-endian. Header (64 bytes), then `section_count` section entries, then the sections, each starting
-/// on a multiple of 8 bytes from the start of the image; gaps are zero. Every section type occurs exactly
-/// once, in the order of SectionType. The checksum covers all bytes of the image after the checksum field.
+/// Little-endian. Order: header (64 bytes), `section_count` section entries, sections. Each section starts on
+/// a multiple of 8 bytes from the start of the image; gaps are zero. Every section type occurs exactly once;
+/// the sections are in the order of SectionType. The checksum covers all bytes of the image after the
+/// checksum field.
 namespace vernier {
 
 static_assert(std::endian::native == std::endian::little, "images are read in place");
@@ -75,9 +76,9 @@ static_assert(sizeof(SectionEntry) == 16);
 static_assert(offsetof(SectionEntry, type) == 0 && offsetof(SectionEntry, offset) == 4 &&
               offsetof(SectionEntry, count) == 8 && offsetof(SectionEntry, record_bytes) == 12);
 
-/// Shape of a table; its records are pieces * (4 + columns * (degree + 1)) words of kRecords: of each piece
-/// its Segment (start, length, reciprocal, shift), then the coefficients of column after column. Six linear
-/// columns make records of 64 bytes: an interpolation reads two cache lines at most.
+/// Shape of a table. Its records are pieces * (4 + columns * (degree + 1)) words of kRecords. Each piece has
+/// its Segment (start, length, reciprocal, shift), then the coefficients of one column after another. Six
+/// linear columns make records of 64 bytes: an interpolation reads two cache lines at most.
 struct TableRecord {
   std::uint32_t pieces;
   std::uint16_t columns;
@@ -115,7 +116,7 @@ static_assert(offsetof(InputRecord, name) == 0 && offsetof(InputRecord, unit) ==
               offsetof(InputRecord, reference) == 40 && offsetof(InputRecord, low) == 48 &&
               offsetof(InputRecord, high) == 56);
 
-/// Name of a share in a live display: "X of transform 2 (tool): BX*dirX", cut if it is longer.
+/// Name of a share in a live display: "X of transform 2 (tool): BX*dirX"; a longer name is cut.
 struct ShareName {
   char text[64];
 };

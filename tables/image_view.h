@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// Why an image is refused; one enumerator per cause.
+/// Reason why an image is refused; each cause has one enumerator.
 enum class ImageFault : std::uint8_t {
   kNone = 0,
   kMisaligned = 1,       // the buffer does not start on a multiple of 8
@@ -34,7 +34,7 @@ enum class ImageFault : std::uint8_t {
   kProgramOutput = 22,
 };
 
-/// One line for people: "checksum: bytes changed on the way".
+/// Returns one line of text for people: "checksum: bytes changed on the way".
 const char* describe(ImageFault fault) noexcept;
 
 /// Room that the verification needs once, kept out of the stack of small targets.
@@ -42,24 +42,24 @@ struct ImageWorkspace {
   ValueRange ranges[kMaxRegisters];
 };
 
-/// Validated, non-owning views into the bytes of an image. The bytes must outlive the view and everything
-/// made from it.
+/// Validated, non-owning views into the bytes of an image. The bytes must outlive the view and all objects
+/// that refer to the view.
 class ImageView {
  public:
   ImageView() = default;
   ImageView(const ImageView&) = delete;
   ImageView& operator=(const ImageView&) = delete;
 
-  /// Validates everything, the program included; the views are empty unless it returns kNone.
-  /// bytes: start of the image, aligned to 8, any content; size: bytes available. After kNone,
-  /// workspace.ranges holds the proved range of every register. setup.
+  /// Validates the whole image, the program included. The views are empty unless open() returns kNone. bytes:
+  /// start of the image, aligned to 8, any content; size: bytes available. After kNone, workspace.ranges
+  /// contains the proved range of every register. setup.
   ImageFault open(const std::uint8_t* bytes, std::uint32_t size, ImageWorkspace& workspace) noexcept;
 
   const ImageHeader& header() const noexcept { return *header_; }
   const char* name() const noexcept { return name_; }
   View<AxisRecord> axes() const noexcept { return axes_; }
   View<InputRecord> inputs() const noexcept { return inputs_; }
-  /// Shares of the effects, for Compensator::shares, and their names.
+  /// Shares of the effects and their names, for Compensator::shares.
   const ShareProgram& shares() const noexcept { return shares_; }
   View<ShareName> share_names() const noexcept { return share_names_; }
   /// Ready for Compensator.

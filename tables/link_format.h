@@ -6,10 +6,10 @@
 #include "tables/image_format.h"
 #include "tables/upload_format.h"
 
-/// Messages between a board and a tool, the same over Modbus and ISO-TP. A request is
-/// op, sequence, payload; its reply is op, sequence, status, payload. Little-endian, sizes as declared; a
-/// board answers every request with one reply and speaks only when asked. The sequence is the asker's; the
-/// reply repeats it.
+/// Messages between a board and a tool, identical over Modbus and ISO-TP. A request has op, sequence,
+/// payload; a reply has op, sequence, status, payload. Messages are little-endian, with the declared sizes. A
+/// board answers every request with one reply and sends nothing else. The client chooses the sequence number;
+/// the reply repeats the number.
 namespace vernier {
 
 constexpr std::uint16_t kLinkVersion = 3;
@@ -59,7 +59,7 @@ enum class LinkStatus : std::uint8_t {
 };
 constexpr std::uint8_t kLinkStatusCount = static_cast<std::uint8_t>(LinkStatus::kStale) + 1;
 
-/// Rights of a link of a board; each level includes the previous ones.
+/// Rights of a link of a board; each level includes the rights of the previous levels.
 enum class LinkAccess : std::uint8_t {
   kRead = 0,     // state
   kCommand = 1,  // commands, weights, the workpiece's frame, giving an image up
@@ -151,7 +151,7 @@ struct LinkAxisState {
   std::uint32_t weight;   // of the axis, 0..65536
   std::uint8_t limits;    // AxisLimitFlag
 };
-/// Which limits hold a correction now.
+/// Flags for the limits that act on a correction now.
 enum AxisLimitFlag : std::uint8_t {
   kAtImageLimit = 1u << 0,   // maxcorrection of the machine file
   kAtBoardLimit = 1u << 1,   // max_correction of the board file
@@ -223,8 +223,9 @@ static_assert(kReplyHeaderBytes + 10 + sizeof(LinkTick) + kMaxAxes * sizeof(Link
 
 /// Register map of the Modbus server: big-endian registers of 16 bits, bytes packed high byte first.
 /// Addresses count from zero.
-///  - Mailbox: a request is written (function 16) to the holding registers from kMailbox: its length in
-///    bytes, then the bytes. The reply is in the input registers from kMailbox, likewise.
+///  - Mailbox: the client writes a request (function 16) to the holding registers from kMailbox: the length
+///    in bytes, then the bytes. The reply is in the input registers from kMailbox: the length in bytes, then
+///    the bytes.
 ///  - Live state for any Modbus master: input registers from 0, LiveRegister.
 ///  - Command: holding register 0 takes a Command (function 6).
 constexpr int kMailboxRegister = 256;

@@ -5,10 +5,10 @@
 
 #include "comp/shares.h"
 
-/// Data from the tick to the rest of the board, and from the board to its tools (tables/link_format.h).
+/// Records that the tick gives to the rest of the board, and the board to its tools (tables/link_format.h).
 namespace vernier {
 
-/// A tick as others see it. Axes and inputs in the board's order, in their counts.
+/// One tick, as other threads read it. Axes and inputs are in the order of the board, values in their counts.
 struct TickRecord {
   std::int64_t time_us = 0;
   std::int64_t position[kMaxAxes] = {};
@@ -20,7 +20,8 @@ struct TickRecord {
 };
 static_assert(sizeof(TickRecord) % 8 == 0);
 
-/// What of the equation arrives at the drives, as others see it. Axes in the board's order, in their counts.
+/// Corrections that reach the drives and their limits, as other threads read them. Axes are in the order of
+/// the board, values in their counts.
 struct StateRecord {
   std::int64_t since_us = 0;  // the machine file's t when the program was taken over
   std::uint32_t programs = 0, weight = 0;
@@ -29,7 +30,7 @@ struct StateRecord {
 };
 static_assert(sizeof(StateRecord) % 8 == 0);
 
-/// Counters and measured values, as other threads read them.
+/// Counters and measured values of the firmware, as other threads read them.
 struct HealthRecord {
   std::uint64_t ticks = 0, active_ticks = 0, overruns = 0, skipped = 0;
   std::uint64_t missing_readings = 0, missing_inputs = 0, frozen_readings = 0, jumps = 0;
@@ -59,8 +60,9 @@ enum TouchFlag : std::uint8_t {
   kTouchInWorkpiece = 1u << 2,    // the board has axes X, Y, Z: `workpiece_nm` is there
 };
 
-/// A touch of the probe, as other threads read it. Axes in the board's order, in their counts. The counters
-/// give the losses until then: a reader detects whether touches without a number are missing.
+/// One touch of the probe, as other threads read it. Axes are in the order of the board, values in their
+/// counts. The counters give the losses up to this touch: a reader detects whether touches without a number
+/// are missing.
 struct TouchRecord {
   std::int64_t time_ns = 0;              // of the contact, the machine file's t
   std::int64_t position[kMaxAxes] = {};  // as the controller counts

@@ -4,9 +4,10 @@
 
 #include "tables/link_format.h"
 
-/// A message of the link on a plain line of bytes (UART, 8 bits): the message and its CRC-32C, low byte
-/// first, between two END bytes, with END and ESC inside replaced by two bytes each (SLIP, RFC 1055). A line
-/// that was disturbed is in step again with the next END; a frame whose sum is wrong is no frame.
+/// A message of the link on a serial line (UART, 8 bits): the message and its CRC-32C, low byte first,
+/// between two END bytes. END and ESC within the message are replaced by two bytes each (SLIP, RFC 1055).
+/// After a disturbance the receiver is synchronised again at the next END; a frame with a wrong CRC is
+/// ignored.
 namespace vernier {
 
 constexpr std::uint8_t kFrameEnd = 0xc0, kFrameEscape = 0xdb, kFrameEscapedEnd = 0xdc,
@@ -23,7 +24,8 @@ std::uint32_t write_frame(const std::uint8_t* message, std::uint32_t size, std::
 /// Finds the messages in the bytes of a line.
 class FrameReader {
  public:
-  /// Takes the next byte; true if it completed a message, which is valid until the next call. setup.
+  /// Takes the next byte; true if the byte completed a message. The message is valid until the next call.
+  /// setup.
   bool take(std::uint8_t byte) noexcept;
   const std::uint8_t* message() const noexcept { return bytes_; }
   std::uint32_t size() const noexcept { return size_; }

@@ -5,13 +5,14 @@
 
 namespace vernier {
 
-/// No slot: no confirmed image yet, or no trial.
+/// The value "no slot": no confirmed image yet, or no trial.
 constexpr std::uint8_t kNoSlot = 0xff;
 constexpr std::uint32_t kSlotCount = 2;
-/// The store keeps the record twice; a change overwrites the older one.
+/// The store contains the record twice; a change overwrites the older copy.
 constexpr std::uint32_t kSlotRecordCount = 2;
 
-/// Which slot of a board's image store counts. Little-endian, 48 bytes, as stored.
+/// Record of the image slots of a board: which slot is confirmed, and which slot is on trial. Little-endian,
+/// 48 bytes, as stored.
 struct SlotRecord {
   std::uint32_t magic;     // kSlotMagic
   std::uint32_t sequence;  // of the change that wrote it, from 1; the higher of two valid records counts
@@ -32,11 +33,12 @@ static_assert(offsetof(SlotRecord, magic) == 0 && offsetof(SlotRecord, sequence)
               offsetof(SlotRecord, confirmed) == 36 && offsetof(SlotRecord, trial) == 37 &&
               offsetof(SlotRecord, reserved) == 38 && offsetof(SlotRecord, reserved2) == 40 &&
               offsetof(SlotRecord, checksum) == 44);
-/// Not stored: another layout takes another kSlotMagic and another number here.
+/// Version of the record; the version is not stored. A new layout takes a new kSlotMagic and a new number
+/// here.
 constexpr std::uint32_t kSlotRecordVersion = 2;
 constexpr std::uint32_t kSlotMagic = 0x324f4c53;  // "SLO2"
 
-/// Version 1, which a store may still hold.
+/// Record of version 1, which an old store may contain.
 struct SlotRecordV1 {
   std::uint32_t magic;  // kSlotMagicV1
   std::uint32_t sequence;
@@ -52,37 +54,39 @@ static_assert(offsetof(SlotRecordV1, magic) == 0 && offsetof(SlotRecordV1, seque
               offsetof(SlotRecordV1, reserved) == 26 && offsetof(SlotRecordV1, checksum) == 28);
 constexpr std::uint32_t kSlotMagicV1 = 0x544f4c53;  // "SLOT"
 
-/// A record and the place, 0 or 1, for storing it.
+/// A record and the place (0 or 1) where it must be stored.
 struct SlotChange {
   std::uint32_t place;
   SlotRecord record;
 };
 
-/// The state of the two slots, as a pure state machine: it returns the record to be stored for a change, and
-/// applies the change only after the record is stored. After a power failure at any byte of any write the
-/// state is the one before the change or the one after it.
+/// State machine of the two slots, without access to the medium. Slots returns the record to be stored for a
+/// change, and applies the change only after the record is stored. After a power failure at any byte of any
+/// write the state is the state before or after the change.
 ///
 ///   confirmed A ── (image written to B) ── try ──► confirmed A, trial B ── confirm ──► confirmed B
 ///                                                          └──── revert, or a reset ──► confirmed A
 class Slots {
  public:
-  /// The newer valid one of two records; no confirmed image if neither is valid. setup.
+  /// Loads the newer valid record of the two; without a valid record, there is no confirmed image. setup.
   static Slots load(const SlotRecord& first, const SlotRecord& second) noexcept;
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }
   std::uint8_t trial() const noexcept { return now_.trial; }
-  /// Signing time of the confirmed image; 0 without a confirmed image.
+  /// Returns the signing time of the confirmed image; 0 without a confirmed image.
   std::uint64_t issued() const noexcept { return now_.issued; }
   std::uint64_t trial_issued() const noexcept { return now_.trial_issued; }
-  /// What an upload has to be above, and at least: the highest that were ever tried, kept or not.
+  /// Limits for a new upload: signing time above newest_issued(), security at least security(). Both are the
+  /// highest values of all images ever tried.
   std::uint64_t newest_issued() const noexcept { return now_.newest_issued; }
   std::uint32_t security() const noexcept { return now_.security; }
-  /// The slot that may be overwritten: neither confirmed nor on trial; kNoSlot while a trial runs.
+  /// Returns the slot that may be overwritten: neither confirmed nor on trial; kNoSlot while a trial runs.
   std::uint8_t free_slot() const noexcept;
 
   /// The image in free_slot() is to be tried. Only while no trial runs. setup.
   SlotChange start_trial(std::uint64_t issued, std::uint32_t security) const noexcept;
-  /// The image on trial is kept. Only while one is on trial. setup.
+  /// Returns the change that confirms the image on trial. Call confirm() only while an image is on trial.
+  /// setup.
   SlotChange confirm() const noexcept;
   /// Reverts the image on trial. setup.
   SlotChange revert() const noexcept;
@@ -96,7 +100,7 @@ class Slots {
   std::uint32_t next_place_ = 0;
 };
 
-/// Converts a valid record of version 1 to this version; no record if it is not valid. setup.
+/// Converts a valid record of version 1 to the present version; an invalid record gives no record. setup.
 SlotRecord upgraded(const SlotRecordV1& record) noexcept;
 /// True for a record that a board may use: magic, checksum, slots that exist and differ. setup.
 bool is_valid(const SlotRecord& record) noexcept;

@@ -7,9 +7,9 @@ namespace vernier {
 
 constexpr std::uint32_t kBoardNameBytes = 24;
 
-/// Contents of an upload and of a slot: this header (little-endian, 152 bytes), then the image
+/// Contents of an upload and of a slot: UploadHeader (little-endian, 152 bytes), then the image
 /// (image_format.h). The signature, Ed25519 in its pre-hashed form (RFC 8032, Ed25519ph), covers the header
-/// before it and the whole image.
+/// up to the signature and the whole image.
 struct UploadHeader {
   std::uint8_t magic[8];       // kUploadMagic
   std::uint32_t header_bytes;  // 152
@@ -30,15 +30,17 @@ static_assert(offsetof(UploadHeader, magic) == 0 && offsetof(UploadHeader, heade
               offsetof(UploadHeader, fingerprint) == 24 && offsetof(UploadHeader, security) == 32 &&
               offsetof(UploadHeader, reserved) == 36 && offsetof(UploadHeader, board) == 40 &&
               offsetof(UploadHeader, key) == 64 && offsetof(UploadHeader, signature) == 88);
-/// Not sent: another layout takes another kUploadMagic and another number here.
+/// Version of the upload header; the version is not sent. A new layout takes a new kUploadMagic and a new
+/// number here.
 constexpr std::uint32_t kUploadFormatVersion = 2;
 constexpr std::uint8_t kUploadMagic[8] = {'V', 'E', 'R', 'N', 'U', 'P', '2', '\n'};
 constexpr std::uint32_t kSignedHeaderBytes = 88;  // of the header, those under the signature
-/// A time of signing beyond it (the year 2200) is a clock that is wrong, and would leave no room for later
-/// ones.
+/// Latest accepted time of signing (the year 2200). A later time comes from a wrong clock, and would block
+/// all later uploads.
 constexpr std::uint64_t kLatestIssued = 7'258'118'400'000'000;
 
-/// Version 1, which named no board: a slot that was confirmed with it still runs, a new one is refused.
+/// Header of version 1, which names no board. A slot that was confirmed with it still runs; a new upload with
+/// it is refused.
 struct UploadHeaderV1 {
   std::uint8_t magic[8];       // kUploadMagicV1
   std::uint32_t header_bytes;  // 128
@@ -55,7 +57,7 @@ static_assert(offsetof(UploadHeaderV1, magic) == 0 && offsetof(UploadHeaderV1, h
 constexpr std::uint8_t kUploadMagicV1[8] = {'V', 'E', 'R', 'N', 'U', 'P', 'L', '\n'};
 constexpr std::uint32_t kSignedHeaderBytesV1 = 64;
 
-/// Head that is signed before the op and payload of a signed request: Ed25519ph of both.
+/// Head of a signed request. The signature (Ed25519ph) covers this head, the op and the payload.
 struct SignedRequestHead {
   std::uint8_t magic[8];       // kRequestMagic
   std::uint8_t nonce[16];      // of the board, new with each start
@@ -69,7 +71,7 @@ constexpr std::uint8_t kRequestMagic[8] = {'V', 'E', 'R', 'N', 'C', 'M', 'D', '2
 
 constexpr std::uint32_t kPublicKeyBytes = 32;
 
-/// The data that a board signs with its key to prove its identity: Ed25519ph of these 80 bytes.
+/// Data that a board signs with its key to prove its identity: Ed25519ph of these 80 bytes.
 struct IdentityHead {
   std::uint8_t magic[8];         // kIdentityMagic
   std::uint8_t asked_nonce[32];  // of the client, new with each request

@@ -7,14 +7,14 @@
 
 namespace vernier {
 
-/// Positions of the axes at one instant, and the missing part of their corrections.
+/// Positions of the axes at one instant, and the part of each correction that is not yet applied.
 struct LatchSample {
   InstantNs at;
   AxisPosition position[kMaxAxes];
   Correction owed[kMaxAxes];  // wanted minus applied, counts of the axis
 };
 
-/// Why there is no position at an instant.
+/// Reason why LatchRing has no position at an instant.
 enum class LatchFault : std::uint8_t {
   kNone = 0,
   kNotYet = 1,   // the samples behind the instant have not come: ask again after the next one
@@ -32,30 +32,33 @@ struct LatchedPosition {
   AxisTravel owed;        // Correction::owed at the instant, linear between the samples
 };
 
-/// The latest samples of all axes; gives positions between them by the cubic through the four neighbours,
-/// which holds in acceleration and deceleration and for samples at uneven distances. No division, bounded: at
-/// most six ratios of 33 steps per instant and six products per axis.
+/// The latest samples of all axes. LatchRing computes positions between samples by the cubic through the four
+/// neighbours. The cubic is also right in acceleration and deceleration, and for samples at uneven distances.
+/// LatchRing needs no division; its work is bounded: at most six ratios of 33 steps per instant and six
+/// products per axis.
 ///
-/// Error against the motion itself: 1 count of rounding (linear axis below 2 m/s), and that of the cubic,
-/// h^4/384 of the fourth derivative at even distance h, h^2/16 of a jump in acceleration.
+/// Error of an interpolated position: 1 count of rounding (linear axis below 2 m/s) plus the error of the
+/// cubic. The cubic has h^4/384 of the fourth derivative at even distance h, and h^2/16 of a jump in
+/// acceleration.
 class LatchRing {
  public:
   static constexpr std::uint32_t kSize = 64;
   static constexpr std::int64_t kMostUneven = 8;
 
-  /// sample.at: later than the previous one, or a new ring begins. realtime.
+  /// Adds a sample. sample.at: later than the previous sample; otherwise the ring is emptied and starts with
+  /// this sample. realtime.
   void add(const LatchSample& sample) noexcept;
 
   /// Goes to an instant. realtime.
   LatchFault seek(InstantNs when) noexcept;
 
-  /// The position at the instant of the last successful seek(). axis: below kMaxAxes; rollover: whole turns
-  /// (2^32 counts) between two samples are ignored. time_uncertainty: standard uncertainty of the instant, 0
-  /// .. 2^31 ns. kTooFast or kNone. realtime.
+  /// Computes the position at the instant of the last successful seek(). axis: below kMaxAxes; rollover:
+  /// whole turns (2^32 counts) between two samples are ignored. time_uncertainty: standard uncertainty of the
+  /// instant, 0 .. 2^31 ns. kTooFast or kNone. realtime.
   LatchFault position_of(std::uint32_t axis, bool rollover, InstantNs time_uncertainty,
                          LatchedPosition& latched) const noexcept;
 
-  /// Instant of the newest sample; meaningless in an empty ring.
+  /// Returns the instant of the newest sample; meaningless in an empty ring.
   InstantNs newest() const noexcept { return sample(count_ - 1).at; }
   bool empty() const noexcept { return count_ == 0; }
 

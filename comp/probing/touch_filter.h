@@ -13,14 +13,14 @@ enum class TouchKind : std::uint8_t {
   kMissed = 2,          // the line opened without having closed: the touch was lost, its instant is unknown
 };
 
-/// One touch.
+/// One contact of the probe with the workpiece.
 struct Touch {
   InstantNs at;  // first edge of the contact; of kMissed: the edge that opened it
   TouchKind kind = TouchKind::kTouch;
   std::uint8_t bounces = 0;  // further closing edges while it settled, at most 255
 };
 
-/// What came over the line so far; all only go up.
+/// Counters of the edges and contacts of a probe's line; each counter only increases.
 struct TouchCounts {
   std::uint32_t touches = 0;
   std::uint32_t spikes = 0;   // closed and open again when the settling time was over: no touch
@@ -28,18 +28,19 @@ struct TouchCounts {
   std::uint32_t missing = 0;  // touches or releases that were lost
 };
 
-/// Converts edges to touches. The first edge of a contact counts, bounces until it has settled do not, and an
-/// edge that does not last is a spike. Bounded, no heap.
+/// Converts edges to touches. The first edge of a contact counts. Bounces before the contact has settled are
+/// ignored; an edge that does not last is counted as a spike. Bounded, no heap.
 class TouchFilter {
  public:
-  /// settle: time after a change of the contact in which further edges belong to it, >= 0. setup.
+  /// settle: time after a change of the contact; later edges within this time belong to the same contact, >=
+  /// 0. setup.
   explicit TouchFilter(InstantNs settle = InstantNs(1'000'000)) noexcept : settle_(settle) {}
 
-  /// Takes an edge, not earlier than the previous one. Returns true with `touch` if it ended a touch that was
-  /// settling. realtime.
+  /// Takes an edge of the line. at: not earlier than the previous edge. edge() returns true and fills `touch`
+  /// if the edge ended a touch that was settling. realtime.
   bool edge(InstantNs at, bool made, Touch& touch) noexcept;
-  /// Called as time passes without an edge: true with `touch` if the last contact has settled by then.
-  /// realtime.
+  /// Call wait() when time passes without an edge. Returns true and fills `touch` if the last contact has
+  /// settled at `now`. realtime.
   bool wait(InstantNs now, Touch& touch) noexcept;
 
   const TouchCounts& counts() const noexcept { return counts_; }

@@ -17,7 +17,7 @@ struct WorkpieceFrame {
   std::int32_t cosine = kOne;  // Q30; cosine^2 + sine^2 within 2^-28 of one
   std::int32_t sine = 0;       // of the angle from the machine's X to the workpiece's X
 
-  /// True if it is a rotation, and in range. setup.
+  /// True if cosine and sine form a rotation and all values are in range. setup.
   constexpr bool valid() const noexcept {
     constexpr std::int64_t kUnit = std::int64_t{kOne} * kOne;
     if (cosine < -kOne || cosine > kOne || sine < -kOne || sine > kOne) return false;

@@ -27,7 +27,7 @@ enum class Feature : std::uint8_t {
 };
 constexpr unsigned kFeatures = 13;
 
-/// How samples count. lsb: one LSB in 1e-6 of the signal's unit (10 for 10 ug and a signal in g), 1..2^30;
+/// Scale of the samples. lsb: one LSB in 1e-6 of the signal's unit (10 for 10 ug and a signal in g), 1..2^30;
 /// rate: samples per second in 1e-6 Hz, 1..2^42.
 struct FeatureScale {
   InputMicro lsb{10};
@@ -35,32 +35,33 @@ struct FeatureScale {
 };
 
 /// Features of a window as inputs of an equation: 1e-6 of the signal's unit (squared for VAR and BANDPOWER),
-/// of 1, or of Hz. Bit i of `undefined`: feature i is 0/0 (a signal of zeros, or of one value) and its value
-/// 0.
+/// of 1, or of Hz. Bit i of `undefined`: feature i is 0/0 (all samples zero, or all equal); the value of the
+/// feature is then 0.
 struct FeatureValues {
   InputMicro value[kFeatures];
   std::uint32_t undefined = 0;
 };
 
-/// The last n samples of one axis. Each sample needs the same work: four power sums and sum |x| add the new
-/// sample and subtract the old one, exactly; a tree of groups keeps the extremes; n/4 products keep the first
-/// moment of the spectrum (spectral_weights.h). All values are integers: no drift, for any running time.
-/// Ranges for n <= 2^11, |x| < 2^19: sum x^2 < 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of
-/// n below 2^121, spectral sum below 2^82: 128-bit sums are exact. Bound of features(): 0.501 of 1e-6 plus
-/// 2^-54 of the value against exact arithmetic; FREQUENCY adds rate n 2^-36 for its rounded weights (36 uHz
-/// at 1651 Hz and n = 1500); beyond int64 it saturates.
+/// Keeps the last n samples of one axis and computes their features. Each sample needs the same work. Four
+/// power sums and sum |x| add the new sample and subtract the oldest, exactly; a tree of groups keeps the
+/// extremes; n/4 products keep the first moment of the spectrum (spectral_weights.h). All values of the
+/// window are integers: they do not drift in any running time. Ranges for n <= 2^11, |x| < 2^19: sum x^2 <
+/// 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below 2^121, spectral sum below 2^82:
+/// 128-bit sums are exact. Bound of the error of features(): 0.501 of 1e-6 plus 2^-54 of the value. FREQUENCY
+/// adds rate n 2^-36 for its rounded weights (36 uHz at 1651 Hz and n = 1500). Beyond int64 a feature
+/// saturates.
 class FeatureWindow {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts an empty window; `weights` must outlive its use (axes share it). False if scale or weights are
-  /// out of range. setup.
+  /// Starts an empty window. `weights` must outlive the window; several axes may share `weights`. False if
+  /// scale or weights are out of range. setup.
   bool start(const FeatureScale& scale, const SpectralWeights& weights) noexcept;
 
-  /// Takes one sample, LSB. Beyond +-kLimit it is limited and counted. realtime.
+  /// Takes one sample, in LSB. A sample beyond +-kLimit is limited to +-kLimit and counted. realtime.
   void push(std::int32_t sample) noexcept;
 
-  /// n samples have come since start. realtime.
+  /// True if n samples have come since start(). realtime.
   bool filled() const noexcept { return seen_ >= window_; }
   std::uint32_t held() const noexcept { return held_; }
 

@@ -7,16 +7,17 @@
 
 namespace vernier {
 
-/// A positive number mantissa * 2^exponent with bit 63 of the mantissa set; zero is mantissa 0. For ratios
-/// and roots of exact integers: every operation below is within 2^-59 of the exact result, relatively, so
-/// that a chain of a dozen is within 2^-55. No division: reciprocals and roots are Newton's, a fixed number
-/// of steps.
+/// A positive number mantissa * 2^exponent with bit 63 of the mantissa set; zero is mantissa 0. Scaled is for
+/// ratios and roots of exact integers. The relative error of every operation is at most 2^-59, so a sequence
+/// of a dozen operations has at most 2^-55. The operations of Scaled need no division: reciprocals and roots
+/// use a fixed number of Newton steps.
 struct Scaled {
   std::uint64_t mantissa = 0;
   std::int32_t exponent = 0;
 };
 
-/// The unsigned integer of 128 bits, cut to its upper 64 significant ones (relative error < 2^-63). realtime.
+/// Converts an unsigned integer of 128 bits; keeps its upper 64 significant bits (relative error < 2^-63).
+/// realtime.
 constexpr Scaled scaled(Wide value) noexcept {
   if (value.high == 0) {
     if (value.low == 0) return {};
@@ -29,10 +30,10 @@ constexpr Scaled scaled(Wide value) noexcept {
 }
 constexpr Scaled scaled(std::uint64_t value) noexcept { return scaled(Wide{0, value}); }
 
-/// a * 2^power, exact. realtime.
+/// Returns a * 2^power, exact. realtime.
 constexpr Scaled shifted(Scaled a, std::int32_t power) noexcept { return {a.mantissa, a.exponent + power}; }
 
-/// a * b, cut (relative error < 2^-62). realtime.
+/// Returns a * b, truncated (relative error < 2^-62). realtime.
 constexpr Scaled operator*(Scaled a, Scaled b) noexcept {
   if (a.mantissa == 0 || b.mantissa == 0) return {};
   const Wide product = long_product(a.mantissa, b.mantissa);
@@ -40,7 +41,8 @@ constexpr Scaled operator*(Scaled a, Scaled b) noexcept {
   return {(product.high << zero) | (zero != 0 ? product.low >> 63 : 0), a.exponent + b.exponent + 64 - zero};
 }
 
-/// y + y * r, y 0..2 with 62 fraction bits, r -1..1 with 62 fraction bits: the last move of a Newton step.
+/// Returns y + y * r, the last step of a Newton iteration. y: 0..2 with 62 fraction bits; r: -1..1 with 62
+/// fraction bits.
 constexpr std::uint64_t corrected(std::uint64_t y, std::int64_t r) noexcept {
   const bool down = r < 0;
   const std::uint64_t size =
@@ -51,8 +53,8 @@ constexpr std::uint64_t corrected(std::uint64_t y, std::int64_t r) noexcept {
 
 constexpr std::uint64_t kOneQ62 = std::uint64_t{1} << 62;
 
-/// 1 / a; a > 0. Start: the line 48/17 - 32/17 d on d = 1/2..1, error at most 1/17. Four steps square the
-/// error to 2e-20; the cut products leave 2^-60. realtime.
+/// 1 / a; a > 0. Start: the line 48/17 - 32/17 d on d = 1/2..1, error at most 1/17. Four Newton steps reduce
+/// the error to 2e-20; truncation of the products leaves 2^-60. realtime.
 constexpr Scaled reciprocal(Scaled a) noexcept {
   std::uint64_t y = 13021231110853801140u - long_product(a.mantissa, 8680820740569200760u).high;
   for (int step = 0; step < 4; ++step)
@@ -77,7 +79,7 @@ constexpr Scaled inverse_root(Scaled a) noexcept {
   return {y << zeros, -62 - 32 - zeros - even / 2};
 }
 
-/// Nearest integer, ties upwards; INT64_MAX if it is larger. realtime.
+/// Returns the nearest integer, ties upwards; INT64_MAX if the value is larger. realtime.
 constexpr std::int64_t count_of(Scaled a) noexcept {
   if (a.mantissa == 0 || a.exponent < -64) return 0;
   if (a.exponent >= 0) return INT64_MAX;

@@ -11,7 +11,7 @@
 
 namespace vernier {
 
-/// How a probe is wired and how late it is.
+/// Wiring and delay of a probe.
 struct ProbeSettings {
   InstantNs delay;         // from contact to edge: trigger, filter, radio; 0 .. 50 ms
   InstantNs delay_spread;  // its standard deviation from touch to touch
@@ -22,27 +22,27 @@ struct ProbeSettings {
   bool rollover[kMaxAxes] = {};                          // whole turns of the axis do not count
   std::uint8_t xyz[3] = {kMaxAxes, kMaxAxes, kMaxAxes};  // board's axes X, Y, Z; kMaxAxes: no such axis
 
-  /// Standard uncertainty of the instant of a touch. resolution: of the edge's stamp. setup.
+  /// Returns the standard uncertainty of the instant of a touch. resolution: of the edge's stamp. setup.
   InstantNs time_uncertainty(InstantNs resolution) const noexcept;
 };
 
-/// From edges to positions: after each tick the new edges become touches, and each touch becomes the position
-/// of the axes at the moment of contact, twice: as the controller counts, and compensated. A touch is
-/// published after its settling time and at most two ticks after it.
+/// Converts edges of the probe to positions. After each tick new edges become touches. Each touch becomes the
+/// position of the axes at the moment of contact, twice: as the controller counts, and compensated. A touch
+/// is published after its settling time and at most two ticks after that time.
 class Probing {
  public:
   static constexpr std::uint32_t kMostEdges = 16;  // taken in one tick
   static constexpr std::uint32_t kMostWaiting = 8;
 
-  /// line: outlives this, as does `actual`, which gives the positions of the axes in a tick; null: the
-  /// positions that the cycle read. setup.
+  /// line: outlives this object. actual: gives the positions of the axes in a tick, and outlives this object;
+  /// null: the positions that the cycle read. setup.
   Probing(ProbeLine& line, const ProbeSettings& settings, AxisReader* actual = nullptr) noexcept;
 
-  /// From contact to edge, 0 .. 50 ms, of the edges that come from now on. realtime.
+  /// Sets the delay from contact to edge, for later edges: 0 .. 50 ms. realtime.
   void set_delay(InstantNs delay) noexcept { settings_.delay = delay; }
 
-  /// A tick has read its axes at `woke` and written its corrections. time: the tick's t of the machine file.
-  /// realtime.
+  /// Call after a tick that has read its axes at `woke` and written its corrections. time: the t of the
+  /// machine file in this tick. realtime.
   void after_tick(const Cycle& cycle, const TickReport& report, InstantNs woke, TimeUs time,
                   Exchange& exchange) noexcept;
 

@@ -47,48 +47,50 @@ struct LinkRights {
 };
 
 /// The board's program, in four duties that may have separate contexts. The tick. The guardian, which hands
-/// programs over, ends trials and never waits for a device. The links. The store, which waits for its medium.
-/// The guardian may interrupt the links and the store at any point, the tick all three. Exchange, Programs
-/// and StoreDesk connect them. All memory is taken at construction.
+/// programs over, ends trials and never waits for a device. The links. The store, the duty that waits for the
+/// medium. The guardian may interrupt the links and the store at any point, the tick all three. Exchange,
+/// Programs and StoreDesk connect the four duties. The constructor takes all memory.
 class Service : private CommandHandler {
  public:
   /// board, store: outlive the service. setup.
   Service(ServiceOptions options, const Board& board, SlotStore& store);
 
-  /// Checks the image of the store and offers it to the first tick. setup.
+  /// Checks the image of the store and gives it to the first tick. setup.
   UploadResult boot();
-  /// As boot(), but runs an unsigned image given at the start of the board; the store is not changed. setup.
+  /// Starts like boot(), but runs an unsigned image given at the start of the board; the store is not
+  /// changed. setup.
   UploadResult boot_with(std::span<const std::uint8_t> image);
 
-  /// Sleeps until the next tick is due and runs it. realtime.
+  /// Sleeps until the next tick is due and runs the tick. realtime.
   TickReport tick() noexcept;
 
-  /// From the next tick on the correction is removed and cannot be applied again. realtime.
+  /// Removes the correction from the next tick on; the correction cannot be applied again. realtime.
   void end() noexcept { ending_ = true; }
 
-  /// Share of all corrections, on top of those that the links give to axes. realtime.
+  /// Sets a share of all corrections, which multiplies the shares that the links give to axes. realtime.
   void set_weight(WeightQ16 weight) noexcept { weight_ = weight; }
 
-  /// How late the probe is (ProbeSettings), from now on. realtime.
+  /// Sets the delay of the probe (ProbeSettings) for later edges. realtime.
   void set_probe_delay(InstantNs delay) noexcept {
     if (probing_) probing_->set_delay(delay);
   }
-  /// A command of the board itself, as if a link had given it; one that waits already is kept. realtime.
+  /// Gives a command of the board itself, like a command from a link. A command that is already waiting is
+  /// kept. realtime.
   void order(Command command) noexcept {
     Command none = Command::kNone;
     exchange_.command.compare_exchange_strong(none, command);
   }
 
-  /// The guardian: hands programs over to the tick, ends trials. Never waits. setup.
+  /// The guardian: hands programs over to the tick, ends trials. guard() never waits. setup.
   void guard() noexcept { uploader_.programs().guard(now()); }
-  /// The links: waits at most `wait` for requests of one link and answers them. Without store_beside all
-  /// other duties but the tick are done too. setup.
+  /// Serves one link: waits at most `wait` for requests and answers them. Without store_beside, serve() also
+  /// does all other duties except the tick. setup.
   HalFault serve(CommandLink& link, TimeUs wait, const LinkRights& rights = {}) noexcept;
   /// The store: executes the requests that a link has left for it and records the actions of the guardian.
   /// True: a link can collect a reply. setup.
   bool look_after_store() noexcept;
   bool store_is_asked() const noexcept { return desk_.asked(); }
-  /// Guardian and store in one context, one after the other. setup.
+  /// Does the duties of the guardian and of the store in one context, one after the other. setup.
   void look_after_programs() noexcept;
 
   const Cycle& cycle() const noexcept { return cycle_; }

@@ -6,14 +6,14 @@
 
 namespace vernier {
 
-/// True when a watchdog may be fed: four times a second, and only if the tick ran since the last time. It
-/// shows that the tick runs; it does not show that the caller runs.
+/// True when a watchdog may be fed: four times a second, and only if the tick ran since the last time. A fed
+/// watchdog proves only that the tick runs; it does not prove that the caller runs.
 class SignOfLife {
  public:
   static constexpr InstantNs kPeriod{250'000'000};  // an eighth of the unit's WatchdogSec
 
   explicit SignOfLife(InstantNs now) noexcept : told_(now) {}
-  /// ticks: that ran so far. setup.
+  /// True if the watchdog may be fed now. ticks: number of ticks that ran so far. setup.
   bool due(std::uint64_t ticks, InstantNs now) noexcept {
     if (now - told_ < kPeriod || ticks == ticks_) return false;
     ticks_ = ticks;

@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// What vernierd was called with.
+/// The arguments of the vernierd call.
 struct Arguments {
   std::string image, board, json, calibrate, measured;
   int steps = 11;

@@ -46,7 +46,7 @@ bool ask(std::istream& answers, std::ostream& questions, std::int64_t code, doub
     char* end = nullptr;
     measured = std::strtod(line.c_str(), &end);
     if (end != line.c_str() && *end == '\0' && std::isfinite(measured)) return true;
-    questions << "a number, or q to end without a result\n";
+    questions << "enter a number, or q to end without a result\n";
   }
 }
 
@@ -67,7 +67,8 @@ std::vector<CalibrationPoint> calibrate_output(CorrectionWriter& output, const A
     if (!good || !ask(answers, questions, code, measured)) break;
     points.push_back({code, measured});
   }
-  if (!mover.move_to(scale.zero) || !good) throw BoardError{"calibration: the output refuses a code"};
+  if (!mover.move_to(scale.zero) || !good)
+    throw BoardError{"calibration: the output refuses a code; check the driver and the range of the output"};
   return points;
 }
 

@@ -11,11 +11,11 @@
 
 namespace vernier {
 
-/// Steps an output through its range, up and down again, and asks for the instrument reading at each code.
-/// The code moves by at most the whole range in five seconds, and is always back at its zero at the end.
-/// output: its axis 0, made with `scale`, whose range is used; start: present code; steps: codes on the way
-/// up, at least 2; stop: ends it. Fewer than 2 * steps - 1 points: it was ended early. Throws BoardError if a
-/// write is refused. setup.
+/// Moves an output through its range, up and down again, and asks for the reading of the instrument at each
+/// code. The code changes by at most the whole range in five seconds, and is at its zero at the end. output:
+/// its axis 0, made with `scale`, whose range is used; start: present code; steps: codes on the way up, at
+/// least 2; stop: ends the motion. Fewer than 2 * steps - 1 points in the result: the motion was ended early.
+/// Throws BoardError if a write is refused. setup.
 std::vector<CalibrationPoint> calibrate_output(CorrectionWriter& output, const AnalogueScale& scale,
                                                std::int64_t start, int steps, Clock& clock,
                                                std::istream& answers, std::ostream& questions,

@@ -19,7 +19,7 @@ std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis) {
     if (bus.read_axis(axis, reading) == HalFault::kNone) return {};
   }
   return bus.counts().frames + bus.counts().invalid + bus.counts().stalled == 0
-             ? "no frame has come within 1 s"
+             ? "no CAN frame of this axis has come within 1 s"
              : "no valid frame within 1 s";
 }
 
@@ -29,13 +29,13 @@ std::string hear_scan(Clock& clock, IioBuffer& buffer, std::uint32_t channel) {
     buffer.begin_tick();
     if (buffer.read_input(channel, value) == HalFault::kNone) return {};
   }
-  return "no scan has come within 1 s";
+  return "no scan of this sensor has come within 1 s";
 }
 
 std::string try_output(AnalogueOutput& output) {
   const HalFault fault = output.rewrite();
-  if (fault == HalFault::kRefused) return "refuses the value that it has";
-  return fault == HalFault::kNone ? "" : "the value that it has cannot be read";
+  if (fault == HalFault::kRefused) return "refuses to write the value that it has now";
+  return fault == HalFault::kNone ? "" : "its present value cannot be read";
 }
 
 }  // namespace vernier

@@ -11,14 +11,14 @@ class AnalogueOutput;
 class CanAxes;
 class IioBuffer;
 
-/// How long a trial waits for a device.
+/// Longest time for which a trial waits for a device.
 inline constexpr TimeUs kPatience(1'000'000);
 
 // Each function tries an open device: empty, or the error. setup.
 
-/// Waits for one frame of an axis.
+/// Waits for one frame of an axis and describes it.
 std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis);
-/// Waits for one scan of a sensor.
+/// Waits for one scan of a sensor and describes it.
 std::string hear_scan(Clock& clock, IioBuffer& buffer, std::uint32_t channel);
 /// Writes the value that an output has.
 std::string try_output(AnalogueOutput& output);

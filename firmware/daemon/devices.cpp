@@ -117,7 +117,8 @@ void Devices::Parts::make_bus(const std::string& interface, std::vector<Route<Ax
     if (source.kind != "can" || source.text("interface") != interface) continue;
     source.only({"interface", "id"});
     const auto id = static_cast<std::uint32_t>(source.whole("id", 0, (1 << 29) - 1));
-    if (std::find(ids.begin(), ids.end(), id) != ids.end()) source.fail("another axis has this id");
+    if (std::find(ids.begin(), ids.end(), id) != ids.end())
+      source.fail("another axis uses this CAN identifier");
     served.push_back(i), ids.push_back(id);
   }
   std::string error;
@@ -183,7 +184,7 @@ void Devices::Parts::look_for_calibration(const AxisEntry& axis) {
   note_file("axis." + name + ".output  calibration " + path,
             std::filesystem::is_regular_file(path)
                 ? ""
-                : "no such file; vernierd --calibrate " + name + " makes it");
+                : "the calibration file does not exist; vernierd --calibrate " + name + " makes it");
 }
 
 std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
@@ -221,7 +222,7 @@ void Devices::Parts::make_buffer(const std::string& device, std::vector<Route<In
     const SignalSource& source = file.inputs[i].source;
     if (source.kind != "iio-buffer" || source.text("device") != device) continue;
     for (const SignalSource* const other : channels)
-      if (other->text("channel") == source.text("channel")) source.fail("another input has this channel");
+      if (other->text("channel") == source.text("channel")) source.fail("another input uses this channel");
     served.push_back(i), channels.push_back(&source);
   }
   std::string error;
@@ -262,7 +263,7 @@ void Devices::Parts::make_sync() {
   sync = open_sync(file.sync, error);
   note("board.sync  " + file.sync.kind, error, [this] {
     const InstantNs end = clock.now() + instant_ns(kPatience);
-    return sync->wait_for_sync(end) == HalFault::kNone ? "" : "no sync has come within 1 s";
+    return sync->wait_for_sync(end) == HalFault::kNone ? "" : "no sync signal has come within 1 s";
   });
 }
 

@@ -30,8 +30,8 @@ struct OpenLink {
 /// The devices that a board file names, alive as long as the board runs.
 class Devices {
  public:
-  /// Opens all devices; missing ones are listed in findings(). file: outlives the devices. seed: of the
-  /// motion of simulated axes. Throws BoardError if a setting is wrong. setup.
+  /// Opens all devices; findings() lists the missing devices. file: outlives the devices. seed: of the motion
+  /// of simulated axes. Throws BoardError if a setting is wrong. setup.
   Devices(const BoardFile& file, unsigned long seed);
   ~Devices();
   Devices(const Devices&) = delete;
@@ -41,19 +41,19 @@ class Devices {
   Board board() noexcept;
   Clock& clock() noexcept;
   std::vector<OpenLink>& links() noexcept;
-  /// Waits until a request comes over one of the links or wake() is called, at most `wait`. setup.
+  /// Waits at most `wait` for a request over one of the links, or for a call of wake(). setup.
   void wait_for_request(TimeUs wait, WakeUp& wake_up) noexcept;
-  /// One of each device and each file, in the order of the board file. setup.
+  /// Returns one finding of each device and each file, in the order of the board file. setup.
   std::vector<DeviceFinding>& findings() noexcept;
-  /// Items that opening and trying all devices does not test, one sentence each. setup.
+  /// Lists what opening and trying all devices does not test, one sentence each. setup.
   std::vector<std::string> not_looked_at() const;
 
-  /// A correction that a killed daemon left in a drive, or the value that a converter wakes up with, is taken
-  /// out before the first tick: within the limits of the axis, and over a second at least. stop: ends it
-  /// early. setup.
+  /// Removes from the drives a correction that a killed daemon left, or the value with which a converter
+  /// starts. The removal is before the first tick, within the limits of the axis, and takes at least a
+  /// second. stop: ends the removal early. setup.
   void take_left_overs_out(const std::atomic<bool>& stop) noexcept;
-  /// Opens the hardware watchdog if the board file names one. Returns the error, or empty; then the caller
-  /// must feed it, and disarm it at an orderly end. setup.
+  /// Opens the hardware watchdog if the board file names one. Returns the error text, or an empty text: then
+  /// the caller must feed the watchdog, and disarm it at an orderly end. setup.
   std::string start_watchdog();
   void feed_watchdog() noexcept;
   void disarm_watchdog() noexcept;
@@ -62,13 +62,13 @@ class Devices {
   void release() noexcept;
   /// The next tick of simulated axes begins. realtime.
   void advance() noexcept;
-  /// Takes a sample of each sensor, which waits for its driver. Not in the tick. setup.
+  /// Takes a sample of each sensor; each sample waits for its driver. Never call sample() in the tick. setup.
   void sample() noexcept;
   bool has_sensors() const noexcept;
-  /// Contribution of each output to the error: its step and range, and its delay if the file gives one.
-  /// setup.
+  /// Returns the contribution of each output to the error: step, range, and the delay if the board file gives
+  /// a delay. setup.
   std::vector<std::string> output_budget() const;
-  /// Reports on standard error which outputs were limited to the end of their range.
+  /// Reports on standard error which outputs reached the end of their range.
   void say_held() const;
 
  private:

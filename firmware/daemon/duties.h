@@ -13,15 +13,15 @@ namespace vernier {
 
 /// The daemon's threads beside the tick, one per duty:
 ///   guardian  hands programs over, ends trials, reports to the service manager that the tick ran;
-///             it waits for time only: no client and no medium can block it;
+///             the guardian waits for time only: no client and no medium can block it;
 ///   links     answers requests;
 ///   store     waits for the medium;
 ///   sensors   waits for drivers.
 class Duties {
  public:
-  /// All outlive this. priority: SCHED_FIFO of the guardian, 0: an ordinary thread. setup.
+  /// All arguments outlive this object. priority: SCHED_FIFO of the guardian, 0: an ordinary thread. setup.
   Duties(Service& service, Devices& devices, ServiceManager& manager, int priority);
-  /// Ends the threads; the store completes its present request.
+  /// Ends the threads; the store first completes its present request.
   ~Duties();
   Duties(const Duties&) = delete;
   Duties& operator=(const Duties&) = delete;

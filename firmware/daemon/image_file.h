@@ -8,10 +8,10 @@
 
 namespace vernier {
 
-/// An image with its bytes: a view of a file needs them.
+/// An image and the bytes of its file; a view of an image refers to these bytes.
 class ImageFile {
  public:
-  /// Takes the bytes (aligned by copying) and validates them. setup.
+  /// Takes a copy of the bytes (aligned) and validates the image. setup.
   ImageFault open(const std::vector<std::uint8_t>& bytes);
   /// Valid after open() returned kNone.
   const ImageView& view() const noexcept { return view_; }
@@ -21,7 +21,7 @@ class ImageFile {
   ImageView view_;
 };
 
-/// The bytes of a file; false if it cannot be read. setup.
+/// Reads the bytes of a file; false if the file cannot be read. setup.
 bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes);
 
 }  // namespace vernier

@@ -163,7 +163,10 @@ void say_image(const UploadResult& result, const Service& service) {
   if (result.fault != UploadFault::kNone)
     std::fprintf(stderr, "vernierd: the confirmed image is not used: %s\n", describe(result).c_str());
   else if (service.uploader().record().confirmed == kNoSlot)
-    std::fputs("vernierd: no image has been confirmed yet: nothing is corrected\n", stderr);
+    std::fputs(
+        "vernierd: no image is confirmed: the board corrects nothing until an image is uploaded and "
+        "confirmed\n",
+        stderr);
   else
     std::fprintf(stderr, "vernierd: image %016llx\n",
                  static_cast<unsigned long long>(service.uploader().record().confirmed_fingerprint));
@@ -224,13 +227,14 @@ int calibrate(const Arguments& arguments, const BoardFile& file) {
   const SignalSource& source = axis->output;
   const bool pwm = source.kind == "pwm";
   if (!pwm && source.kind != "iio-dac")
-    throw BoardError{file.path + ": axis." + arguments.calibrate + " has no output that can be calibrated"};
+    throw BoardError{file.path + ": axis." + arguments.calibrate +
+                     " has no analogue output; only an analogue output can be calibrated"};
   const std::string path = source.text("calibration");
   const std::int64_t codes =
       pwm ? source.whole("period_ns", 2, 1'000'000'000) : source.whole("codes", 1, (1 << 24) - 1);
   const std::vector<CalibrationPoint> points = measured_points(arguments, *axis, codes);
   if (arguments.measured.empty() && points.size() != static_cast<std::size_t>(2 * arguments.steps - 1)) {
-    std::fputs("vernierd: ended; nothing is stored\n", stderr);
+    std::fputs("vernierd: calibration ended early; no file is written\n", stderr);
     return kAnswerIsNo;
   }
   const Calibration found = fit_calibration(points, codes, axis->wiring.rotary);
@@ -261,7 +265,7 @@ int run_board(const Arguments& arguments) {
     return ::getrandom(bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size());
   };
   if (!fill(file.service.nonce) || !fill(file.service.seed)) {
-    std::fputs("vernierd: no random numbers: nothing could be signed for this start\n", stderr);
+    std::fputs("vernierd: the system gives no random numbers: signed requests are not possible\n", stderr);
     return kAnswerIsNo;
   }
   Board board = devices.board();

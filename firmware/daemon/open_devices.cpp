@@ -200,7 +200,7 @@ std::unique_ptr<IioBuffer> open_iio_buffer(const std::vector<const SignalSource*
     source->only({"root", "devices", "device", "channel", "scale", "offset", "trigger", "rate_Hz"});
     const std::string& channel = source->text("channel");
     if (channel.empty() || channel.find('/') != std::string::npos)
-      source->fail("channel is no name of scan_elements, as accel_x is");
+      source->fail("channel must be a name in scan_elements, for example accel_x");
     settings.channels.push_back({channel, {source->number("offset", 0), source->number("scale")}});
   }
   settings.trigger = first.text("trigger", "");

@@ -23,19 +23,19 @@ using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
 // Each function opens one device of the board file. Null with `error` set if it is missing; a wrong kind or
 // setting throws BoardError. setup.
 
-/// A PWM channel or a converter. rotary: spans are in degrees, else in mm.
+/// Opens a PWM channel or a converter. rotary: spans are in degrees, else in mm.
 std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error);
-/// A sensor. lines: the open ones, and one more if the sensor needs it.
+/// Opens a sensor. lines: the open Modbus lines; a line that the sensor needs is added.
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines, std::string& error);
-/// The buffer of a device that inputs of kind "iio-buffer" name, one channel each; its trigger and rate are
-/// those of the first.
+/// Opens the buffer of the device that inputs of kind "iio-buffer" name, one channel per input. The trigger
+/// and the rate of the first input apply.
 std::unique_ptr<IioBuffer> open_iio_buffer(const std::vector<const SignalSource*>& channels,
                                            std::string& error);
 /// A way in from outside.
 std::unique_ptr<CommandLink> open_link(const SignalSource& source, std::string& error);
 /// The sync of kind "can".
 std::unique_ptr<TickSync> open_sync(const SignalSource& source, std::string& error);
-/// Lines of kind "gpio".
+/// Opens a line of kind "gpio": the line of a probe, a digital input or a digital output.
 std::unique_ptr<ProbeLine> open_probe(const SignalSource& source, std::string& error);
 std::unique_ptr<DigitalInput> open_digital_input(const SignalSource& source, std::string& error);
 std::unique_ptr<DigitalOutput> open_digital_output(const SignalSource& source, std::string& error);

@@ -15,8 +15,8 @@ struct GrantReport {
 /// (json: a file, "-" or empty). False if the file cannot be written. tool.
 bool report_run(const Runner& runner, const Cycle& cycle, const GrantReport& grant, const std::string& json);
 
-/// Writes a result for programs: json is a file, "-" for standard output, or empty for no output. False, with
-/// a message on standard error, if it cannot be written. tool.
+/// Writes a result for programs: json is a file, "-" for standard output, or empty for no output. Returns
+/// false, with a message on standard error, if the result cannot be written. tool.
 bool write_result(const std::string& json, const std::string& text);
 
 }  // namespace vernier

@@ -9,14 +9,14 @@
 
 namespace vernier {
 
-/// A device's own place within its backend.
+/// Location of a device within its backend.
 template <class Port>
 struct Route {
   Port* port = nullptr;     // null: not wired
   std::uint32_t index = 0;  // the backend's own
 };
 
-/// The backends of routes: one of several devices begins a tick once.
+/// Returns each backend of the routes once: begin_tick is called once for a backend with several devices.
 template <class Port>
 std::vector<Port*> backends_of(const std::vector<Route<Port>>& routes) {
   std::vector<Port*> backends;
@@ -26,7 +26,8 @@ std::vector<Port*> backends_of(const std::vector<Route<Port>>& routes) {
   return backends;
 }
 
-/// The board's axes, spread over several backends. The first route's backend gives the data of the path.
+/// The axes of the board, which may belong to several backends. The backend of the first route gives the data
+/// of the path.
 class RoutedAxes : public AxisReader {
  public:
   explicit RoutedAxes(std::vector<Route<AxisReader>> routes)
@@ -70,8 +71,8 @@ class RoutedInputs : public InputReader {
   std::vector<InputReader*> backends_;
 };
 
-/// The board's outputs. A correction for an axis without an output is refused unless it is zero: an image
-/// that corrects an axis without an output must not appear to work.
+/// The board's outputs. A correction for an axis without an output is refused unless it is zero. Reason: an
+/// image that corrects an axis without an output must not appear to work.
 class RoutedOutputs : public CorrectionWriter {
  public:
   explicit RoutedOutputs(std::vector<Route<CorrectionWriter>> routes) : routes_(std::move(routes)) {}

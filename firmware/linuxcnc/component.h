@@ -15,23 +15,23 @@
 
 namespace vernier {
 
-/// The board inside LinuxCNC's servo thread: firmware/core's service on HAL pins. Beside the tick it has two
-/// threads that are not realtime: the keeper (guardian and links), and the store, which waits for
-/// vernier-hal. Until vernier-hal is connected, the joints are passed through unchanged.
+/// The board inside LinuxCNC's servo thread: firmware/core's service on HAL pins. Beside the tick the
+/// component has two threads that are not realtime: the keeper (guardian and links), and the store, which
+/// waits for vernier-hal. Until vernier-hal is connected, the joints are passed through unchanged.
 class Component {
  public:
   /// Reports changes in LinuxCNC's log. level: as of rtapi_print_msg, 1: an error, 3: a note.
   using Say = void (*)(int level, const char* text);
 
-  /// pins, hatch: outlive this. mm_per_unit: of the machine's lengths. setup.
+  /// pins, hatch: outlive this object. mm_per_unit: unit of the machine's lengths, mm. setup.
   Component(const Pins& pins, Hatch& hatch, const Wiring& wiring, double mm_per_unit, Say say);
-  /// No tick runs any more. setup.
+  /// Call the destructor when no tick runs any more. setup.
   ~Component();
   Component(const Component&) = delete;
   Component& operator=(const Component&) = delete;
   /// Starts the two threads; false if the system refuses them. setup.
   bool start() noexcept;
-  /// Ends them; the hatch is not touched any more, and ticks may still run. setup.
+  /// Ends the two threads. Ticks may still run; the hatch is not used any more. setup.
   void stop() noexcept;
 
   /// A cycle of the servo thread. period_ns: of the thread. realtime.

@@ -9,9 +9,9 @@
 
 namespace vernier {
 
-/// One request at a time from one process to another, in shared memory. The client fills it in, makes the
-/// turn number odd and waits for the next even one. A process that dies in between has changed only the
-/// request.
+/// A request from one process to another in shared memory, one at a time. The client writes the request,
+/// makes the turn number odd and waits for the next even number. A process that dies in between has changed
+/// only the request.
 struct Call {
   static constexpr std::uint32_t kMostBytes = 4096;
   std::atomic<std::uint32_t> turn{0};
@@ -21,7 +21,7 @@ struct Call {
   std::uint8_t bytes[kMostBytes] = {};
 };
 
-/// True if a process exists, and is not only waiting for its parent. setup.
+/// True if the process exists and is not a zombie (a process that only waits for its parent). setup.
 bool process_lives(std::int32_t pid) noexcept;
 /// Waits at most `wait` for a request. setup.
 bool wait_for_call(Call& call, TimeUs wait) noexcept;
@@ -69,8 +69,8 @@ enum class Attached : std::int32_t {
   kEmpty = 4,         // the store has no image, and no image was given
 };
 
-/// The memory that component and vernier-hal share. Neither waits for the other in a tick: the component has
-/// all data that it runs in private memory.
+/// The memory that component and vernier-hal share. The component never waits for vernier-hal in a tick: all
+/// data of the tick are in private memory.
 struct Hatch {
   static constexpr int kKey = 0x5645524e;              // "VERN", as HAL's keys are: one component a machine
   static constexpr std::uint32_t kMagic = 0x32544148;  // "HAT2", written when the rest is there

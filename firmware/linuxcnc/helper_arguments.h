@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// What vernier-hal was called with.
+/// The arguments of the vernier-hal call.
 struct HelperArguments {
   std::string store, image, board, board_class;
   std::vector<std::string> public_keys;

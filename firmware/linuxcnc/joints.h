@@ -7,35 +7,36 @@
 
 namespace vernier {
 
-/// The joints as LinuxCNC commands them, and the correction on its way to their drives. Commanded values have
-/// no noise: speed and acceleration are differences of this tick and the previous ones, not smoothed.
-/// A correction that would move a joint past its limit fades out before. Outward it is at most a share of the
-/// distance of the command from the limit. The share is so small that the correction fades within the slew
-/// limit at the joint's greatest speed (the pin max-velocity, or the greatest observed speed if that is
-/// larger). The output always changes within the slew limit; the drive stays within the joint's limits if the
-/// joint is not faster than that speed.
-/// A connected pin that is not a number is a missing reading of its joint: command, position and feedback
-/// alike. The drive's command and the controller's feedback then keep their values.
-/// A command that jumps to the feedback (LinuxCNC does that with a joint that it no longer enables) is no
-/// jump of the axis: the reading continues from there.
-/// A joint that is not homed has no reference: its reading keeps its value, and continues from the new zero
-/// when the joint is homed.
+/// The joints as LinuxCNC commands them, and the corrections that go to their drives. Commanded values have
+/// no noise: speed and acceleration are differences of this tick and the previous ticks, without smoothing. A
+/// correction that would move a joint past its limit fades out before the limit. Towards the limit, the
+/// correction is at most a share of the distance between command and limit. The share is so small that the
+/// correction fades within the slew limit at the joint's greatest speed (the pin max-velocity, or the
+/// greatest observed speed if that is larger). The output always changes within the slew limit. The drive
+/// stays within the joint's limits if the joint is not faster than the speed above. A connected pin that is
+/// not a number is a missing reading of its joint: command, position and feedback alike. After a missing
+/// reading the drive's command and the controller's feedback keep their values. A command that jumps to the
+/// feedback is no jump of the axis: the reading continues from there. (LinuxCNC makes this jump for a joint
+/// that is disabled.) A joint that is not homed has no reference. Its reading keeps its value, and continues
+/// from the new zero when the joint is homed.
 class Joints : public AxisReader, public CorrectionWriter {
  public:
-  /// pins: outlive this. mm_per_unit: of the machine's lengths. setup.
+  /// pins: outlive this object. mm_per_unit: unit of the machine's lengths, mm. setup.
   Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit = 1) noexcept;
 
   /// Reads the joints' pins. seconds: of the thread's period. realtime.
   void read(double seconds) noexcept;
-  /// Corrections to the commands, and off the feedback as they were added. realtime.
+  /// Adds the corrections to the commands, and subtracts from the feedback the corrections that were added.
+  /// realtime.
   void write() noexcept;
   /// Largest change of a joint's correction in a tick, counts; 0: no change. realtime.
   void set_slew(std::uint32_t joint, std::int64_t counts) noexcept { joints_[joint].slew = counts; }
   bool all_homed() const noexcept { return all_homed_; }
-  /// True if the correction would move a joint (or any joint) past its limit. It is limited then. realtime.
+  /// True if the correction would move this joint (or any joint) past its limit. The correction is then
+  /// limited. realtime.
   bool at_limit(std::uint32_t joint) const noexcept { return joints_[joint].at_limit; }
   bool any_at_limit() const noexcept;
-  /// Position of a joint, in its counts: feedback without the correction; kNoReading without feedback.
+  /// Reads the position of a joint, in its counts: feedback without the correction. kNoReading: no feedback.
   /// realtime.
   HalFault stands(std::uint32_t joint, AxisPosition& position) const noexcept;
 
@@ -84,7 +85,7 @@ class Joints : public AxisReader, public CorrectionWriter {
 /// Positions of the joints, for touches.
 class StandingJoints : public AxisReader {
  public:
-  /// joints: outlive this. setup.
+  /// joints: outlive this object. setup.
   explicit StandingJoints(const Joints& joints) noexcept : joints_(joints) {}
   HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
     return joints_.stands(axis, reading.position);

@@ -61,7 +61,8 @@ void read_axes(const LoadArguments& arguments, Wiring& wiring, Refusal& refusal)
     // The controller never takes a whole turn back.
     wiring.axes.push_back({.name = text, .rotary = turns, .rollover = false, .continuous = turns});
   }
-  if (wiring.axes.empty()) refusal.say("axes", "", "missing: axes=X,Y,... names the axes of the joints");
+  if (wiring.axes.empty())
+    refusal.say("axes", "", "axes is missing: give the axis names of the joints, axes=X,Y,...");
 }
 
 void check_rotary(const LoadArguments& arguments, const Wiring& wiring, Refusal& refusal) {

@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// The arguments of `loadrt vernier`, as rtapi_app fills them in: null if not given.
+/// The arguments of `loadrt vernier`, as rtapi_app fills them in; null: the argument is not given.
 struct LoadArguments {
   std::span<char*const> axes, inputs, rotary;
   const char* units = nullptr;
@@ -19,7 +19,7 @@ struct LoadedWiring {
   double mm_per_unit = 1;
 };
 
-/// Checks every argument before any object is made. Returns true, or false with `why`, one line that names
+/// Checks every argument before any object is made. Returns true, or false with `why`: one line that names
 /// the argument and its error. setup.
 bool read_load_arguments(const LoadArguments& arguments, LoadedWiring& loaded, std::span<char> why);
 

@@ -73,7 +73,7 @@ int enter() {
   if (component_id < 0) return component_id;
   Hatch* const hatch = open_hatch();
   if (hatch == nullptr) {
-    say(RTAPI_MSG_ERR, "vernier: no memory to share with vernier-hal\n");
+    say(RTAPI_MSG_ERR, "vernier: the memory that is shared with vernier-hal cannot be made\n");
     return leave(-ENOMEM);
   }
   const Pins* const pins = make_pins(component_id, loaded.wiring);

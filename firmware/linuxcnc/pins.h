@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// Pins of one joint, `vernier.0.joint.N.`: mm or deg, in the units of the machine.
+/// Pins of one joint, `vernier.0.joint.N.`, in the units of the machine: mm or deg.
 struct JointPins {
   hal_float_t *cmd_in, *cmd_out, *fb_in, *fb_out, *correction;
   hal_float_t* pos_in;                 // the joint's position; not connected: cmd-in
@@ -17,7 +17,7 @@ struct JointPins {
   const hal_float_t *pos_loose, *fb_loose;  // where HAL points them while they are not connected
 };
 
-/// All pins of the component, in HAL's memory.
+/// All pins of the component, in the memory of HAL.
 struct Pins {
   JointPins joint[kMaxAxes];
   hal_float_t* input[kMaxInputs];  // not a number (not connected): no reading
@@ -28,7 +28,7 @@ struct Pins {
   hal_u32_t *execution, *execution_max;  // ns
 };
 
-/// Exports the pins of a component. Null if HAL refuses one. setup.
+/// Exports the pins of a component. Returns null if HAL refuses a pin. setup.
 Pins* make_pins(int component, const Wiring& wiring) noexcept;
 
 }  // namespace vernier

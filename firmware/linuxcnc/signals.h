@@ -19,7 +19,7 @@ class PinInputs : public InputReader {
   std::uint32_t count_;
 };
 
-/// On if the pin `enable` is on and every joint is homed.
+/// The line is on if the pin `enable` is on and every joint is homed.
 class EnablePin : public DigitalInput {
  public:
   EnablePin(const Pins& pins, const Joints& joints) noexcept : pins_(pins), joints_(joints) {}

@@ -8,13 +8,13 @@
 
 namespace vernier {
 
-/// vernier-hal's side of the component's store: executes the requests of the component, one at a time.
+/// vernier-hal's side of the component's store: executes requests of the component, one at a time.
 class StoreServer {
  public:
-  /// call, store, given (the image to start with): outlive this. setup.
+  /// call, store, given (the image to start with): outlive this object. setup.
   StoreServer(Call& call, SlotStore& store, std::span<const std::uint8_t> given) noexcept
       : call_(call), store_(store), given_(given) {}
-  /// Waits at most `wait` for a request and answers it. setup.
+  /// Waits at most `wait` for a request of the component and answers it. setup.
   void serve(TimeUs wait) noexcept;
 
  private:

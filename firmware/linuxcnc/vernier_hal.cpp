@@ -76,7 +76,8 @@ Introduction introduction_of(const HelperArguments& arguments, std::size_t given
   introduction.capacity = kSlotBytes;
   introduction.given_bytes = static_cast<std::uint32_t>(given_bytes);
   for (const std::string& path : arguments.public_keys) {
-    if (introduction.keys == BoardIdentity::kMostKeys) throw BoardError{"more than eight --public-key"};
+    if (introduction.keys == BoardIdentity::kMostKeys)
+      throw BoardError{"--public-key is given more than eight times"};
     introduction.key[introduction.keys++] = read_public_key(path);
   }
   introduction.board = Name(arguments.board);
@@ -85,7 +86,7 @@ Introduction introduction_of(const HelperArguments& arguments, std::size_t given
     return ::getrandom(bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size());
   };
   if (!fill(introduction.nonce) || !fill(introduction.seed))
-    throw BoardError{"no random numbers: nothing could be signed for this start"};
+    throw BoardError{"the system gives no random numbers: signed requests are not possible"};
   const std::string store = std::filesystem::canonical(arguments.store).string();
   if (store.size() >= sizeof(introduction.store)) throw BoardError{store + ": too long a path"};
   std::copy(store.begin(), store.end(), introduction.store);
@@ -168,7 +169,7 @@ int run(const HelperArguments& arguments) {
   if (!hal.good()) return refuse("HAL", "is not running");
   Hatch* const hatch = hal.hatch();
   if (hatch == nullptr) {
-    std::fputs("vernier-hal: the component is not loaded: loadrt vernier axes=... comes first\n", stderr);
+    std::fputs("vernier-hal: the component is not loaded: first run loadrt vernier axes=...\n", stderr);
     return kAnswerIsNo;
   }
   if (process_lives(hatch->helper.load())) return refuse("HAL", "has a vernier-hal already");

@@ -10,34 +10,35 @@
 namespace vernier {
 
 /// The correction of one axis as an analogue quantity: the pulse width of a PWM channel, or a channel of a
-/// converter. It has axis 0 only. Setting up changes no value of a running channel: a correction of an
-/// earlier process can be read back and removed.
+/// converter. An AnalogueOutput has axis 0 only. Setting up changes no value of a running channel: a
+/// correction of an earlier process can be read back and removed.
 class AnalogueOutput : public CorrectionWriter {
  public:
   /// channel: directory of an exported channel of the PWM class (/sys/class/pwm/pwmchip0/pwm0); scale: in ns
-  /// of on-time; period: ns, >= scale.high. A channel that is off, or has another period, is set to its zero
-  /// and switched on. Null with `error` set if that fails. setup.
+  /// of on-time; period: ns, >= scale.high. A channel that is off, or has another period, is set to the zero
+  /// of its scale and switched on. Returns null with `error` set if the channel cannot be set up. setup.
   static std::unique_ptr<AnalogueOutput> pwm(const std::string& channel, std::int64_t period_ns,
                                              const AnalogueScale& scale, std::string& error);
   /// device: directory of an IIO device; channel: the N of out_voltageN_raw; scale: in codes. setup.
   static std::unique_ptr<AnalogueOutput> iio_dac(const std::string& device, unsigned channel,
                                                  const AnalogueScale& scale, std::string& error);
 
-  /// Held at the ends of the range, and counted then. kRefused: the driver refused the value. realtime, as
-  /// far as the device's bus is quick: an SPI converter takes some ten microseconds.
+  /// A correction beyond the range is limited to the end of the range and counted. kRefused: the driver
+  /// refused the value. realtime, as far as the device's bus is quick: an SPI converter takes some ten
+  /// microseconds.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
 
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 
-  /// Takes the device for exclusive use; false if another process, or another output, has it. setup.
+  /// Takes the device for exclusive use; false if another process, or another output, uses it. setup.
   bool lock() noexcept { return attribute_.lock(); }
 
-  /// The correction that the device holds. kNoReading: the driver does not report it. setup.
+  /// Reads the correction that the device has now. kNoReading: the driver does not report it. setup.
   HalFault read_back(AxisTravel& correction) noexcept;
-  /// Reads the code of the device and writes the same code again, which moves nothing. kNoReading: the driver
-  /// does not give the code; it was not written. setup.
+  /// Reads the code of the device and writes the same code again: the axis does not move. kNoReading: the
+  /// driver does not give the code; it was not written. setup.
   HalFault rewrite() noexcept;
-  /// Writes that asked for more than the range has.
+  /// Returns the number of writes whose correction was beyond the range.
   std::uint64_t held_at_end() const noexcept { return held_at_end_; }
 
   const AnalogueScale& scale() const noexcept { return converter_.scale(); }

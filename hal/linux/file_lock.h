@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// A file or directory that one process has to itself (flock(2)), until it closes its descriptor or ends.
+/// A lock (flock(2)) on a file or directory: one process has it until it closes its descriptor or ends.
 class FileLock {
  public:
   /// Locks `path`, which exists. Returns empty, or the reason of a failure: "in use by another process".
@@ -19,7 +19,7 @@ class FileLock {
   int fd_ = -1;
 };
 
-/// Locks an open descriptor; false if another process has it. setup.
+/// Locks an open descriptor; false if another process has the lock. setup.
 bool lock_descriptor(int fd) noexcept;
 
 }  // namespace vernier

@@ -9,20 +9,20 @@
 
 namespace vernier {
 
-/// Where a line is.
+/// Address of a line: chip and line.
 struct GpioAddress {
   std::string chip;  // "gpiochip0", a path, or the label that the driver gives its chip
   unsigned line = 0;
   bool inverted = false;  // on is the low level
 };
 
-/// A line of the kernel's GPIO character device, by libgpiod 1.6 or 2; gpio_lines.cpp alone knows which.
+/// A line of the kernel's GPIO character device, by libgpiod 1.6 or 2; only gpio_lines.cpp knows the version.
 class GpioLine {
  public:
   enum class Use { kInput, kOutput, kEdges };
 
-  /// Requests the line; an output starts off. Null with `error` set if there is no such chip or line, or if
-  /// it is in use. setup.
+  /// Requests the line; an output starts off. Returns null with `error` set if the chip or line does not
+  /// exist, or if the line is in use. setup.
   static std::unique_ptr<GpioLine> request(const GpioAddress& address, Use use, std::string& error);
   virtual ~GpioLine() = default;
 
@@ -33,19 +33,20 @@ class GpioLine {
   virtual void read_edges(EdgeQueue& queue) noexcept = 0;
 };
 
-/// The edges of a probe's line, stamped by the kernel in the interrupt by CLOCK_MONOTONIC (from Linux 5.7 on;
-/// an edge of an older kernel, stamped by another clock, is reported as lost). Two edges that are closer than
-/// the interrupt's latency are reported as a loss, because the kernel reads the level after the interrupt.
+/// Edges of a probe's line with the time at which the kernel's interrupt saw them (CLOCK_MONOTONIC, from
+/// Linux 5.7 on). An edge of an older kernel, with the time of another clock, is reported as lost. Two edges
+/// that are closer than the latency of the interrupt are reported as a loss: the kernel reads the level after
+/// the interrupt.
 class GpioProbeLine : public ProbeLine {
  public:
   static std::unique_ptr<GpioProbeLine> open(const GpioAddress& address, std::string& error);
 
   HalFault read_edge(ProbeEdge& edge) noexcept override;
-  /// The kernel does not know its interrupt's latency: 0.
+  /// Returns 0: the kernel does not know the latency of its interrupt.
   InstantNs resolution() const noexcept override { return InstantNs{}; }
   /// Times that edges were missing; only goes up.
   std::uint64_t losses() const noexcept { return queue_.losses(); }
-  /// 1: the probe touches, 0: it does not, -1: the line cannot be read. setup.
+  /// Reads the line. 1: the probe touches, 0: the probe does not touch, -1: the line cannot be read. setup.
   int level() noexcept { return line_->get(); }
 
  private:
@@ -65,8 +66,8 @@ class GpioInput : public DigitalInput {
   std::unique_ptr<GpioLine> line_;
 };
 
-/// A digital output. Off when it is opened and when it is closed; a process that is killed leaves it as the
-/// chip's driver does, often as it was.
+/// A digital output. The output is off when it is opened and when it is closed. After a killed process the
+/// output has the state that the chip's driver leaves, often unchanged.
 class GpioOutput : public DigitalOutput {
  public:
   static std::unique_ptr<GpioOutput> open(const GpioAddress& address, std::string& error);

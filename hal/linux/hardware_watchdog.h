@@ -5,19 +5,20 @@
 
 namespace vernier {
 
-/// A watchdog of the kernel (/dev/watchdog): it resets the computer if it is not fed within its time.
+/// A watchdog of the kernel (/dev/watchdog): resets the computer if the daemon does not feed it within its
+/// time.
 class HardwareWatchdog {
  public:
-  /// Starts the watchdog immediately, with a time of `seconds` if the driver allows to set it. Null with
-  /// `error` set if it cannot be opened. setup.
+  /// Starts the watchdog immediately, with a time of `seconds` if the driver supports setting the time.
+  /// Returns null with `error` set if the watchdog cannot be opened. setup.
   static std::unique_ptr<HardwareWatchdog> open(const std::string& device, int seconds, std::string& error);
-  /// Without disarm() the computer is reset when its time is over.
+  /// Without an earlier disarm(), the watchdog resets the computer when its time is over.
   ~HardwareWatchdog();
   HardwareWatchdog(const HardwareWatchdog&) = delete;
   HardwareWatchdog& operator=(const HardwareWatchdog&) = delete;
 
   void feed() noexcept;
-  /// An orderly end: the watchdog stops if the driver allows it. setup.
+  /// Stops the watchdog at an orderly end, if the driver supports this. setup.
   void disarm() noexcept;
 
  private:

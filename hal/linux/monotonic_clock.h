@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// CLOCK_MONOTONIC, with absolute sleeps so that a late wake-up does not shift the next.
+/// The clock CLOCK_MONOTONIC. Sleeps are absolute, so that a late wake-up does not shift the next.
 class MonotonicClock : public Clock {
  public:
   InstantNs now() noexcept override;

@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// The settings that the operating system granted; for the others, the errno.
+/// The realtime settings that the operating system granted; for each refused setting, the errno.
 struct RealtimeGrant {
   int memory_error = 0;    // mlockall
   int schedule_error = 0;  // SCHED_FIFO
@@ -12,8 +12,8 @@ struct RealtimeGrant {
 };
 
 /// Makes the calling thread a realtime thread: memory locked, stack touched, SCHED_FIFO, deep idle states off
-/// while the process lives. Continues without the refused settings; the caller reports them. priority: 1..99.
-/// setup.
+/// while the process lives. Continues without the refused settings; the caller reports the refused settings.
+/// priority: 1..99. setup.
 RealtimeGrant become_realtime(int priority) noexcept;
 
 /// Gives the calling thread only SCHED_FIFO, for a thread beside the tick. Returns 0 or the errno. setup.
@@ -22,7 +22,7 @@ int become_realtime_thread(int priority) noexcept;
 /// Threads made from now on have stacks of 1 MB, in the place of 8 that would all be locked in memory. setup.
 void keep_stacks_small() noexcept;
 
-/// Bytes of stack that become_realtime touches, so that the tick does not fault pages in.
+/// Number of stack bytes that become_realtime touches, so that no page fault occurs in the tick.
 constexpr std::size_t kPrefaultedStack = std::size_t{256} * 1024;
 
 }  // namespace vernier

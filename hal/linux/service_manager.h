@@ -4,17 +4,18 @@
 namespace vernier {
 
 /// Reports the state of the daemon to the service manager, by the datagram protocol of systemd
-/// (sd_notify(3)); no action if no service manager requested it. It never waits: a message without room is
-/// dropped.
+/// (sd_notify(3)). Without a service manager nothing is sent. ServiceManager never waits: a message that does
+/// not fit is dropped.
 class ServiceManager {
  public:
-  /// Its address is in NOTIFY_SOCKET. setup.
+  /// Reads the address of the service manager from NOTIFY_SOCKET. setup.
   ServiceManager() noexcept;
   ~ServiceManager();
   ServiceManager(const ServiceManager&) = delete;
   ServiceManager& operator=(const ServiceManager&) = delete;
 
-  /// state: "READY=1", "WATCHDOG=1", "STOPPING=1". False if it was requested and failed. setup.
+  /// state: "READY=1", "WATCHDOG=1", "STOPPING=1". Returns false if a service manager is present and the
+  /// message could not be sent. setup.
   bool notify(const char* state) noexcept;
 
  private:

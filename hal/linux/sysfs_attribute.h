@@ -8,19 +8,20 @@
 
 namespace vernier {
 
-/// One attribute of a device in sysfs: a number as text. Opened once in setup and then read or written at its
-/// beginning, each time a single system call without allocation.
+/// One attribute of a device in sysfs: a number as text. The attribute is opened once in setup. Each read or
+/// write at its beginning is a single system call without allocation.
 class SysfsAttribute {
  public:
   enum class Use { kRead, kWrite, kBoth };
 
-  /// Empty with `error` set ("/sys/...: No such file or directory") if it cannot be opened. setup.
+  /// Returns nullopt with `error` set ("/sys/...: No such file or directory") if the attribute cannot be
+  /// opened. setup.
   static std::optional<SysfsAttribute> open(const std::string& path, Use use, std::string& error);
   SysfsAttribute(SysfsAttribute&& other) noexcept;
   SysfsAttribute& operator=(SysfsAttribute&& other) noexcept;
   ~SysfsAttribute();
 
-  /// Takes it for exclusive use; false if another process has it. setup.
+  /// Takes the attribute for exclusive use; false if another process uses it. setup.
   bool lock() noexcept;
 
   /// Writes the number and a line feed. kRefused: the driver or the device refused. realtime, if the bus of
@@ -28,11 +29,11 @@ class SysfsAttribute {
   HalFault write(std::int64_t value) noexcept;
   /// Writes a word ("normal"). setup.
   HalFault write(const std::string& word) noexcept;
-  /// A decimal number, with or without a fraction, in millionths; further digits are cut off. kNoReading: the
-  /// driver gave an error, an empty text, or no number; `micro` is not changed. Waits as long as the driver
-  /// does.
+  /// Reads a decimal number, with or without a fraction, in millionths; further digits are cut off.
+  /// kNoReading: the driver gave an error, an empty text, or no number; `micro` is then not changed. Waits as
+  /// long as the driver does.
   HalFault read_micro(std::int64_t& micro) noexcept;
-  /// The same for a whole number. setup.
+  /// Reads a whole number; errors as for read_micro. setup.
   HalFault read(std::int64_t& value) noexcept;
 
  private:
@@ -42,7 +43,8 @@ class SysfsAttribute {
   int fd_ = -1;
 };
 
-/// Reads "-12.345678\n" as -12345678 millionths. False: no such number, or beyond ±10^12. No allocation.
+/// Reads "-12.345678\n" as -12345678 millionths. Returns false: no such number, or beyond ±10^12. parse_micro
+/// does not allocate memory.
 bool parse_micro(const char* text, std::size_t size, std::int64_t& micro) noexcept;
 
 }  // namespace vernier

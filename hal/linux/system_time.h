@@ -7,7 +7,7 @@
 namespace vernier {
 
 inline constexpr std::int64_t kNsPerS = 1'000'000'000;
-/// A signal may interrupt a call; so many in one call are no accident.
+/// Largest number of interruptions of one system call by signals; a larger number is an error.
 inline constexpr int kMostInterruptions = 1000;
 
 inline std::int64_t ns_of(const timespec& time) noexcept {

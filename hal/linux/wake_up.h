@@ -4,20 +4,20 @@
 
 namespace vernier {
 
-/// Wakes a thread that waits in wait() or in a poll() of its handle. A wake-up before the wait ends the wait
+/// Wakes a thread that waits in wait() or in a poll() of the handle. A wake-up before the wait ends the wait
 /// immediately.
 class WakeUp {
  public:
-  /// Never throws: if the system has no more handles, waits end by their time alone. setup.
+  /// Never throws: if the system has no more handles, waits end after their time only. setup.
   WakeUp() noexcept;
   ~WakeUp();
   WakeUp(const WakeUp&) = delete;
   WakeUp& operator=(const WakeUp&) = delete;
 
   void wake() noexcept;
-  /// At most `wait`; takes the wake-up. setup.
+  /// Waits at most `wait` for a wake-up, and clears the wake-up. setup.
   void wait(TimeUs wait) noexcept;
-  /// The handle for poll(), and the function that clears the wake-up after it.
+  /// handle() is for poll(). After poll() call clear(), which clears the wake-up.
   int handle() const noexcept { return fd_; }
   void clear() noexcept;
 

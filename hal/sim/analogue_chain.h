@@ -8,11 +8,10 @@
 
 namespace vernier {
 
-/// The published way from a correction to an axis: a converter gives 0..10 V, the drive adds 25 um per volt
-/// beyond 5 V (Aerotech A3200, encoder offset from an analogue input). A converter of b bits has 2^b - 1
-/// codes of 10 V / (2^b - 1) each; code 2^(b-1) - 1 is calibrated to give 5 V, so 127 of 8 bits, and the
-/// codes reach equally far to both sides (8 bits: 127 steps of 0.980392 um = 124.5 um). The published PWM: 8
-/// bits.
+/// The published chain from a correction to an axis: a converter gives 0..10 V, the drive adds 25 um per volt
+/// above 5 V (Aerotech A3200, encoder offset from an analogue input). A converter of b bits has 2^b - 1 codes
+/// of 10 V / (2^b - 1) each. Code 2^(b-1) - 1 is calibrated to give 5 V (8 bits: code 127). The codes reach
+/// equally far to both sides (8 bits: 127 steps of 0.980392 um = 124.5 um). The published PWM has 8 bits.
 class AnalogueChain {
  public:
   static constexpr double kNmPerVolt = 25000, kRangeVolt = 10;
@@ -25,7 +24,7 @@ class AnalogueChain {
   double step_nm() const { return step_nm_; }
   std::int64_t last_code() const { return 2 * zero_code_; }
 
-  /// Nearest code, limited to the first and last.
+  /// Returns the nearest code, limited to the first and last.
   std::int64_t code_for(AxisTravel correction_nm) const {
     return std::clamp<std::int64_t>(wanted_code(correction_nm), 0, last_code());
   }
@@ -33,7 +32,7 @@ class AnalogueChain {
   bool saturates(AxisTravel correction_nm) const {
     return wanted_code(correction_nm) != code_for(correction_nm);
   }
-  /// Value that the drive adds to its axis, nm.
+  /// Returns the value that the drive adds to its axis, nm.
   double offset_nm(std::int64_t code) const { return static_cast<double>(code - zero_code_) * step_nm_; }
 
  private:

@@ -21,7 +21,7 @@ enum class PlantFaultKind : std::uint8_t {
   kSensorWild,       // the input reads `counts` more than it should
 };
 
-/// One thing that goes wrong during [first, first + ticks) of the plant's own count of ticks.
+/// One simulated fault during [first, first + ticks) of the plant's own count of ticks.
 struct PlantFault {
   PlantFaultKind kind;
   std::uint32_t index;  // axis or input
@@ -30,7 +30,7 @@ struct PlantFault {
   std::int64_t counts = 0;
 };
 
-/// How imperfect the instruments are.
+/// Imperfections of the simulated instruments.
 struct PlantOptions {
   std::uint64_t seed = 1;
   double position_noise_counts = 0;  // standard deviation
@@ -42,21 +42,21 @@ struct PlantOptions {
   std::vector<PlantFault> faults;
 };
 
-/// A seeded machine on a trajectory, read through imperfect instruments. The same seed gives the same
-/// readings. It is at the trajectory's first point until release().
+/// A seeded machine on a trajectory, read through imperfect instruments. The same seed of SimPlant gives the
+/// same readings. The simulated machine stays at the first point of its trajectory until release().
 class SimPlant : public AxisReader, public InputReader, public CorrectionWriter {
  public:
   SimPlant(Trajectory& trajectory, std::uint32_t axes, std::uint32_t inputs, PlantOptions options = {});
 
-  /// The next tick begins; call it once before each tick of the firmware.
+  /// Begins the next tick of the plant; call advance() once before each tick of the firmware.
   void advance() noexcept;
   /// The motion begins with the next tick.
   void release() noexcept { released_ = true; }
-  /// Ticks since construction; tick 0 is the one after the first advance().
+  /// Returns the ticks since construction; tick 0 is the tick after the first advance().
   std::int64_t tick() const noexcept { return tick_; }
-  /// Tick of the trajectory; 0 until released.
+  /// Returns the tick of the trajectory; 0 until released.
   std::int64_t path_tick() const noexcept { return path_tick_; }
-  /// The correction that the drive holds.
+  /// Returns the correction that the drive has.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
 
   HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override;

@@ -12,14 +12,15 @@ struct RoamingAxis {
   std::int64_t low, high;
 };
 
-/// Every axis moves through its range as a sine with seeded period and phase, at no more than a given share
-/// of the range per second; inputs have given values. Exact velocities, accelerations and reversals.
+/// A trajectory in which every axis moves through its range as a sine with seeded period and phase. The speed
+/// is at most a given share of the range per second; inputs have given values. Roaming gives exact
+/// velocities, accelerations and reversals.
 class Roaming : public Trajectory {
  public:
   /// tick: time between two ticks; share_per_s: peak speed over range, 1/s.
   Roaming(const std::vector<RoamingAxis>& axes, std::vector<InputMicro> inputs, TimeUs tick,
           double share_per_s, std::uint64_t seed);
-  /// Lets an input swing around its value as a sine: amplitude in 1e-6 of its unit. setup.
+  /// Lets an input oscillate around its value as a sine: amplitude in 1e-6 of its unit. setup.
   void vibrate(std::uint32_t input, double amplitude_micro, double frequency_Hz);
   void at(std::int64_t tick, PlantState& state) noexcept override;
 

@@ -8,7 +8,8 @@
 
 namespace vernier {
 
-/// Simulated time: it passes in sleep_until and in spend(). Optionally wakes late by a seeded random time.
+/// Simulated time, which passes only in sleep_until and in spend(). A SimClock can wake late by a seeded
+/// random time.
 class SimClock : public Clock {
  public:
   /// most_late: wake-ups are late by 0..most_late, evenly spread.

@@ -4,8 +4,8 @@
 
 namespace vernier {
 
-/// A probe's line whose edges are put in by hand, at moments of the board's clock. An edge is delivered when
-/// it is read, however far in the future its moment is.
+/// A probe's line for tests: the test puts in the edges, at moments of the board's clock. read_edge delivers
+/// an edge even if its moment is in the future.
 class SimProbeLine : public ProbeLine {
  public:
   /// resolution: how far the stamps may be from the edges.

@@ -8,8 +8,9 @@
 
 namespace vernier {
 
-/// Slots in memory whose power can be cut at any byte of any write: the bytes before the cut are new, the
-/// rest is old, and no further byte is written until restore_power(). It can also be full, or fail to write.
+/// Slots in memory whose power can be cut at any byte of any write. The bytes before the cut are new, the
+/// other bytes are old; no further byte is written until restore_power(). A SimSlotStore can also be full, or
+/// fail to write.
 class SimSlotStore : public SlotStore {
  public:
   explicit SimSlotStore(std::uint32_t capacity) : capacity_(capacity) {}
@@ -21,7 +22,7 @@ class SimSlotStore : public SlotStore {
   }
   void restore_power() { limited_ = dead_ = false; }
   bool dead() const { return dead_; }
-  /// Bytes written so far.
+  /// Returns the number of bytes written so far.
   std::uint64_t written() const { return written_; }
   /// The medium has no room for more image bytes than that.
   void fill_up_to(std::uint32_t bytes) { room_ = bytes; }

@@ -19,7 +19,7 @@ struct PlantState {
 class Trajectory {
  public:
   virtual ~Trajectory() = default;
-  /// tick: 0 is the start; any later one, in any order.
+  /// Computes the state at a tick. tick: 0 is the start; later ticks may be asked in any order.
   virtual void at(std::int64_t tick, PlantState& state) noexcept = 0;
 };
 

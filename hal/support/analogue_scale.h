@@ -8,12 +8,12 @@
 
 namespace vernier {
 
-/// From a correction to the code of a converter, or to the on-time of a pulse width in ns: linear, rounded to
-/// the nearest code, held at both ends.
+/// Converts a correction to the code of a converter, or to the on-time of a pulse width in ns. Linear,
+/// rounded to the nearest code, limited at both ends.
 ///
 ///   code = zero + round(±correction * codes / span), halves away from zero
 ///
-/// The quotient is the only rounding, and exact.
+/// The quotient is the only rounding of the code, and is exact.
 struct AnalogueScale {
   static constexpr std::int64_t kMostCounts = RoundedRatio::kMost;  // of a correction; beyond is held
 
@@ -23,16 +23,16 @@ struct AnalogueScale {
   std::int64_t low = 0, high = 0;  // ends of the range that is used, codes; 0 <= low < high
   bool inverted = false;           // a positive correction lowers the code
 
-  /// True if it can be used. setup.
+  /// True if the scale can be used. setup.
   bool valid() const noexcept {
     return span > 0 && span <= kMostCounts && codes > 0 && codes <= INT32_MAX && low >= 0 && low < high &&
            high <= INT32_MAX && zero >= low && zero <= high;
   }
-  /// Code of a correction, beyond the ends too, and the code that is written; in the tick AnalogueConverter
-  /// finds them. setup.
+  /// wanted_code returns the code of a correction, without limits; code_for returns the code that is written.
+  /// In the tick, AnalogueConverter computes both. setup.
   std::int64_t wanted_code(AxisTravel correction) const noexcept;
   std::int64_t code_for(AxisTravel correction) const noexcept;
-  /// Correction that a code represents, to the nearest count. code: 0 .. 2^31. setup.
+  /// Returns the correction that a code represents, to the nearest count. code: 0 .. 2^31. setup.
   AxisTravel correction_of(std::int64_t code) const noexcept {
     const std::int64_t off = RoundedRatio(span, codes).of(code - zero);
     return AxisTravel(inverted ? -off : off);
@@ -42,16 +42,16 @@ struct AnalogueScale {
 /// A scale at work. realtime.
 class AnalogueConverter {
  public:
-  /// scale: a valid one. setup.
+  /// scale: must be valid(). setup.
   explicit AnalogueConverter(const AnalogueScale& scale) noexcept
       : scale_(scale), ratio_(scale.codes, scale.span) {}
 
-  /// Code of a correction, beyond the ends too. correction: any. realtime.
+  /// Returns the code of a correction, without the limits of the range. correction: any. realtime.
   std::int64_t wanted_code(AxisTravel correction) const noexcept {
     const std::int64_t off = ratio_.of(correction.count);
     return scale_.zero + (scale_.inverted ? -off : off);
   }
-  /// Code that is written. realtime.
+  /// Returns the code that is written. realtime.
   std::int64_t code_for(AxisTravel correction) const noexcept {
     return clamp(wanted_code(correction), scale_.low, scale_.high);
   }

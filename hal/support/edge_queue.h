@@ -6,16 +6,16 @@
 
 namespace vernier {
 
-/// Edges that were received and have not been read. Keeps their order and records where edges are missing.
-/// The line of a probe closes and opens in turn: two edges of one kind in a row have lost one between them. A
-/// kernel that numbers its edges shows every loss.
+/// Edges that were received and have not been read. EdgeQueue keeps the order of the edges and records where
+/// edges are missing. The line of a probe closes and opens in turn: if two edges of one kind follow each
+/// other, an edge between them is lost. A kernel that numbers its edges makes every loss visible.
 class EdgeQueue {
  public:
   static constexpr std::uint32_t kRoom = 128;
   static constexpr std::uint32_t kNoNumber = 0;
 
-  /// number: one more with each edge, from 1; kNoNumber if the device gives no numbers. Without room the edge
-  /// is dropped and reported as lost. realtime.
+  /// Adds an edge. number: increases by one with each edge, from 1; kNoNumber if the device gives no numbers.
+  /// If the queue is full, the edge is dropped and reported as lost. realtime.
   void put(const ProbeEdge& edge, std::uint32_t number = kNoNumber) noexcept {
     if (count_ == kRoom) return put_loss();
     const bool out_of_turn = known_ && edge.made == last_made_;
@@ -27,7 +27,7 @@ class EdgeQueue {
     last_made_ = edge.made;
     last_number_ = number;
   }
-  /// Edges were lost after the last one that was put in. realtime.
+  /// Records that edges were lost after the last edge in the queue. realtime.
   void put_loss() noexcept {
     loss_ = true;
     known_ = false;

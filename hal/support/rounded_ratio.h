@@ -8,8 +8,8 @@
 namespace vernier {
 
 /// round(value * numerator / denominator), halves away from zero, exact to the last bit and without a
-/// division. The ratio is computed once; a product with it is the quotient or one less, and the remainder
-/// decides which.
+/// division. The ratio is computed once. The product of a value with the ratio is the quotient or one less;
+/// the remainder decides which.
 class RoundedRatio {
  public:
   static constexpr std::int64_t kMost = std::int64_t{1} << 50;
@@ -29,7 +29,7 @@ class RoundedRatio {
     }
   }
 
-  /// value: limited to +-kMost, and so is the result. realtime.
+  /// value: limited to +-kMost; the result is limited too. realtime.
   constexpr std::int64_t of(std::int64_t value) const noexcept {
     const bool beyond = value >= kMost || value <= -kMost;
     const auto size = static_cast<std::uint64_t>(beyond ? kMost : magnitude_of(value));

@@ -121,7 +121,7 @@ TEST_F(Check, NamesAConverterThatIsNotThere) {
 
 TEST_F(Check, NamesAConverterThatRefuses) {
   files_.break_writes("iio:device3/out_voltage1_raw");
-  expect_missing("missing  axis.Y.output  iio-dac: the value that it has cannot be read");
+  expect_missing("missing  axis.Y.output  iio-dac: its present value cannot be read");
 }
 
 // The board file's own span does not stand in for a calibration that is named and not there.
@@ -129,9 +129,10 @@ TEST_F(Check, NamesACalibrationThatIsNotThere) {
   write(replaced(kBoard, "span = 0.25 }", "span = 0.25, calibration = \"typo.toml\" }"));
   const Said said = run("--check");
   EXPECT_EQ(said.status, 2) << said.text;
-  EXPECT_NE(said.text.find("missing  axis.X.output  calibration " + files_.path() +
-                           "/typo.toml: no such file; vernierd --calibrate X makes it\n"),
-            std::string::npos)
+  EXPECT_NE(
+      said.text.find("missing  axis.X.output  calibration " + files_.path() +
+                     "/typo.toml: the calibration file does not exist; vernierd --calibrate X makes it\n"),
+      std::string::npos)
       << said.text;
   EXPECT_NE(said.text.find("1 file: 1 missing\n"), std::string::npos) << said.text;
   EXPECT_EQ(run("--seconds 0.1").status, 2) << "it does not run uncalibrated";
@@ -178,7 +179,7 @@ TEST_F(Check, HearsASensorsBufferAndNamesOneThatIsSilent) {
       "[input.a]\nunit = \"m/s^2\"\nsource = { kind = \"iio-buffer\", root = \"ROOT\", devices = "
       "\"ROOT/dev\", device = \"adxl355\", channel = \"accel_x\", scale = 0.001 }\n";
   write(buffered);
-  expect_missing("missing  input.a  iio-buffer: no scan has come within 1 s");
+  expect_missing("missing  input.a  iio-buffer: no scan of this sensor has come within 1 s");
   const int pipe = ::open((files_.path() + "/dev/iio:device5").c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   std::atomic<bool> stop{false};
   std::thread feeder([&] {
@@ -197,7 +198,7 @@ TEST_F(Check, HearsASensorsBufferAndNamesOneThatIsSilent) {
         "\"adxl355\", channel = \"accel_x\", scale = 0.001 }\n");
   const Said twice = run("--check");
   EXPECT_EQ(twice.status, 1);
-  EXPECT_NE(twice.text.find("another input has this channel"), std::string::npos) << twice.text;
+  EXPECT_NE(twice.text.find("another input uses this channel"), std::string::npos) << twice.text;
 }
 
 TEST_F(Check, NamesABusThatIsNotThere) {
@@ -348,7 +349,7 @@ TEST_F(Check, CalibrationIsStoredAndUsed) {
   write(replaced(kBoard, "codes = 255, span = 0.25, zero = 127, high = 254 }", uncalibrated));
   Said said = run("--check");
   EXPECT_EQ(said.status, 1) << said.text;
-  EXPECT_NE(said.text.find("y.toml is not there yet; vernierd --calibrate makes it"), std::string::npos)
+  EXPECT_NE(said.text.find("y.toml does not exist; make it with vernierd --calibrate"), std::string::npos)
       << said.text;
   // GIVEN what a gauge says at three codes: 0.5 um a code, nothing at code 100, falling
   const std::string answers = "printf '50\\n-13.5\\n-77\\n-13.5\\n50\\n' | ";

@@ -216,7 +216,7 @@ void require_fit(const model::Machine& machine) {
   if (!machine.fitted)
     throw text::InputError(
         {machine.file, 0}, machine.name,
-        "was never fitted (no <fitted>): a check needs to know how well the machine is known");
+        "was never fitted (no <fitted>): a check needs the uncertainty of a fit; run vernier fit first");
 }
 
 }  // namespace

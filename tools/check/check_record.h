@@ -9,15 +9,15 @@
 
 namespace vernier::check {
 
-/// Something that may be other than it was when the machine was fitted.
+/// A parameter that may have changed since the machine was fitted.
 struct Suspect {
   std::string name, unit;
   bool of_instrument = false;
   bool operator==(const Suspect&) const = default;
 };
 
-/// The data that are kept of one check: the sensitivity of its readings to the tested parameters, in units of
-/// their uncertainty, with its set-ups projected out.
+/// Stored data of one check: the sensitivity of its readings to the tested parameters, in units of their
+/// uncertainty, after projection of its set-ups.
 struct CheckRecord {
   std::string label;              // time or name of the check
   std::vector<Suspect> suspects;  // the machine's free parameters first, in their order
@@ -30,15 +30,15 @@ struct CheckRecord {
 };
 
 /// Evaluates a measurement against a fitted machine; fit and check rows are treated alike. The set-up of the
-/// instrument is fitted again, with any rotation, and its columns are taken there. Tested parameters are the
-/// free parameters. Further tested parameters, if the chain has them and they are not the same: reversal and
-/// scale of every axis, a tilt and an offset of every transform, a drift of the instrument along each
-/// direction that it reads. Throws InputError if the machine was never fitted. tool.
+/// instrument is fitted again, with any rotation. The sensitivities are computed at the new set-up. Tested
+/// parameters are the free parameters. Further tested parameters, unless the chain has the same ones as free
+/// parameters: reversal and scale of every axis, a tilt and an offset of every transform, a drift of the
+/// instrument along each direction that it reads. Throws InputError if the machine was never fitted. tool.
 CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
                       std::string label);
 
-/// The same tested parameters as columns at the set-up of the machine file: the effect of a change by 1 on
-/// each reading, divided by the uncertainty of the reading.
+/// The tested parameters of CheckRecord as columns at the set-up of the machine file. A column is the effect
+/// of a change by 1 on each reading, divided by the uncertainty of the reading.
 struct SuspectColumns {
   std::vector<Suspect> suspects;
   std::size_t parameters = 0;

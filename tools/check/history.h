@@ -7,17 +7,17 @@
 
 namespace vernier::check {
 
-/// All checks of one machine, as stored in a file (JSON).
+/// All checks of one machine, as a file (JSON) stores them.
 struct CheckHistory {
   std::string machine;  // name and parameters of the fit that they were made against
   std::vector<CheckRecord> checks;
 };
 
-/// What `machine` of a history must be for a fitted machine: other numbers make another history.
+/// Returns the identity of a fitted machine for a history: other fitted numbers need a new history.
 std::string identity_of(const model::Machine& machine);
 
-/// Converts to the text of the file, and back. A file of version 1 has no usable record and is read as the
-/// file of no machine. Throws InputError with the file and the error in it. tool.
+/// Converts a history to the text of its file, and back. A file of version 1 has no usable record and is read
+/// as the file of no machine. Throws InputError with the file and the error in the file. tool.
 std::string history_text(const CheckHistory& history);
 CheckHistory parse_history(const std::string& text, const std::string& file);
 

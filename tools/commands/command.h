@@ -8,9 +8,10 @@
 
 namespace vernier::commands {
 
-/// Adds one subcommand to `vernier`. Its callback does the job; it throws InputError (exit 1) or LimitNotMet
-/// (exit 2) and returns normally otherwise (exit 0). Anything else that escapes is our bug (exit 70). One
-/// function a command, listed by topic in tools/commands/vernier.cpp.
+/// Adds one subcommand to `vernier`. The callback of the subcommand does the job. It throws InputError (exit
+/// 1) or LimitNotMet (exit 2) and returns normally otherwise (exit 0). Any other exception of a callback is
+/// an error of Vernier (exit 70). Each command has one such function; tools/commands/vernier.cpp lists the
+/// functions by topic.
 using RegisterCommand = void (*)(CLI::App& vernier);
 
 namespace ballbar_path_cli {
@@ -142,9 +143,9 @@ inline constexpr const char* kResidualsHelp =
 /// Output of the human-readable lines: standard output, or standard error if `--json -` uses standard output.
 std::FILE* human_stream(const std::string& json_path);
 
-/// Progress of a job that may take more than two seconds, on standard error. On a terminal the line is
-/// updated; else each step is one line. With VERNIER_PROGRESS=lines (a program reads them) every step is
-/// printed immediately.
+/// Progress of a job that may take more than two seconds, on standard error. On a terminal the progress line
+/// is updated; else each step is one line. With VERNIER_PROGRESS=lines (for a program that reads them) every
+/// step is printed immediately.
 class Progress {
  public:
   explicit Progress(std::string what);

@@ -6,7 +6,7 @@
 
 namespace vernier::commands {
 
-/// Repeats the findings of the last fit of a machine file, one line each on standard error.
+/// Prints the findings of the last fit of a machine file on standard error, one line each.
 void repeat_findings(const model::Machine& machine);
 
 /// Reads a machine file and repeats the findings of its last fit. Throws InputError. tool.

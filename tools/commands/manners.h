@@ -9,11 +9,12 @@ namespace vernier::commands {
 /// `vernier help fit` as `vernier fit --help`, `vernier help` as `vernier --help`. tool.
 std::vector<std::string> without_help_command(std::vector<std::string> arguments);
 
-/// Throws InputError if the first word is not the name of a command or of one of its kinds, with the most
-/// similar name. tool.
+/// Throws InputError if the first word is not the name of a command or of a kind of a command; the error
+/// suggests the most similar name. tool.
 void require_known_commands(const CLI::App& vernier, const std::vector<std::string>& arguments);
 
-/// Suggestion for an unknown option in a parser's message: "did you mean --json?"; else empty. tool.
+/// Returns a suggestion for an unknown option in a parser's message: "did you mean --json?"; else an empty
+/// text. tool.
 std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error);
 
 /// Makes every option of a number accept finite decimals only, and every count only values that are not
@@ -24,8 +25,8 @@ void take_plain_numbers(CLI::App& vernier);
 /// command. tool.
 void require_files_in_their_places(const CLI::App& vernier, const std::vector<std::string>& arguments);
 
-/// Prints the warnings of lint on the machine file of a command that fits, evaluates or compiles it: on
-/// standard error, one line each, once. tool.
+/// Prints the warnings of lint on the machine file, if the command fits, evaluates or compiles the machine.
+/// Output: standard error, one line each, once. tool.
 void warn_of_machine(const CLI::App& vernier);
 
 /// The command that reads the spreadsheet of an error message; empty for other messages. tool.

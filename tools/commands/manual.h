@@ -5,8 +5,8 @@
 
 namespace vernier::commands {
 
-/// The manual page (troff, man macros) of a command, from the same definitions as its --help. `names`: the
-/// words to it, "vernier fit". version: "vernier 1.2.0". tool.
+/// Returns the manual page (troff, man macros) of a command, from the definitions of its --help. names: the
+/// words of the command, "vernier fit". version: "vernier 1.2.0". tool.
 std::string manual_page(const CLI::App& command, const std::string& names, const std::string& version);
 
 }  // namespace vernier::commands

@@ -14,10 +14,10 @@ struct ReportHeader {
   std::vector<std::string> given;  // --header "serial number=4711"
   std::string file;                // --letterhead: lines of such entries, for all reports of a shop
 
-  /// In the order of file, then arguments. An entry that is given twice keeps its first position with its
-  /// last text. Throws InputError with file and line, or the text of the option.
+  /// Returns the entries of the file, then those of the arguments. An entry that is given twice keeps its
+  /// first position and its last text. Throws InputError with file and line, or the text of the option.
   std::vector<std::pair<std::string, std::string>> entries() const;
-  /// The page with them, as tools/report/report.h draws them.
+  /// Returns the page with the entries, as tools/report/report.h draws them.
   nlohmann::ordered_json on(nlohmann::ordered_json page) const;
 };
 

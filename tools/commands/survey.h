@@ -18,7 +18,7 @@ struct SurveyArguments {
 /// MACHINE, MEAS, --images and --column.
 void add_survey(CLI::App& command, SurveyArguments& arguments);
 
-/// The same, read: columns whose role is stated are inputs of the machine.
+/// A survey after reading: columns whose role is stated are inputs of the machine.
 struct Survey {
   std::string text;
   model::Machine machine;

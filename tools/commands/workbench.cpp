@@ -88,13 +88,13 @@ std::vector<std::uint8_t> board_image(const std::string& url, const std::string&
   Progress progress("image-diff");
   auto upload =
       client.confirmed([&](double share) { progress.update(share, "reading what the board runs"); });
-  if (!upload) throw text::LimitNotMet("the board's store has no confirmed image");
+  if (!upload) throw text::LimitNotMet("the store of the board has no confirmed image");
   return upload::image_in(*upload);
 }
 
 void run_diff(const DiffArguments& arguments) {
   if (arguments.with.empty() == arguments.url.empty())
-    throw text::InputError("either --with DIR or --to URL");
+    throw text::InputError("give either --with DIR or --to URL");
   const auto mine = image_bytes(arguments.directory);
   const auto other =
       arguments.url.empty() ? image_bytes(arguments.with) : board_image(arguments.url, arguments.key);

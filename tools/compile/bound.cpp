@@ -74,7 +74,7 @@ OutputBound bound_of(const model::Machine& machine, const Derivation& d, const L
     blame(p.registers[r].name, name_of(p.registers[r].source), gain[r] * p.registers[r].own_error);
     first_order += gain[r] * p.registers[r].own_error;
   }
-  blame("errors multiplied with each other", "rounding", result.error - first_order);
+  blame("products of errors", "rounding", result.error - first_order);
   const double factor = std::ldexp(out.multiplier, -static_cast<int>(out.shift)),
                counts_per_unit = rotary ? static_cast<double>(kTurnCounts) / 360 : 1e6,
                exact = std::ldexp(counts_per_unit, -result.fraction_bits);

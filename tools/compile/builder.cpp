@@ -398,7 +398,7 @@ ProgramBuilder::Id ProgramBuilder::look_up(Id position, LoweredTable table, std:
 ProgramBuilder::Id ProgramBuilder::sine_cosine(Id angle, const Interval& sine, const Interval& cosine) {
   const double per_count = std::ldexp(4294967296.0 / 360, -at(angle).fraction_bits);
   const int shift = std::min(30 - std::ilogb(per_count), static_cast<int>(kMaxShift));
-  if (shift < 0) throw text::InputError("cannot be compiled: an angle of too many turns: " + at(angle).name);
+  if (shift < 0) throw text::InputError("cannot be compiled: an angle has too many turns: " + at(angle).name);
   const double multiplier = std::round(std::ldexp(per_count, shift));
   // If rounding reaches 2^31, one less is equally accurate.
   const auto k = static_cast<std::int32_t>(std::min(multiplier, 2147483647.0));

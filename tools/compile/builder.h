@@ -10,27 +10,27 @@
 
 namespace vernier::compile {
 
-/// Registers during the construction of the program. Constants, channels and results are in three
-/// provisional ranges, because the number of constants is known only at the end. finish() closes
-/// the gaps.
+/// Registers during the construction of the program. Constants, channels and results have three provisional
+/// ranges of register numbers, because the number of constants is known only at the end. finish() closes the
+/// gaps between the ranges.
 class ProgramBuilder {
  public:
   using Id = std::uint32_t;
 
   ProgramBuilder();
 
-  /// Adds a constant in the finest format that contains it, or in the given format.
+  /// Adds a constant in the finest format that can represent it, or in the given format.
   Id constant(double value);
   Id constant(double value, int fraction_bits);
-  /// counts: the range in the quantity's own counts; unit: size of a count in the machine file's
-  /// unit. reach: largest magnitude that must be representable in addition to the range (stations
-  /// of a table).
+  /// Adds a channel. channel: with the range in the quantity's own counts; unit: size of a count in the
+  /// machine file's unit; reach: largest magnitude that must be representable in addition to the range
+  /// (stations of a table).
   Id channel(Channel channel, double unit, double reach, const std::string& name);
 
-  /// Makes a register of another program, `source` there, a channel of this one.
+  /// Makes register `source` of the other program a channel of this program.
   Id imported(const LoweredProgram& other, std::uint32_t source);
 
-  /// k*a + l*b. exact: interval of the exact value.
+  /// Adds k*a + l*b. exact: interval of the exact value.
   Id linear(double k, Id a, double l, Id b, const Interval& exact, const std::string& name);
   Id product(Id a, Id b, const Interval& exact, const std::string& name);
   /// A product of two registers, or of a register and a factor; added or subtracted.
@@ -42,19 +42,19 @@ class ProgramBuilder {
   };
   /// Adds constant + the sum of products, rounded once. exact: interval of the exact value.
   Id dot(double constant, std::vector<Product> products, const Interval& exact, const std::string& name);
-  /// Adds an operation whose result has the given format and needs no shift. error: its own, in
-  /// the result's unit.
+  /// Adds an operation whose result has the given format and needs no shift. error: error of the operation
+  /// itself, in the unit of the result.
   Id plain(Instruction step, int fraction_bits, const Interval& exact, double error, ErrorSource source,
            std::vector<Register::Use> uses, const std::string& name);
-  /// Adds one table interpolation. It has a result for each column, in the order of `results`
-  /// (name, format, range, own error and uses). Returns the first result.
+  /// Adds one interpolation in a table to the program. The interpolation has one result per column, in the
+  /// order of `results` (name, format, range, own error and uses). Returns the first result.
   Id look_up(Id position, LoweredTable table, std::vector<Register> results);
-  /// Adds sine and cosine of an angle in deg. The cosine is the register after the returned one.
+  /// Adds sine and cosine of an angle in deg. The cosine is in the register after the returned register.
   Id sine_cosine(Id angle, const Interval& sine, const Interval& cosine);
-  /// Returns a in the given format (without an instruction if it already has that format).
+  /// Returns register a in the given format. No instruction is added if a already has the format.
   Id reformat(Id a, int fraction_bits);
 
-  /// From this call on, the register's value counts as exact (Register::given).
+  /// From this call on, the value of the register counts as exact (Register::given).
   void give(Id id) { registers_[id].given = true; }
 
   std::uint16_t add_wrap(const Wrap& wrap);
@@ -63,7 +63,7 @@ class ProgramBuilder {
   const Register& at(Id id) const { return registers_[id]; }
   const ValueRange& counts(Id id) const { return ranges_[id]; }
   double lsb(Id id) const;
-  /// Number of registers so far.
+  /// Returns the number of registers so far.
   std::size_t size() const;
   /// Returns the index of a register in the finished program. Valid after the last addition.
   Id final_id(Id id) const;

@@ -11,9 +11,9 @@
 
 namespace vernier::compile {
 
-/// Compiles a machine (FORMATS section 1). Throws InputError in one line if it cannot. Throws
-/// LimitNotMet, naming the dominant term, if the bound exceeds the budget. machine_text: the
-/// file's bytes, for its hash. tool.
+/// Compiles a machine (FORMATS section 1). Throws InputError in one line if the machine cannot be compiled.
+/// Throws LimitNotMet, which names the dominant term, if the bound exceeds the budget. machine_text: the
+/// bytes of the machine file, for its hash. tool.
 CompiledMachine compile_machine(const model::Machine& machine, const std::string& machine_text,
                                 const CompileOptions& options);
 
@@ -25,10 +25,10 @@ struct LoadedImage {
   ImageView view;
   ImageWorkspace workspace;
 };
-/// Throws InputError if a file is missing, if the image is refused (with the cause), or if it does
-/// not belong to that machine.xml. tool.
+/// Throws InputError if a file is missing, if the image is refused (with the cause), or if the image does not
+/// belong to the machine.xml of the directory. tool.
 std::unique_ptr<LoadedImage> load_image_dir(const std::string& directory);
-/// Reads the same from bytes. Throws InputError with the cause.
+/// Loads an image from bytes instead of a directory. Throws InputError with the cause.
 std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image,
                                         const model::Machine& machine);
 

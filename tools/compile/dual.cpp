@@ -164,7 +164,7 @@ Dual Translator::product(const Dual& a, const Dual& b) {
 
 Dual Translator::lag(const Dual& u, const Dual& tau) {
   const auto nominal = g_.constant_value(tau.nominal), change = g_.constant_value(tau.delta);
-  if (!nominal || !change) throw std::domain_error("a lag whose time constant is not constant");
+  if (!nominal || !change) throw std::domain_error("the time constant of a lag must be constant");
   const NodeId at_nominal = g_.lag(u.nominal, *nominal);
   if (*change == 0) return {at_nominal, g_.lag(u.delta, *nominal)};
   return {at_nominal, g_.subtract(g_.lag(actual(u), *nominal + *change), at_nominal)};
@@ -239,7 +239,7 @@ NodeId Translator::apply_to(model::Op op, NodeId a, NodeId b) {
     case model::Op::kMax:
       return g_.choice(NodeKind::kMax, a, b);
     default:
-      throw std::domain_error("an operation that the program does not have");
+      throw std::domain_error("an operation that a compiled program does not have");
   }
 }
 

@@ -8,15 +8,15 @@
 
 namespace vernier::compile {
 
-/// A quantity of the chain: its value in the nominal chain, and actual minus nominal. So no large
-/// numbers are subtracted to find a small one.
+/// A quantity of the chain in two parts: its value in the nominal chain, and actual minus nominal. A small
+/// difference of two large numbers is therefore never computed.
 struct Dual {
   NodeId nominal;
   NodeId delta;
 };
 
-/// Addition to the command of axes, mm or deg: the actual chain is at command plus addition, the
-/// nominal one at the command.
+/// Addition to the command of each axis, mm or deg. The actual chain is evaluated at command plus addition,
+/// the nominal chain at the command.
 using Additions = std::map<std::size_t, NodeId>;
 
 /// Converts expressions of the machine file into duals. tool.

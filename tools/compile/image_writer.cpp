@@ -52,7 +52,8 @@ class Writer {
 
 void copy_text(char* field, std::size_t size, const std::string& text, const model::Machine& machine,
                std::size_t line) {
-  if (text.size() >= size) throw text::InputError({machine.file, line}, text, "too long a name for an image");
+  if (text.size() >= size)
+    throw text::InputError({machine.file, line}, text, "the name is too long for an image");
   std::copy(text.begin(), text.end(), field);  // the rest of the field is zero
 }
 

@@ -359,11 +359,12 @@ class Lowering {
       const double count = std::ldexp(s.loc, b_.at(position).fraction_bits);
       if (std::abs(count) > 2147483000.0)
         throw text::InputError({machine_.file, table.line}, s.loc_text,
-                               "cannot be compiled: station out of reach of the axis format");
+                               "cannot be compiled: a station is outside the number format of the axis");
       stations.push_back(std::llround(count));
       if (stations.size() > 1 && stations.back() <= stations[stations.size() - 2])
-        throw text::InputError({machine_.file, table.line}, s.loc_text,
-                               "cannot be compiled: stations closer than the axis format resolves");
+        throw text::InputError(
+            {machine_.file, table.line}, s.loc_text,
+            "cannot be compiled: two stations are closer than the resolution of the axis format");
     }
     return make_segments(stations);
   }

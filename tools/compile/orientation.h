@@ -12,27 +12,27 @@ namespace vernier::compile {
 /// Correction of the tool's direction by the rotary axes. The graph is that of the derivation.
 struct Tilting {
   std::size_t frozen_from = 0;  // steps of the chain before the frame of Orientation::deviation
-  /// Motion of each of Orientation::axes, deg, that has the effect v on the direction; v in that
-  /// frame. so_far: the motion to which it is added (empty: 0). The damping then limits their sum,
-  /// not each alone.
+  /// Returns the motion of each of Orientation::axes, deg, that changes the direction by v. v: in the frame
+  /// of Orientation. so_far: motion to which the new motion is added (empty: 0). The damping limits the sum
+  /// of so_far and the new motion, not each of them.
   std::function<std::vector<NodeId>(Graph&, const NodeVector& v, const std::vector<NodeId>& so_far)> solve;
 };
 
-/// Selects one or two rotary axes that tilt the tool. Of all pairs it takes the two whose tilts
-/// over the declared ranges are farthest from parallel. If pairs are equal, it takes the pair
-/// nearer to the tool. It solves the deviation of the tool's direction for them and enters
-/// derivation.orientation. Damped least squares: towards a pose in which the axes tilt the tool in
-/// the same direction, the component that they cannot reach decreases to 0, the component that
-/// they can reach remains (Nakamura and Hanafusa, ASME J. Dyn. Sys. 108 (1986) 163). Returns
-/// nullopt if no rotary axis tilts the tool. neglect: rad. tool.
+/// Selects one or two rotary axes that tilt the tool. solve_direction takes the pair of axes whose tilts over
+/// the declared ranges are farthest from parallel. Among equal pairs, solve_direction takes the pair nearer
+/// to the tool. solve_direction solves the deviation of the tool's direction for the selected axes and enters
+/// derivation.orientation. Damped least squares: near a pose in which both axes tilt the tool in the same
+/// direction, the component that they cannot reach decreases to 0; the other component remains (Nakamura and
+/// Hanafusa, ASME J. Dyn. Sys. 108 (1986) 163). Returns nullopt if no rotary axis tilts the tool. neglect:
+/// rad. tool.
 std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation& derivation, double neglect);
 
-/// Returns a value as a separate node that is limited to +-limit. A correction that depends on it
-/// then uses the actual motion of the axis.
+/// Returns a value as a separate node that is limited to +-limit. A correction that depends on the limited
+/// value then uses the actual motion of the axis.
 NodeId held_within(Graph& graph, NodeId value, double limit);
 
-/// For each state: do two axes tilt the tool in nearly the same direction there, so that the
-/// correction of its direction is damped? All false if no direction is corrected. tool.
+/// For each state: true if two axes tilt the tool in nearly the same direction there, so that the correction
+/// of its direction is damped. All values are false if no direction is corrected. tool.
 std::vector<bool> damped_poses(const model::Machine& machine, const model::States& states);
 
 }  // namespace vernier::compile

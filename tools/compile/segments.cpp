@@ -113,7 +113,7 @@ FunctionPieces make_pieces(Function f, std::int64_t low, std::int64_t high, int 
   // not exceed.
   const bool open_at_zero = f == Function::kLog || f == Function::kSqrt || f == Function::kReciprocal;
   if (open_at_zero && low <= 0 && (f != Function::kReciprocal || high >= 0))
-    throw std::domain_error("its argument comes too close to zero");
+    throw std::domain_error("the argument of the function comes too close to zero");
   FunctionPieces result;
   double size = f == Function::kSin || f == Function::kCos
                     ? 1

@@ -10,15 +10,15 @@
 
 namespace vernier::compile {
 
-/// Returns a segment between two integer positions. Its reciprocal gives exactly one at the far
+/// Returns a segment between two integer positions. The reciprocal of the segment gives exactly 1 at the far
 /// end.
 Segment make_segment(std::int64_t start, std::int64_t end);
 
 /// Segments between consecutive positions (strictly increasing, at least two).
 std::vector<Segment> make_segments(const std::vector<std::int64_t>& positions);
 
-/// Returns a table from its segments and the coefficients of each column, piece after piece
-/// (degree + 1 per piece). It has a grid if the stations are even. tool.
+/// Returns a table from its segments and the coefficients of each column, piece after piece (degree + 1
+/// coefficients per piece). The table has a grid if its stations are evenly spaced. tool.
 LoweredTable make_table(const std::string& name, const std::vector<Segment>& segments, std::uint16_t degree,
                         const std::vector<std::vector<std::int32_t>>& columns);
 
@@ -35,13 +35,13 @@ struct FunctionPieces {
   double slope = 0;                        // largest |derivative|
 };
 
-/// low, high: counts of the argument's register, both reachable; argument_bits: its fraction bits.
-/// Piece lengths halve until the 4th-derivative bound h^4/384 * max|f''''| (de Boor, cubic Hermite) is below
-/// 2^-26 of the result's magnitude. tool.
+/// low, high: counts of the argument's register, both reachable; argument_bits: fraction bits of the
+/// argument. Piece lengths halve until the 4th-derivative bound h^4/384 * max|f''''| (de Boor, cubic Hermite)
+/// is below 2^-26 of the result's magnitude. tool.
 FunctionPieces make_pieces(Function f, std::int64_t low, std::int64_t high, int argument_bits);
 
-/// Value, slopes and their quantised form of one cubic piece, from end values and end slopes (per
-/// unit of fraction).
+/// Value, slopes and their quantised form of one cubic piece. Computed from the end values and end slopes
+/// (per unit of fraction).
 struct CubicPiece {
   double c[4];
 };

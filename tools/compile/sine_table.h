@@ -4,8 +4,8 @@
 
 namespace vernier::compile {
 
-/// Returns the text of comp/generated/sine_table.h: sine and cosine at 512 nodes of a revolution,
-/// rounded to 30 fraction bits. A test compares the file with it. The test writes the file if
+/// Returns the text of comp/generated/sine_table.h: sine and cosine at 512 nodes of a revolution, rounded to
+/// 30 fraction bits. A test compares this text with the file. The test writes the file if
 /// VERNIER_UPDATE_GOLDEN=1. tool.
 std::string print_sine_table();
 

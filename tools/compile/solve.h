@@ -7,12 +7,12 @@
 
 namespace vernier::compile {
 
-/// Number of poses over the declared ranges at which a determinant is evaluated, and of boxes into
-/// which the ranges are divided for a bound. More of them change the damping by less than a tenth.
+/// Number of poses over the declared ranges at which a determinant is evaluated, and of boxes into which the
+/// ranges are divided for a bound. A larger number of poses or boxes changes the damping by less than a
+/// tenth.
 inline constexpr Eigen::Index kSamples = 512;
 inline constexpr std::size_t kBoxes = 4096;  // see the line above
-/// If a determinant is below this share of its largest sampled value, the correction decreases to
-/// 0.
+/// If a determinant is smaller than this share of its largest sampled value, the correction decreases to 0.
 inline constexpr double kFloorShare = 1.0 / 256;
 
 /// The span of the columns of some axes over the declared ranges, from samples.
@@ -23,22 +23,23 @@ struct Span {
 };
 Span span_of(const Derivation& derivation, const std::vector<AxisColumn>& columns);
 
-/// x with J(q) x = v: a value for each output. For least squares also the intermediate values.
+/// Solution x of J(q) x = v: a value for each output. For least squares, Solved also has the intermediate
+/// values.
 struct Solved {
   std::vector<NodeId> values;
   std::vector<NodeId> components, weights;  // as LeastSquares::deviation and ::weights
 };
-/// Solves the same for any vector v in the frame of the deviation. The graph is that of the
+/// Solves J(q) x = v for any vector v in the frame of the deviation. The graph argument is the graph of the
 /// derivation.
 using Solver = std::function<Solved(Graph&, const NodeVector& v)>;
 
-/// Solves J(q) x = deviation (derivation.columns, derivation.deviation) for the deviation along
-/// each axis and enters the outputs. If the directions are constant, it uses numbers. If a 3 x 3
-/// J(q) is proved regular over the declared ranges, it uses its inverse. Otherwise it minimises
-/// the squares of the motions, J' (J J')^-1. If the axes are fewer than the directions that they
-/// reach anywhere, it minimises the squares of the residual, (J'J)^-1 J'. The determinant has a
-/// lower limit, so that the correction decreases to 0 where the axes no longer reach every
-/// direction. The solver is also used for a second evaluation of the deviation. tool.
+/// Solves J(q) x = deviation (derivation.columns, derivation.deviation) for the deviation along each axis and
+/// enters the outputs. If the directions of the axes are constant, solve_axes uses numbers. If a 3 x 3 J(q)
+/// is proved regular over the declared ranges, solve_axes uses its inverse. Otherwise solve_axes minimises
+/// the squares of the motions, J' (J J')^-1. If there are fewer axes than directions that they reach
+/// anywhere, solve_axes minimises the squares of the residual, (J'J)^-1 J'. The determinant has a lower
+/// limit, so that the correction decreases to 0 where the axes no longer reach every direction. The solver is
+/// also used for a second evaluation of the deviation. tool.
 Solver solve_axes(Derivation& derivation);
 
 }  // namespace vernier::compile

@@ -16,15 +16,15 @@ namespace vernier::compile {
 
 using NodeVector = std::array<NodeId, 3>;
 
-/// A part of the exact deviation that the equation omits, and its bound over the declared ranges.
+/// A part of the exact deviation that the equation omits, with its bound over the declared ranges.
 struct Neglected {
   std::string what;                // "second order of rZ in transform 3 (tool)"
   double bound_mm;                 // norm
   std::array<double, 3> along_mm;  // each component in the frame of the deviation
 };
 
-/// The deviation along one axis. Moving the axis by `value` has the deviation's effect on the tool
-/// point.
+/// The deviation along one axis. Moving the axis by `value` has the same effect on the tool point as the
+/// deviation.
 struct AxisDeviation {
   std::size_t axis;
   NodeId value;  // mm or deg
@@ -34,14 +34,14 @@ struct AxisDeviation {
   double lever;     // mm of tool point per mm or deg of the axis, at most
 };
 
-/// The least squares x = J' w, w = adj(J J') deviation / max(det(J J'), floor) of a machine that
-/// is corrected by rotary axes too. Rows of J: directions of the tool point; columns: axes, each
-/// divided by its lever.
+/// The least squares x = J' w, w = adj(J J') deviation / max(det(J J'), floor). Used for a machine that
+/// rotary axes correct too. Rows of J: directions of the tool point; columns: axes, each divided by its
+/// lever.
 struct LeastSquares {
-  /// True if there are fewer axes than directions in which they move the tool point, with other
-  /// directions at each pose (a telescope). Then K below is J'. x = (J'J)^-1 J' deviation brings
-  /// the tool point nearest to its target, and the component across the axes remains. Otherwise K
-  /// is J, and x = J' (J J')^-1 deviation is the smallest motion.
+  /// True if there are fewer axes than directions in which they move the tool point, with other directions at
+  /// each pose (a telescope). If `nearest` is true, K below is J'. x = (J'J)^-1 J' deviation brings the tool
+  /// point nearest to its target; the component across the axes remains. If `nearest` is false, K is J, and x
+  /// = J' (J J')^-1 deviation is the smallest motion.
   bool nearest = false;
   std::vector<std::vector<NodeId>> jacobian, square, adjugate;  // K, K K', adj(K K')
   std::vector<NodeId> deviation, weights;                       // right side and result of (K K')^-1
@@ -62,14 +62,15 @@ struct AxisColumn {
   double norm;  // its length at most
 };
 
-/// Contribution of one term of the chain to the deviation, and so to each output.
+/// Contribution of one term of the chain to the deviation, and thereby to each output.
 struct EffectPart {
   std::string name;  // "X of transform 2 (tool): BX*dirX"
   NodeVector deviation;
   std::vector<NodeId> outputs;  // as Derivation::outputs
 };
 
-/// The correction of the tool's direction by rotary axes. Vectors are of length 1, so deviations are in rad.
+/// The correction of the tool's direction by rotary axes. Vectors of Orientation have length 1, so deviations
+/// are in rad.
 struct Orientation {
   std::vector<std::size_t> axes;  // one or two axes that tilt the tool
   std::vector<double> lever;      // rad of direction per deg of the axis, at most
@@ -86,9 +87,9 @@ struct Orientation {
   std::vector<EffectPart> parts;
 };
 
-/// One of several evaluations of the deviation. The equation is evaluated again at the corrected
-/// position. The error of the next evaluation depends only on the distance of the two, not on the
-/// accuracy of this one.
+/// One of several evaluations of the deviation. The error equation is evaluated again at the corrected
+/// position. The error of the next evaluation depends only on the distance between the two positions, not on
+/// the accuracy of the present evaluation.
 struct Evaluation {
   std::vector<NodeId> values;        // as the outputs', of the outputs before the axes of the direction
   std::vector<NodeId> orientation;   // as Orientation::values
@@ -122,7 +123,7 @@ struct Derivation {
 enum class ErrorSource : std::uint8_t { kRounding, kTable, kFunction, kChannel, kLag };
 constexpr std::size_t kErrorSourceCount = 5;  // of ErrorSource
 
-/// Properties of one register: format, range and sources of its error. Its value is count /
+/// Properties of one register: format, range and sources of its error. The value of a register is count /
 /// 2^fraction_bits in the unit of the machine file.
 struct Register {
   std::string name;  // unique, a C++ identifier
@@ -139,7 +140,7 @@ struct Register {
   std::vector<Use> uses;
 };
 
-/// A table of the program, with its storage (comp/error_table.h defines its records).
+/// A table of the program with its memory (comp/error_table.h defines the records).
 struct LoweredTable {
   std::string name;
   std::uint16_t columns = 0, degree = 1;
@@ -150,7 +151,7 @@ struct LoweredTable {
   ErrorTable view() const { return {records.data(), pieces, columns, degree, grid_multiplier, grid_shift}; }
 };
 
-/// A fixed-point program with its storage.
+/// A fixed-point program with its memory.
 struct LoweredProgram {
   std::vector<std::int32_t> constants;
   std::vector<Channel> channels;
@@ -172,8 +173,8 @@ struct LoweredProgram {
   }
 };
 
-/// The shares of the effects in the corrections: an equation whose channels are registers of the
-/// tick.
+/// The shares of the effects in the corrections. The shares are an equation whose channels are registers of
+/// the tick.
 struct LoweredShares {
   std::vector<std::int32_t> constants;
   std::vector<std::uint16_t> sources;
@@ -185,34 +186,34 @@ struct LoweredShares {
   std::size_t left_out = 0;        // number of shares for which the image has no space
 };
 
-/// One cause of error in an output and its bound.
+/// One cause of error in an output, with its bound.
 struct Contribution {
   std::string name;
   std::string source;  // "linearisation", "table", "function", "rounding", "input", "lag"
   double bound_um = 0;
 };
 
-/// Proved bound of |fixed-point correction - exact inverse solution| along one axis, over the
-/// declared ranges, away from the steps of comparisons; before magnitude limit, ramp and slew
-/// limit. The exact inverse solution is c with p_actual(q + c) = p_nominal(q). For a rotary axis
-/// it is the motion of the tool point at the axis' longest lever. If least squares are solved, it
-/// is of all axes together. An axis that corrects the tool's direction has only `deviation_deg`:
-/// the linear axes correct the point at its position, and TiltBound states the remaining tilt.
+/// Proved bound of |fixed-point correction - exact inverse solution| along one axis. Valid over the declared
+/// ranges, away from the steps of comparisons, and before magnitude limit, ramp and slew limit. The exact
+/// inverse solution is c with p_actual(q + c) = p_nominal(q). For a rotary axis the bound is the motion of
+/// the tool point at the longest lever of the axis. With least squares the bound is that of all axes
+/// together. An axis that corrects the tool's direction has only `deviation_deg`. The linear axes correct the
+/// point at the position of this axis; TiltBound states the remaining tilt.
 struct OutputBound {
   std::string axis;
   double total_um = 0;
   double linearisation_um = 0, table_um = 0, function_um = 0, rounding_um = 0, input_um = 0, lag_um = 0;
-  /// Remaining error of the correction, because the deviation at the corrected position differs
-  /// and the nominal motion is not a straight line: of one step of Newton's iteration, or of two.
-  /// If it has a value, it is a part of the total. No value: there is no useful bound (least
-  /// squares near singular poses).
+  /// Remaining error of the correction after one step, or two steps, of Newton's iteration. Cause: the
+  /// deviation at the corrected position differs, and the nominal motion is not a straight line. A value of
+  /// second_order_um is included in the total. No value: no useful bound exists (least squares near singular
+  /// poses).
   std::optional<double> second_order_um;
   double deviation_um = 0;                  // largest |deviation| over the declared ranges, by intervals
   std::optional<double> deviation_deg;      // of an axis that corrects the tool's direction: at most
   std::vector<Contribution> contributions;  // largest first, all of them
 };
 
-/// Remaining tilt of the tool in poses where its correction is neither damped nor limited.
+/// Remaining tilt of the tool in poses where the correction of the tilt is neither damped nor limited.
 struct TiltBound {
   double deviation_deg = 0;     // tilt without correction, at most
   double fixed_point_deg = 0;   // by the program and its neglected terms

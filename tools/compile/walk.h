@@ -9,8 +9,8 @@
 
 namespace vernier::compile {
 
-/// One elementary step along the chain, in the order in which it acts on the point: a rotation
-/// about a coordinate axis, or a shift along it.
+/// One elementary step along the chain, in the order in which the steps act on the point: a rotation about a
+/// coordinate axis, or a shift along one.
 struct Step {
   bool turn;
   int axis;  // 0..2: X Y Z
@@ -23,37 +23,36 @@ struct Step {
   std::vector<Part> parts;  // the terms whose sum is by.delta
 };
 
-/// The elementary steps of the chain from the tool point through the tool branch to the base, and on through
-/// the workpiece branch, reversed, to the workpiece.
+/// Returns the elementary steps of the chain: from the tool point through the tool branch to the base, then
+/// through the workpiece branch, reversed, to the workpiece.
 std::vector<Step> all_steps(const model::Machine& machine, Translator& translate, Graph& graph);
 
-/// Returns the motion of a point with an axis, mm per mm or deg, in the frame before `last_turn`
-/// (null: the frame of the point). The axis may also drive that rotation. Throws std::domain_error
-/// if it has a step.
+/// Returns the motion of a point with an axis, mm per mm or deg, in the frame before `last_turn` (null: the
+/// frame of the point). The axis may also drive the rotation `last_turn`. Throws std::domain_error if the
+/// motion has a step.
 NodeVector motion_of(Graph& graph, NodeId axis, const NodeVector& point, const Step* last_turn);
 
-/// Moves a point through the chain: its nominal position, and the addition of the actual chain.
-/// tool.
+/// Moves a point through the chain: its nominal position, and the addition that the actual chain makes. tool.
 class Walk {
  public:
-  /// neglect_mm: a higher-order term smaller than this is omitted and entered in `neglected`.
+  /// neglect_mm: a higher-order term smaller than neglect_mm is omitted and entered in `neglected`.
   Walk(Derivation& derivation, double neglect_mm, std::vector<Neglected>& neglected);
-  /// The same for the direction of the tool, the z axis of its last frame, instead of a point.
-  /// Shifts do not change it, and all lengths are of a vector of length 1.
+  /// Returns a Walk for the direction of the tool, the z axis of its last frame, instead of a point. Shifts
+  /// do not change a direction; all lengths are those of a vector of length 1.
   static Walk of_direction(Derivation& derivation, double neglect, std::vector<Neglected>& neglected);
 
   void take(const Step& step);
-  /// From this call on no corrected axis moves. Nominal rotations no longer rotate the deviation,
-  /// because they rotate the axes in the same way.
+  /// From this call on no corrected axis moves. After freeze(), nominal rotations no longer rotate the
+  /// deviation, because they rotate the axes in the same way.
   void freeze() { frozen_ = true; }
 
   const NodeVector& nominal() const { return nominal_; }
-  /// Contribution of each term of the chain to the deviation.
+  /// Returns the contribution of each term of the chain to the deviation.
   const std::map<std::string, NodeVector>& parts() const { return parts_; }
-  /// In the frame in which the walk was frozen.
+  /// Returns the deviation in the frame in which freeze() was called.
   const NodeVector& deviation() const { return deviation_; }
-  /// Bounds of the two vectors' lengths, mm. Rotations keep a length, so these bounds do not grow
-  /// with every rotation as the components' intervals do.
+  /// Returns the bounds of the two vectors' lengths, mm. Rotations keep a length. These bounds therefore do
+  /// not grow with every rotation, unlike the intervals of the components.
   double reach_mm() const;
   double spread_mm() const;
 

@@ -27,8 +27,9 @@ std::optional<std::vector<double>> column(const format::CsvFile& csv, const std:
     // Published tables leave the units out; mm and deg are theirs.
     const bool bare = unit.dimension == format::Dimension::kNone;
     if (!bare && unit.dimension != dimension)
-      throw text::InputError({csv.file, csv.header_line}, name + "[" + unit.name + "]",
-                             std::string("this column needs a unit like ") + format::base_unit(dimension));
+      throw text::InputError(
+          {csv.file, csv.header_line}, name + "[" + unit.name + "]",
+          std::string("this column needs a unit, for example ") + format::base_unit(dimension));
     std::vector<double> values;
     for (std::size_t row = 0; row < csv.rows.size(); ++row)
       values.push_back((bare ? 1 : unit.factor) *
@@ -41,7 +42,7 @@ std::optional<std::vector<double>> column(const format::CsvFile& csv, const std:
 bool is_prismatic(const std::string& word, const text::Place& place) {
   if (word == "P" || word == "p" || word == "prismatic") return true;
   if (word == "R" || word == "r" || word == "revolute" || word.empty()) return false;
-  throw text::InputError(place, word, "a joint is R (turns) or P (slides)");
+  throw text::InputError(place, word, "the type of a joint must be R (turns) or P (slides)");
 }
 
 }  // namespace
@@ -62,7 +63,7 @@ std::vector<DhRow> parse_dh_table(const std::string& text, const std::string& fi
     const std::string& name = known.name;
     if (name != "theta" && name != "d" && name != "a" && name != "alpha" && name != "type" && name != "joint")
       throw text::InputError({file, csv.header_line}, name,
-                             "the columns are theta, d, a, alpha, type and joint");
+                             "unknown column; known columns are theta, d, a, alpha, type and joint");
   }
   const auto theta = column(csv, "theta", format::Dimension::kAngle),
              d = column(csv, "d", format::Dimension::kLength),

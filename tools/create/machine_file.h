@@ -6,12 +6,13 @@
 
 namespace vernier::create {
 
-/// The machine file of a plan, with comments that explain each part: squareness with X as datum (ISO 230-1
-/// names), location errors of rotary axes (ISO 230-7), a table of six errors per axis, all nominal 0. A robot
-/// has its rows, with Hayati's angle between parallel joints. parse_machine reads the output. tool.
+/// Returns the machine file of a plan, with comments that explain each part: squareness with X as datum (ISO
+/// 230-1 names), location errors of rotary axes (ISO 230-7), a table of six errors per axis. All errors are
+/// nominal 0. A robot has the rows of its joints, with Hayati's angle between parallel joints. parse_machine
+/// reads the output. tool.
 std::string machine_file(const MachinePlan& plan);
 
-/// The order of the axes, one line per side: "bed > Y (beam) > X (carriage) > Z (ram) > tool". tool.
+/// Returns the order of the axes, one line per side: "bed > Y (beam) > X (carriage) > Z (ram) > tool". tool.
 std::string drawing(const MachinePlan& plan);
 
 }  // namespace vernier::create

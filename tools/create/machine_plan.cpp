@@ -50,7 +50,7 @@ void check_name(const std::string& name) {
                            "\": a name is letters, digits and _, and begins with a letter or _");
   if (model::is_reserved_word(name) || model::is_no_axis_name({}, name))
     throw text::InputError("\"" + name +
-                           "\": the formats use this name for something else; axes are X, Y, B, J1 …");
+                           "\": the file formats reserve this name; use an axis name such as X, Y, B or J1");
 }
 
 void check_names(const std::vector<PlannedAxis>& axes) {
@@ -58,7 +58,7 @@ void check_names(const std::vector<PlannedAxis>& axes) {
   model::Machine machine;
   for (const PlannedAxis& axis : axes) {
     if (!seen.insert(axis.name).second)
-      throw text::InputError("\"" + axis.name + "\": this axis is given twice");
+      throw text::InputError("\"" + axis.name + "\": this axis is given twice; give each axis once");
     machine.axes.emplace_back().name = axis.name;
   }
   for (const PlannedAxis& axis : axes)
@@ -77,7 +77,7 @@ const MachineType& type_of(const std::string& name) {
         "\"" + name +
         "\": the chain of a machine file is one arm from bed to tool; a parallel machine closes "
         "several, and such a chain cannot be written");
-  throw text::InputError("\"" + name + "\": unknown type of machine; known are " + known);
+  throw text::InputError("\"" + name + "\": unknown type of machine; known types are " + known);
 }
 
 std::vector<std::size_t> by_names(const std::vector<PlannedAxis>& axes,
@@ -87,7 +87,7 @@ std::vector<std::size_t> by_names(const std::vector<PlannedAxis>& axes,
     if (name.empty()) continue;
     const auto found =
         std::find_if(axes.begin(), axes.end(), [&](const auto& axis) { return axis.name == name; });
-    if (found == axes.end()) throw text::InputError("\"" + name + "\": no --axis of this name");
+    if (found == axes.end()) throw text::InputError("\"" + name + "\": no --axis has this name");
     side.push_back(static_cast<std::size_t>(found - axes.begin()));
   }
   return side;
@@ -196,7 +196,7 @@ PlannedAxis parse_planned_axis(const std::string& words) {
       axis.direction = parts[i].front();
     else
       throw text::InputError("--axis " + words + ": \"" + parts[i] +
-                             "\": is neither a direction (X Y Z along it, A B C about X Y Z) nor wrap");
+                             "\": must be a direction (X Y Z along it, A B C about X Y Z) or wrap");
   }
   if (axis.rollover && !axis.rotary())
     throw text::InputError("--axis " + words + ": only a rotary axis can wrap");
@@ -210,12 +210,14 @@ MachinePlan plan_machine(const std::string& type_name, std::vector<PlannedAxis> 
                          const std::optional<std::vector<std::string>>& work_order) {
   const MachineType& type = type_of(type_name);
   if (axes.empty())
-    throw text::InputError("no axis: give --axis NAME:MIN:MAX for each, such as --axis X:0:600");
+    throw text::InputError(
+        "no axis is given: give --axis NAME:MIN:MAX for each axis, for example --axis X:0:600");
   check_names(axes);
   for (const PlannedAxis& axis : axes)
     if (axis.direction == kNoDirection)
-      throw text::InputError("\"" + axis.name + "\": which way does this axis go? Add a direction, such as " +
-                             axis.name + ":MIN:MAX:X (X Y Z along it, A B C about X Y Z)");
+      throw text::InputError("\"" + axis.name +
+                             "\": the direction of this axis is missing; add it, for example " + axis.name +
+                             ":MIN:MAX:X (X Y Z along it, A B C about X Y Z)");
   MachinePlan plan;
   plan.type = plan.name = type.name;
   plan.axes = std::move(axes);

@@ -9,8 +9,8 @@
 
 namespace vernier::create {
 
-/// An axis as its owner knows it: name, travel, and the direction that it moves along (X Y Z) or turns about
-/// (A B C).
+/// An axis as its owner describes it: name, travel, and the direction along which it moves (X Y Z) or about
+/// which it turns (A B C).
 struct PlannedAxis {
   std::string name;
   double min = 0, max = 0;  // mm or deg
@@ -22,8 +22,8 @@ struct PlannedAxis {
   std::size_t along() const { return static_cast<std::size_t>(direction - (rotary() ? 'A' : 'X')); }
 };
 
-/// Contents of a new machine file. Both sides begin at the bed; the last entry carries the tool or the
-/// workpiece.
+/// Contents of a new machine file. Both sides begin at the bed; the last entry of a side carries the tool or
+/// the workpiece.
 struct MachinePlan {
   std::string type, name;
   std::vector<PlannedAxis> axes;                  // as the file lists them
@@ -31,8 +31,8 @@ struct MachinePlan {
   std::array<double, 3> tool{};                   // its point in the frame of the last axis of its side, mm
   std::vector<DhRow> arm;                         // of a robot, a row a joint; else empty
   std::array<double, 6> base{};                   // BaseShift: chain base in the measuring frame, mm, deg
-  /// Only errors that an instrument along each axis measures are free in a fit: squareness, straightness and
-  /// angles stay 0.
+  /// If true, only errors that an instrument along each axis measures are free in a fit: squareness,
+  /// straightness and angles stay 0.
   bool positioning_only = false;
 };
 
@@ -45,24 +45,25 @@ struct MachineType {
   std::array<const char*, 3> slides;  // what X, Y and Z are called
 };
 
-/// Those of `vernier new`, a robot's too. tool.
+/// Returns the machine types of `vernier new`, including the robot. tool.
 const std::vector<MachineType>& machine_types();
 
 /// "X:0:600", "U:0:300:X" (along X), "C:0:360:wrap". Throws InputError with the word. tool.
 PlannedAxis parse_planned_axis(const std::string& words);
 
-/// Assigns the axes to the sides as the type defines it. tool_order, work_order: names from the bed outwards
-/// if the order differs. Throws InputError: an unknown type (with the reason for a delta), no axis, a name
-/// twice, an axis on no side. tool.
+/// Assigns the axes to the sides as the type defines them. tool_order, work_order: axis names from the bed
+/// outwards, if the order differs from the type. Throws InputError: an unknown type (with the reason for a
+/// delta), no axis, a name twice, an axis on no side. tool.
 MachinePlan plan_machine(const std::string& type, std::vector<PlannedAxis> axes,
                          const std::optional<std::vector<std::string>>& tool_order,
                          const std::optional<std::vector<std::string>>& work_order);
 
-/// A robot: its rows, and the same number of axes (empty: J1, J2 … of ±180 deg, prismatic 0 to 500 mm).
-/// Throws InputError if the numbers differ. tool.
+/// Returns the plan of a robot from its rows and the same number of axes. Empty axes: J1, J2 … of ±180 deg,
+/// prismatic 0 to 500 mm. Throws InputError if the numbers of rows and axes differ. tool.
 MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& rows);
 
-/// Positions that divide a range at round numbers into four to seven parts: stations of its table. tool.
+/// Returns positions that divide a range at round numbers into four to seven parts: the stations of a table.
+/// tool.
 std::vector<double> round_stations(double min, double max, bool rotary);
 
 }  // namespace vernier::create

@@ -7,16 +7,16 @@
 
 namespace vernier::create {
 
-/// By its word: "point", "length" … Throws InputError with all words.
+/// Finds a kind of reading by its word: "point", "length" … Throws InputError, which lists all words.
 const format::SurveyReading& reading_of(const std::string& word);
 
-/// A measurement file to be filled in, with remarks that explain each column, the header for this machine,
-/// and positions that show its errors. First every axis alone, forward and backward; then poses over the
-/// whole travel, every fourth one a check row. The measured cells are empty. Throws InputError if a fit would
-/// refuse such readings of this machine. tool.
+/// Returns a measurement file to be filled in: remarks that explain each column, the header for this machine,
+/// and positions that show its errors. First every axis moves alone, forward and backward. Then poses over
+/// the whole travel follow; every fourth pose is a check row. The measured cells are empty. Throws InputError
+/// if a fit would refuse such readings of the machine. tool.
 std::string survey_template(const model::Machine& machine, const format::SurveyReading& reading);
 
-/// Such a survey as a workbook (.xlsx): its rows on the first sheet, the remarks on the second. tool.
+/// Returns a survey as a workbook (.xlsx): the rows on the first sheet, the remarks on the second. tool.
 std::string survey_workbook(const std::string& survey);
 
 }  // namespace vernier::create

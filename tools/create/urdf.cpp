@@ -48,7 +48,8 @@ class Reader {
                              parsed.description());
     robot_ = document_.child("robot");
     if (!robot_)
-      throw text::InputError({file, 1}, document_.first_child().name(), "no URDF: its root is <robot>");
+      throw text::InputError({file, 1}, document_.first_child().name(),
+                             "this file is not a URDF: its root must be <robot>");
     for (const pugi::xml_node& node : robot_.children())
       if (std::string_view(node.name()).starts_with("xacro:")) fail(node, node.name(), kExpand);
   }
@@ -105,7 +106,8 @@ class Reader {
     one.type = node.attribute("type").as_string();
     one.parent = node.child("parent").attribute("link").as_string();
     one.child = node.child("child").attribute("link").as_string();
-    if (one.parent.empty() || one.child.empty()) fail(node, one.name, "a joint has a parent and a child");
+    if (one.parent.empty() || one.child.empty())
+      fail(node, one.name, "this joint lacks its parent or child link");
     one.mimic = static_cast<bool>(node.child("mimic"));
     const pugi::xml_node origin = node.child("origin");
     const Vector3d turn = triple(origin, "rpy", Vector3d::Zero());
@@ -115,7 +117,8 @@ class Reader {
             .toRotationMatrix();
     one.origin.translation() = kMmPerM * triple(origin, "xyz", Vector3d::Zero());
     one.axis = triple(node.child("axis"), "xyz", Vector3d::UnitX());
-    if (one.moves() && !(one.axis.norm() > 0)) fail(node, one.name, "its axis has no direction");
+    if (one.moves() && !(one.axis.norm() > 0))
+      fail(node, one.name, "the axis of this joint has no direction");
     one.axis.normalize();
     one.lower = limit(node.child("limit"), "lower");
     one.upper = limit(node.child("limit"), "upper");
@@ -134,9 +137,11 @@ class Tree {
       : joints_(std::move(joints)), links_(std::move(links)), file_(file) {
     for (const Joint& one : joints_) {
       for (const std::string* end : {&one.parent, &one.child})
-        if (!links_.contains(*end)) throw text::InputError({file, one.line}, *end, "no link has this name");
+        if (!links_.contains(*end))
+          throw text::InputError({file, one.line}, *end, "the URDF has no link of this name");
       if (!above_.emplace(one.child, &one).second)
-        throw text::InputError({file, one.line}, one.child, "this link hangs on two joints: no arm");
+        throw text::InputError({file, one.line}, one.child,
+                               "this link has two parent joints: the URDF is not an arm");
     }
     for (const std::string& link : links_) way_to(link);  // refuses a loop
   }
@@ -147,7 +152,8 @@ class Tree {
     for (std::string at = link; above_.contains(at); at = way.back().parent) {
       way.push_back(*above_.at(at));
       if (way.size() > joints_.size())
-        throw text::InputError({file_, way.back().line}, link, "the joints close a loop: no arm");
+        throw text::InputError({file_, way.back().line}, link,
+                               "the joints close a loop: the URDF is not an arm");
     }
     std::reverse(way.begin(), way.end());
     return way;
@@ -166,7 +172,7 @@ class Tree {
       most = moving;
       ends.push_back(link);
     }
-    if (ends.empty()) throw text::InputError({file_, 1}, "robot", "no joint of it moves");
+    if (ends.empty()) throw text::InputError({file_, 1}, "robot", "the URDF has no joint that moves");
     if (ends.size() > 1)
       throw text::InputError(fmt::format("{}: the arm has several end links, choose one with --tip: {}",
                                          file_, text::joined(ends, ", ")));
@@ -174,7 +180,7 @@ class Tree {
   }
 
   void require_link(const std::string& name) const {
-    if (!links_.contains(name)) throw text::InputError({file_, 1}, name, "no link has this name");
+    if (!links_.contains(name)) throw text::InputError({file_, 1}, name, "the URDF has no link of this name");
   }
 
  private:
@@ -302,7 +308,7 @@ PlannedAxis axis_of(const Joint& joint, const std::string& file) {
   if (axis.rollover) return axis;
   if (!joint.lower || !joint.upper || !(*joint.lower < *joint.upper))
     throw text::InputError({file, joint.line}, joint.name,
-                           "a joint of this type has a lower and an upper limit");
+                           "a joint of this type needs a lower and an upper limit");
   axis.min = clean(std::round(*joint.lower * unit * 1e6) / 1e6);
   axis.max = clean(std::round(*joint.upper * unit * 1e6) / 1e6);
   return axis;
@@ -314,7 +320,8 @@ void require_arm(const std::vector<Joint>& way, const std::string& file) {
       throw text::InputError({file, one.line}, one.type,
                              "a joint of an arm is revolute, continuous, prismatic or fixed");
     if (one.mimic)
-      throw text::InputError({file, one.line}, one.name, "it follows another joint: such a chain is no arm");
+      throw text::InputError({file, one.line}, one.name,
+                             "this joint follows another joint (mimic): an arm cannot have such a joint");
   }
 }
 
@@ -351,7 +358,8 @@ UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::
     lines.push_back({at.translation(), at.linear() * joint.axis});
     arm.rows.emplace_back().prismatic = joint.slides();
   }
-  if (lines.empty()) throw text::InputError({file, 1}, arm.tip, "no joint before this link moves");
+  if (lines.empty())
+    throw text::InputError({file, 1}, arm.tip, "no joint between the root and this link moves");
   Isometry3d frame = first_frame(lines.front());
   arm.base = base_of(frame);
   for (std::size_t i = 0; i < lines.size(); ++i) {

@@ -9,9 +9,9 @@
 
 namespace vernier::create {
 
-/// An arm as a URDF describes it (Unified Robot Description Format, wiki.ros.org/urdf/XML), from its root
-/// link to one of the links at its end, in rows of Denavit and Hartenberg. Where the axes of two joints are
-/// parallel to 0.05 rad or better the row is Hayati's.
+/// An arm of a URDF file (Unified Robot Description Format, wiki.ros.org/urdf/XML), from its root link to one
+/// of its end links, in rows of Denavit and Hartenberg. If the axes of two joints are parallel to 0.05 rad or
+/// better, the row has Hayati's form.
 struct UrdfArm {
   std::string name, root, tip;
   std::vector<DhRow> rows;
@@ -20,14 +20,14 @@ struct UrdfArm {
   // The tip's frame in the last row's, mm.
   Eigen::Matrix3d tip_rotation;
   Eigen::Vector3d tip_at;
-  /// Where a point of the tip's frame is in the last row's, to 1e-9 mm.
+  /// Converts a point of the tip's frame to the frame of the last row, to 1e-9 mm.
   std::array<double, 3> tool(const std::array<double, 3>& in_tip) const;
 };
 
 /// tip: name of a link; empty: the only end of the chain with most moving joints. Joints that do not move
 /// (`fixed`) become part of the links. Throws InputError with file, line and word: no URDF, an xacro that is
-/// not expanded, a joint type that an arm does not have (floating, planar, mimic), no such link, several
-/// ends. tool.
+/// not expanded, a joint type that an arm does not have (floating, planar, mimic), a link that does not
+/// exist, several ends. tool.
 UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::string& tip);
 
 }  // namespace vernier::create

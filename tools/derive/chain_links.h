@@ -13,8 +13,8 @@ class SymbolBook;
 
 using SymbolicVector = std::array<GiNaC::ex, 3>;
 
-/// Rotation matrix as a product. Successive rotations about one axis are merged: parallel axes
-/// give sin(q2+q3), not products of sines.
+/// Rotation matrix as a product. Successive rotations about one axis are merged: parallel axes give
+/// sin(q2+q3) instead of products of sines.
 class RotationProduct {
  public:
   void turn(int axis, const GiNaC::ex& angle_rad);
@@ -35,7 +35,7 @@ SymbolicVector turned(const SymbolicVector& v, int axis, const GiNaC::ex& angle_
 /// Returns a x b.
 SymbolicVector cross(const SymbolicVector& a, const SymbolicVector& b);
 
-/// Unit vector of axis 0..2.
+/// Returns the unit vector of axis 0..2.
 SymbolicVector unit_vector(int axis);
 
 /// Returns the chain as elementary motions from the workpiece to the tool: the workpiece branch in

@@ -81,7 +81,7 @@ ex nominal_slope(const model::Machine& machine, const ElementaryMotion& motion,
     slope = motion.value.diff(parameter.symbol).subs(no_errors, GiNaC::subs_options::no_pattern);
   } catch (const std::exception&) {
     throw text::InputError({machine.file, transform.line}, transform.text[motion.dof],
-                           "has no first order in " + parameter.name);
+                           "the equation has no first order in " + parameter.name);
   }
   const std::string word = book.rough_word(slope);
   if (!word.empty())
@@ -103,7 +103,7 @@ std::vector<ElementaryMotion> nominal_motions(const model::Machine& machine,
       m.value = expand_inside(m.value.subs(no_errors, GiNaC::subs_options::no_pattern));
     } catch (const std::exception& error) {
       throw text::InputError({machine.file, transform.line}, transform.text[m.dof],
-                             std::string("has no value in the nominal chain: ") + error.what());
+                             std::string("an expression has no value in the nominal chain: ") + error.what());
     }
     if (m.rotation || term_count(m.value) < kLongSum) continue;
     const std::string name =

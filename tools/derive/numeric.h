@@ -11,9 +11,8 @@ namespace vernier::derive {
 /// per unit of each. tool.
 Eigen::MatrixXd sensitivity_at(const ErrorEquation& equation, const model::States& states, std::size_t row);
 
-/// Returns a machine whose errors have these values (in the units of the parameters): statics
-/// changed from their nominal, tables constant, scale factors. It is used to compare the equation
-/// with the chain. tool.
+/// Returns a machine with these error values (in the units of the parameters): statics changed from their
+/// nominal, constant tables, scale factors. with_errors serves to compare the equation with the chain. tool.
 model::Machine with_errors(const ErrorEquation& equation, const Eigen::VectorXd& errors);
 
 }  // namespace vernier::derive

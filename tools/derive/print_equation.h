@@ -9,7 +9,7 @@
 
 namespace vernier::derive {
 
-/// An equation with the bound of its remainder.
+/// An error equation with the bound of its remainder.
 struct DerivedMachine {
   ErrorEquation equation;
   SecondOrderBound bound;
@@ -17,17 +17,17 @@ struct DerivedMachine {
   std::size_t samples = 0;
 };
 
-/// Prints one component of the deviation: 0..2 tool point (mm), 3..5 rotation vector (rad), 6..8
-/// direction of the tool's z. It is a sum over the errors with their sensitivities in factored
-/// form. "0" if there is no term. tool.
+/// Prints one component of the deviation: 0..2 tool point (mm), 3..5 rotation vector (rad), 6..8 direction of
+/// the tool's z. The component is printed as a sum over the errors with their sensitivities in factored form.
+/// The text is "0" if there is no term. tool.
 std::string print_component(const ErrorEquation& equation, std::size_t component, Notation notation,
                             const std::string& separator = " ");
 
 /// The page that `vernier derive` prints.
 std::string print_text(const DerivedMachine& derived);
-/// The same as a LaTeX fragment (amsmath).
+/// Prints a derived machine as a LaTeX fragment (amsmath).
 std::string print_latex(const DerivedMachine& derived);
-/// The same for programs.
+/// Returns a derived machine as JSON.
 nlohmann::ordered_json to_json(const DerivedMachine& derived);
 
 }  // namespace vernier::derive

@@ -10,28 +10,28 @@
 
 namespace vernier::derive {
 
-/// The symbols of one derivation, and expressions of the machine in these symbols. Values are in
+/// The symbols of one derivation, and conversion of the machine's expressions to these symbols. Values are in
 /// units of the machine file (mm, deg). The symbols are in rad if the file has degrees.
 class SymbolBook {
  public:
   explicit SymbolBook(const model::Machine& machine);
 
-  /// Returns the expression with all errors in it. Throws GiNaC's pole_error and std::logic_error
-  /// if it has no value.
+  /// Returns the expression with all errors included. Throws GiNaC's pole_error and std::logic_error if the
+  /// expression has no value.
   GiNaC::ex value(const model::Expr& expr);
 
-  /// Statics without a unit are lengths or angles, depending on where they act. Called once when
-  /// all motions are known. Replaces degrees by radians in the motions.
+  /// Decides for statics without a unit whether they are lengths or angles, from the place where they act.
+  /// Call settle_units once, when all motions are known. Replaces degrees by radians in the motions.
   void settle_units(std::vector<ElementaryMotion>& motions);
 
-  /// Gives every error its largest size, from the file or from `sizes`.
+  /// Gives every error its largest size, from the machine file or from `sizes`.
   void settle_sizes(const ErrorSizes& sizes);
 
-  /// Returns the word under which an error has no derivative, if `coefficient` depends on one;
-  /// else empty.
+  /// Returns the function (for example abs) that makes an error not differentiable, if `coefficient` depends
+  /// on such a function; else an empty text.
   std::string rough_word(const GiNaC::ex& coefficient) const;
 
-  /// Returns `wanted`, or `other` if `wanted` is used. The name is used from then on.
+  /// Returns `wanted`, or `other` if `wanted` is already used. The returned name is then used.
   std::string free_name(const std::string& wanted, const std::string& other);
 
   std::vector<ErrorParameter> parameters;

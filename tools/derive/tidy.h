@@ -6,20 +6,21 @@
 
 namespace vernier::derive {
 
-/// Is it a call of the function of this name?
+/// True if the expression is a call of the function with this name.
 bool is_call(const GiNaC::ex& e, const char* name);
 
-/// Expanded, the arguments of functions too.
+/// Expands the expression, including the arguments of functions.
 GiNaC::ex expand_inside(const GiNaC::ex& expr);
 
-/// Expanded, with sin^2 replaced by 1 - cos^2: equal trigonometric polynomials of one angle become the same.
+/// Expands the expression and replaces sin^2 by 1 - cos^2. Equal trigonometric polynomials of one angle
+/// thereby become identical.
 GiNaC::ex canonical(const GiNaC::ex& expr);
 
-/// Returns the same value in the shortest form found: canonical, then factored if it is small
-/// enough.
+/// Returns an equal expression in the shortest form found: canonical, then factored if the expression is
+/// small enough.
 GiNaC::ex tidy(const GiNaC::ex& expr);
 
-/// Number of terms of a sum, 1 for anything else, 0 for zero.
+/// Returns the number of terms of a sum, 1 for any other expression, 0 for zero.
 std::size_t term_count(const GiNaC::ex& expr);
 
 }  // namespace vernier::derive

@@ -11,8 +11,8 @@
 
 namespace vernier::derive {
 
-/// One error of the machine: a table value (at the pose), the deviation of a static from its
-/// nominal, or a scale factor. In the equation it is a number in `unit`.
+/// One error of the machine: a table value (at the pose), the deviation of a static from its nominal, or a
+/// scale factor. In the equation the error is a number in `unit`.
 struct ErrorParameter {
   GiNaC::realsymbol symbol;
   std::string name;       // ISO 230 for table values (EXX), the static's name, d_NAME if its nominal is not 0
@@ -33,15 +33,14 @@ struct NominalSymbol {
   double file_units = 1;  // machine-file units per `unit`: 180/pi for a rotary axis
 };
 
-/// A subexpression without a derivative that is one symbol: a comparison, sign, abs, min, max,
-/// lag.
+/// A subexpression without a derivative, which becomes one symbol: a comparison, sign, abs, min, max, lag.
 struct OpaqueSymbol {
   GiNaC::realsymbol symbol;
   model::ExprPtr expr;  // at nominal values
   std::vector<GiNaC::ex> args;
 };
 
-/// A long length of the nominal chain (for example a sum of tool offsets) that is one symbol.
+/// A long length of the nominal chain (for example a sum of tool offsets), which becomes one symbol.
 struct Abbreviation {
   GiNaC::realsymbol symbol;
   GiNaC::ex value;  // mm
@@ -51,8 +50,8 @@ struct Abbreviation {
 /// (rad) by one error: dX dY dZ, dA dB dC per unit of the parameter.
 using Sensitivity = std::array<GiNaC::ex, 6>;
 
-/// An elementary motion of the chain from the workpiece to the tool: along or about x, y or z.
-/// `value`: mm or rad including all errors. With errors 0 it is the value of the nominal chain.
+/// An elementary motion of the chain from the workpiece to the tool: along or about x, y or z. `value`: mm or
+/// rad including all errors. With all errors 0, `value` is the value of the nominal chain.
 struct ElementaryMotion {
   bool rotation = false;
   int axis = 0;
@@ -75,7 +74,7 @@ struct ErrorEquation {
   std::vector<std::string> notes;        // conventions that were used; parameters of second order only
 };
 
-/// Sizes of errors that the machine file does not state (zero tables, statics at their nominal).
+/// Sizes of errors whose size is not in the machine file (zero tables, statics at their nominal).
 struct ErrorSizes {
   double length_mm = 0.1;
   double angle_rad = 1e-3;

@@ -13,21 +13,22 @@ struct HeldOut {
   std::vector<double> agreement;  // per run left out: cosine between its columns' part and that of all runs
 };
 
-/// Predicts every run of the fit rows from the others, with the model's free parameters and
-/// `columns` (any columns, after projection on the complement of what the model absorbs).
-/// Parameters that only the held-out run determines are fitted to it. `within_runs`: leaves out
-/// parts of runs instead (for effects that are a property of a run). `watched`: first and count of
-/// the columns whose agreement is reported.
+/// Predicts every run of the fit rows from the other runs, with the free parameters of the model and
+/// `columns` (any columns, after projection on the complement of what the model absorbs). Parameters that
+/// only the held-out run determines are fitted to the held-out run. `within_runs`: leaves out parts of runs
+/// instead (for effects that are a property of a run). `watched`: first and count of the columns whose
+/// agreement is reported.
 HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                        Eigen::Index watched_count, bool within_runs = false);
 
-/// The same with any blocks held out in turn: one index per fit observation.
+/// Predicts each block of the fit rows from the other blocks, like leave_runs_out. blocks: one index per fit
+/// observation.
 HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                          Eigen::Index watched_count, const std::vector<int>& blocks);
 
-/// Returns blocks of whole feeds, and of whole temperatures of each thermometer. A term learned on
-/// features must be confirmed on them, because features depend on both. One list for each quantity
-/// that has two levels or more.
+/// Returns blocks of whole feeds, and of whole temperatures of each thermometer. A term that was learned on
+/// features must be confirmed on such blocks, because features depend on feed and temperature. The result has
+/// one list for each quantity with two levels or more.
 std::vector<std::vector<int>> level_blocks(const Evidence& evidence);
 
 }  // namespace vernier::diagnose

@@ -8,12 +8,11 @@
 
 namespace vernier::diagnose {
 
-/// Finds the missing physical effect. Fits the model, ranks the catalogue at every location,
-/// accepts candidates that pass all tests, and returns one of the five verdicts (FORMATS section
-/// 3). Readings that `fit` refuses by name (FitResult::mistake) are not searched: kInstrument,
-/// with `end` = `base`. `text`: of the machine file. Check rows are used only for the figures that
-/// test the result. The candidates point into options.effects, which must outlive them. Throws
-/// InputError. tool.
+/// Finds the missing physical effect. Fits the model, ranks the catalogue at every location, accepts
+/// candidates that pass all tests, and returns one of the five verdicts (FORMATS section 3). Readings that
+/// `fit` refuses by name (FitResult::mistake) are not searched: kInstrument, with `end` = `base`. `text`: of
+/// the machine file. Check rows are used only for the figures that test the result. The candidates point into
+/// options.effects: options.effects must outlive them. Throws InputError. tool.
 Diagnosis diagnose(const std::string& text, const model::Machine& given,
                    const model::Measurement& measurement, const DiagnoseOptions& options = {});
 

@@ -14,7 +14,7 @@
 
 namespace vernier::diagnose {
 
-/// Alternatives to an accepted effect. All are items of the pool.
+/// Alternatives to an accepted effect. All alternatives are items of the pool.
 struct Alternatives {
   std::vector<std::size_t> close;  // other causes that fit nearly as well, best first
   std::vector<std::size_t> same;   // the same columns from the same kinds of quantities
@@ -22,8 +22,8 @@ struct Alternatives {
   std::optional<std::size_t> best;
 };
 
-/// Searches the candidates of one fitted machine for the set that explains its residual. Keeps the
-/// items that pass every acceptance test. All on the linearised problem, without a new fit. tool.
+/// Searches the candidates of one fitted machine for the set that explains its residual. Keeps the items that
+/// pass every acceptance test. Finder works on the linearised problem and makes no new fit. tool.
 class Finder {
  public:
   /// `fitted`: the machine at its best fit. `progress`: share of the whole diagnosis, and the
@@ -37,63 +37,65 @@ class Finder {
   /// Searches the catalogue first, then products of quantities if the residual exceeds the noise.
   void find();
 
-  /// Accepted items of the pool, the one that explains most is first.
+  /// Returns the accepted items of the pool; the item that explains most is first.
   const std::vector<std::size_t>& chosen() const { return chosen_; }
   const Pool& pool() const { return pool_; }
   const Evidence& evidence() const { return evidence_; }
-  /// Correlation of the errors of the readings beside the accepted effects.
+  /// Returns the correlation of the errors of the readings beside the accepted effects.
   fit::NoiseModel noise() const;
   const std::vector<ScannedCandidate>& candidates() const { return list_; }
 
-  /// Coefficients of an item's columns within the accepted set, in the unit of its unknowns.
+  /// Returns the coefficients of an item's columns within the accepted set, in the unit of its unknowns.
   Eigen::VectorXd own_coefficients(std::size_t item) const;
-  /// The same, one for each coefficient of its term. 0 for coefficients whose column the model or
-  /// other items contain.
+  /// Returns one coefficient of an item within the accepted set for each coefficient of its term. The value
+  /// is 0 for a coefficient whose column the model or other items contain.
   std::vector<double> coefficient_of_each_unknown(std::size_t item) const;
-  /// Decrease of the BIC that an item brings alone.
+  /// Returns the decrease of the BIC by an item alone.
   double score_alone(std::size_t item) const;
-  /// Probability of such a gain by noise alone, times the number of tested candidates.
+  /// Returns the probability that noise alone gives such a decrease of the BIC, times the number of tested
+  /// candidates.
   double p_value(std::size_t item) const;
-  /// The same beside the accepted items; 1 for an item with the same columns as an accepted one.
+  /// Returns the p-value of an item beside the accepted items; 1 for an item with the same columns as an
+  /// accepted item.
   double p_value_beside(std::size_t item) const;
-  /// Likelihood ratio (natural logarithm) of runs held out in turn, with an accepted item and
-  /// without it. Each run is predicted from the others.
+  /// Returns the likelihood ratio (natural logarithm) of held-out runs with an accepted item against without
+  /// it. Each run is predicted from the other runs.
   double held_out_evidence(std::size_t item) const;
-  /// Alternatives that fit nearly as well as an accepted item, with the other items unchanged.
+  /// Returns alternatives that fit nearly as well as an accepted item; the other items are unchanged.
   Alternatives alternatives_to(std::size_t item) const;
-  /// Other periods that fit as well as an accepted item's own (Scanner::aliases), with the other
-  /// items unchanged.
+  /// Returns other periods that fit as well as the period of an accepted item (Scanner::aliases); the other
+  /// items are unchanged.
   std::vector<double> aliases_of(std::size_t item) const;
-  /// Factor by which chi^2 increases if an accepted item is excluded and the others are fitted
+  /// Returns the factor by which chi^2 increases if an accepted item is excluded and the others are fitted
   /// again.
   double growth_without(std::size_t item) const;
-  /// Is the residual beside the accepted effects noise, by the linear estimate?
+  /// True if the residual beside the accepted effects is noise, by the linear estimate.
   bool linear_down_to_noise() const;
 
  private:
   void scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first = 0);
-  /// Searches beyond the catalogue: products of recorded quantities, pairs first, then a third
-  /// factor on the best pairs.
+  /// Searches beyond the catalogue: products of recorded quantities, first pairs, then a third factor on the
+  /// best pairs.
   void search_products();
-  /// The products that lower the criterion most, alone.
+  /// Returns the products that decrease the BIC most, each product alone.
   std::vector<Product> best_products();
   /// Prepares the present entries of the pool for a selection.
   void pose_problem();
-  /// Position of an item in the problem; nullopt for a banned item.
+  /// Returns the position of an item in the problem; nullopt for a banned item.
   std::optional<std::size_t> entry_of(std::size_t item) const;
   void select_again();
-  /// A form that contains a simpler form is accepted only if its additional terms are evidence by
-  /// themselves. Of forms with the same columns, the one nearest to the axis is used. share: if
-  /// the simpler form reaches this share of what a richer form explains, it is used whatever the
-  /// rest explains. Above 1: never.
+  /// A form that contains a simpler form is accepted only if there is evidence for its additional terms
+  /// themselves. Among forms with the same columns, the form nearest to the axis is used. share: if the
+  /// simpler form explains this share of what a richer form explains, the simpler form is used, whatever
+  /// explains the rest. A share above 1 never selects the simpler form in this way.
   void simplify(double share = 2);
   /// Orders the effects: first the effect that lowers the present residual most, and so on. Beside
   /// correlated errors, the most certain effect need not be large.
   void order_by_size();
-  /// Without u, any remaining structure counts as noise. Then the simplest form that explains
-  /// nearly all is used, if it passes the tests.
+  /// Without u, any remaining structure counts as noise. name_simplest then uses the simplest form that
+  /// explains nearly all, if the form passes the tests.
   void name_simplest();
-  /// Number of entries that contain a simpler form and additional terms.
+  /// Returns the number of entries that contain a simpler form and additional terms.
   double holders_of(std::size_t simple) const;
   void search();
   /// Reduces the weight of readings with correlated errors: at one pose, in a run or in time.
@@ -102,45 +104,46 @@ class Finder {
   /// The criterion of selection including the penalty of the noise model.
   double priced_criterion() const;
   void search_under(const fit::NoiseModel& noise);
-  /// Alternates search and noise estimate until both converge. Returns the criterion including the
-  /// noise model's own penalty.
+  /// Repeats search and noise estimate in turn until both converge. Returns the BIC, including the penalty of
+  /// the noise model.
   double settle_noise_from(fit::NoiseModel noise);
   /// Returns the chosen items that change from row to row, and not only as slowly as an instrument
   /// drifts.
   std::vector<std::size_t> quick_ones() const;
-  /// The measured object may have another position in each set-up, which affects every reading
-  /// along a normal. Returns that as the instrument's part of an alternative, if it removes more
-  /// than its penalty. explained: the residual beside all chosen items.
+  /// The measured object may have another position in each set-up, which affects every reading along a
+  /// normal. Returns this position as the instrument's part of an alternative, if it decreases the BIC.
+  /// explained: the residual beside all chosen items.
   std::optional<fit::NoiseModel> touched_anew(const fit::NoiseModel& explained) const;
-  /// Is the error that is correlated by run or in time under this model one offset of all
-  /// readings? A common cause does that. An instrument that is set up anew or drifts does not.
+  /// True if the error that `noise` correlates by run or in time is one offset of all readings. A common
+  /// cause makes one offset of all readings. An instrument that is set up again or drifts does not make one
+  /// offset of all readings.
   bool is_one_offset(const fit::NoiseModel& noise) const;
-  /// Unwhitened columns of several items side by side.
+  /// Returns the unwhitened columns of several items side by side.
   Eigen::MatrixXd raw_columns(const std::vector<std::size_t>& items) const;
   std::vector<std::size_t> without(std::size_t item) const;
   Selection evaluate(const std::vector<std::size_t>& items) const;
-  /// Bans products that would pass the tests by chance: products that depend on a few readings,
-  /// and products that repeat a failed effect of the catalogue.
+  /// Excludes products that would pass the tests by chance: products that depend on a few readings, and
+  /// products that repeat a failed effect of the catalogue.
   void ban_hollow_products();
-  /// Returns the first acceptance test that an accepted item fails; empty if it passes all.
+  /// Returns the first acceptance test that an accepted item fails; empty if the item passes all tests.
   std::string failed_test(std::size_t item) const;
-  /// Does one run contain nearly all that an accepted item explains? Then the other runs cannot
-  /// confirm it. Does its term contain an accelerometer feature?
+  /// is_learned: true if the term of an item contains an accelerometer feature. shows_in_one_block: true if
+  /// one run contains nearly all that an accepted item explains. The other runs then cannot confirm the item.
   bool is_learned(std::size_t item) const;
   bool shows_in_one_block(std::size_t item) const;
-  /// Is the term larger than on any real machine?
+  /// Returns the reason why a term is larger than on any real machine; empty if it is not.
   std::string too_large(std::size_t item) const;
-  /// Reference for the size of a term: travel of the rotary axis that drives an angle, deg (0: no
-  /// such axis); reach of the machine for lengths, mm.
+  /// Returns the reference for the size of a term. Angles: travel of the rotary axis that drives the angle,
+  /// deg (0: no such axis); lengths: reach of the machine, mm.
   double extent_of(const effects::Candidate& candidate) const;
-  /// Largest value of a term with its linear unknown at 1, over the fit rows and along the axis
-  /// that drives it, mm or deg.
+  /// Returns the largest value of a term with its linear unknown at 1, over the fit rows and along the axis
+  /// that drives the term, mm or deg.
   double typical_size(const effects::Candidate& candidate, std::size_t linear, std::size_t item) const;
   double largest_value(const effects::Candidate& candidate, std::size_t linear, std::size_t item,
                        const model::States& states) const;
   void accept();
-  /// Probability that noise alone explains the decrease of a residual by columns, times the number
-  /// of candidates.
+  /// Returns the probability that noise alone explains the decrease of a residual by columns, times the
+  /// number of candidates.
   double chance_of(std::size_t item, const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
                    double freedom) const;
 

@@ -11,11 +11,11 @@
 
 namespace vernier::diagnose {
 
-/// Tests whether the instrument is the cause: a few readings are far from all others, and the rest
-/// is noise after their rows are excluded and the machine is fitted again (a lost beam, a bumped
-/// target). Returns the sentence with line numbers. Returns nullopt if that is not so, or if no
-/// uncertainty defines the noise. `of_all`: residual of the machine's fit to all rows, mm or deg.
-/// tool.
+/// Tests whether the instrument is the cause: a few readings are far from all others (a lost beam, a bumped
+/// target). The machine is fitted again without the rows of these readings, and the residual must then be
+/// noise. Returns a sentence with the line numbers of these readings. Returns nullopt if outliers are not the
+/// cause, or if no uncertainty defines the noise. `of_all`: residual of the machine's fit to all rows, mm or
+/// deg. tool.
 std::optional<std::string> outliers_to_blame(const model::Machine& machine,
                                              const model::Measurement& measurement,
                                              const Eigen::VectorXd& of_all,
@@ -27,9 +27,9 @@ struct WithoutOutliers {
   std::string sentence;
 };
 
-/// Excludes the rows with a reading far from the model with the effects found so far, up to a
-/// share of the rows. Returns nullopt if there are no such rows or more than that. `machine`,
-/// `of_all`: with those effects. tool.
+/// Excludes the rows with a reading far from the model with the effects found so far. At most a share of the
+/// rows is excluded. Returns nullopt if there are no such rows, or more rows than this share. `machine`,
+/// `of_all`: with the effects found so far. tool.
 std::optional<WithoutOutliers> without_gross_outliers(const model::Machine& machine,
                                                       const model::Measurement& measurement,
                                                       const Eigen::VectorXd& of_all,

@@ -15,16 +15,15 @@ struct Proof {
                         // against without it
   double expected = 0;  // its mean if the step is true; the opposite if the step is absent. In both cases its
                         // variance is twice that value.
-  /// The required evidence of a step: 20 to 1 if all but one in a hundred true steps would reach
-  /// it. It is smaller if the step is too small on these rows for that, but never below zero.
-  /// nullopt if the step is hardly visible on them.
+  /// Returns the required evidence of a step: 20 to 1 if 99 of 100 true steps would reach this value. The
+  /// required evidence is smaller if the step is too small on these rows for 20 to 1, but never below zero.
+  /// nullopt if the step is hardly visible on these rows.
   std::optional<double> asked(const ProofThresholds& thresholds) const;
 };
 
 /// Evaluates the check rows under two models. before, after: residuals (measured - model) of all
-/// observations; noise: correlation of the readings' errors; variance: of the independent noise of
-/// a weighted reading, if the stated u is too small, at least 1 (with u); without u its square in
-/// mm. tool.
+/// observations; noise: correlation of the readings' errors. variance: of the independent noise of a weighted
+/// reading, if the stated u is too small, at least 1 (with u); without u its square in mm. tool.
 Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
                           const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance);
 

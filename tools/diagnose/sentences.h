@@ -10,22 +10,22 @@
 
 namespace vernier::diagnose {
 
-/// Returns the name as the JSON result writes it: "missing-effect" ...
+/// Returns the name of a verdict in the JSON result: "missing-effect" ...
 const char* verdict_name(Verdict verdict);
 
 /// Returns "Z carriage: lag 0.137 +- 0.007 ms": cause and size for people
 /// (tools/effects/spoken.h).
 std::string said_of(const CandidateFinding& finding);
 
-/// Returns where the residual fails its tests, in up to three sentences, each after a blank.
+/// Describes where the residual fails its tests, in up to three sentences, each after a blank.
 std::string where_left(const residual::FailurePicture& left);
 
-/// Returns the residual of the check rows after every step, and the steps that increase it. Empty
-/// without check rows. `accepted`: number of accepted effects.
+/// Describes the residual of the check rows after every step, and the steps that increase the residual. The
+/// text is empty without check rows. `accepted`: number of accepted effects.
 std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_t accepted);
 
-/// Returns the cause with its coefficients, the next best other cause with the difference of its
-/// criterion (empty: there is no other), and the other steps. `steps` begins with the given model.
+/// Describes the cause with its coefficients, the next best other cause with the difference of their BIC, and
+/// the other steps. next_best: empty if there is no other cause. `steps` begins with the given model.
 std::string cause_in_words(const CandidateFinding& cause, const std::string& next_best, double distance,
                            const std::vector<LadderStep>& steps, std::size_t accepted);
 

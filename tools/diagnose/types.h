@@ -49,13 +49,14 @@ struct LadderStep {
   std::optional<double> rms_um, check_rms_um;      // of lengths
   std::optional<double> rms_urad, check_rms_urad;  // of rotations
   double chi_square_per_freedom = 0;
-  /// Do held-out rows confirm it, and by what likelihood ratio (natural logarithm)? Check rows are
-  /// used if the step is large enough there. Otherwise runs are held out in turn.
+  /// True if held-out rows confirm the candidate; the evidence is a likelihood ratio (natural logarithm).
+  /// Check rows are used for the confirmation if the step is large enough on them. Otherwise runs are held
+  /// out in turn for the confirmation.
   std::optional<bool> confirmed;
   std::optional<double> evidence;
 };
 
-/// Locations of the candidates are those of base.machine, which may have an additional row
+/// Result of a diagnosis. Locations of the candidates refer to base.machine, which may have an additional row
 /// (with_base_row).
 struct Diagnosis {
   Verdict verdict = Verdict::kConsistent;

@@ -9,7 +9,7 @@
 
 namespace vernier::diagnose {
 
-/// All that the search and the fits found, as input of the verdict.
+/// Results of the search and of the fits, as input of the verdict.
 struct Findings {
   const DiagnoseOptions& options;
   const model::Measurement& measurement;  // for the machine of the base fit
@@ -22,9 +22,9 @@ struct Findings {
   const std::vector<std::size_t>& listed;         // items in the order of Diagnosis::candidates
 };
 
-/// Sets the verdict, its explanation and what belongs to them (`left`, `time_base`, `runner_up`,
-/// aliases and confusions of candidates). The first rule that applies decides; their order is the
-/// table in the source. `answer`: with base, end, stepwise model and candidates. tool.
+/// Sets the verdict, its explanation and its details (`left`, `time_base`, `runner_up`, aliases and
+/// confusions of candidates). The first rule that applies determines the verdict; the table in the source
+/// gives the order of the rules. `answer`: with base, end, stepwise model and candidates. tool.
 void set_verdict(const Findings& found, Diagnosis& answer);
 
 }  // namespace vernier::diagnose

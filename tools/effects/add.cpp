@@ -27,7 +27,8 @@ class Adder {
   std::string add() {
     document_.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
     find(document_);
-    if (variables_.empty()) throw text::InputError(machine_.file + ": no <variables> to add to");
+    if (variables_.empty())
+      throw text::InputError(machine_.file + ": the machine file has no <variables> element; add one");
     insert_variables();
     for (const CandidateTerm& term : candidate_.terms)
       if (is_stand_in(machine_, term.place))

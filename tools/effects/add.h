@@ -6,8 +6,8 @@
 
 namespace vernier::effects {
 
-/// Returns the machine file with the candidate's terms, statics (nominal 0) and inputs written
-/// into it. Nothing else changes. Throws InputError. tool.
+/// Returns the text of the machine file with the candidate's terms, statics (nominal 0) and inputs added. The
+/// rest of the text does not change. Throws InputError. tool.
 std::string add_to_machine_text(const std::string& text, const model::Machine& machine,
                                 const Candidate& candidate);
 

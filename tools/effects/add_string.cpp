@@ -76,7 +76,8 @@ class AddReader {
     fill_place();
     if (choice_.form->place == PlaceRule::kJoint) require_moment();
     read_numbers();
-    if (!used_all()) fail(unused(), "not a key of an effect to add");
+    if (!used_all())
+      fail(unused(), "unknown key in the description of the effect (`vernier add --help` lists the keys)");
     return choice_;
   }
 
@@ -123,7 +124,7 @@ class AddReader {
     if (id_ == custom_effect().id) {
       choice_.effect = &custom_effect();
       const auto term = take("term");
-      if (!term) fail(id_, "needs term=EXPRESSION with the unknown k");
+      if (!term) fail(id_, "a custom effect needs term=EXPRESSION with the unknown k");
       choice_.term = *term;
       return;
     }
@@ -148,7 +149,7 @@ class AddReader {
         choice_.inputs.push_back(*name);
         const auto known = machine_.find_input(*name);
         if (!known && model::resolve_name(machine_, *name).kind != model::SymbolKind::kUnresolved)
-          fail(*name, "this name is taken by something that is no input");
+          fail(*name, "the machine file uses this name for something that is not an input");
         choice_.units.push_back(known ? machine_.inputs[*known].unit : "");
       }
     const auto unit = take("unit");
@@ -184,13 +185,13 @@ class AddReader {
     }
     if (!transform_) return;
     if (branch_ && (*branch_ == "workpiece") != transform_->workpiece)
-      fail(*branch_, "which transform of this branch? transform=N");
+      fail(*branch_, "the branch has several transforms; give transform=N");
     if (dof_) {
       const model::Transform& at = transform_at(machine_, *transform_);
       for (std::size_t d = 0; d < at.dof_count(); ++d)
         if (text::equal_no_case(at.dof_name(d), *dof_))
           choice_.place = DofPlace{transform_->workpiece, transform_->transform, d};
-      if (!choice_.place) fail(*dof_, "not a degree of freedom of this transform");
+      if (!choice_.place) fail(*dof_, "this transform has no such degree of freedom");
     }
     const auto driver = choice_.axis ? std::nullopt : axes_.axis_of(*transform_);
     default_axis_ = driver;
@@ -260,8 +261,8 @@ class AddReader {
       choice_.form = &form;
       return;
     }
-    if (label) fail(*label, "this effect has no such form");
-    fail(id_, "no form of this effect takes these inputs and this degree of freedom");
+    if (label) fail(*label, "this effect has no form of this name");
+    fail(id_, "no form of this effect accepts these inputs at this degree of freedom");
   }
 
   static bool acts_at_one(const EffectForm& form) {
@@ -274,20 +275,21 @@ class AddReader {
     if (needs_axis && !choice_.axis) choice_.axis = default_axis_;
     if (!acts_at_one(*choice_.form)) {
       if (transform_ || dof_)
-        fail(dof_.value_or("transform"), "this form acts at several degrees of freedom, say none");
+        fail(dof_.value_or("transform"), "this form acts at several degrees of freedom; do not give dof");
       return;
     }
     if (choice_.place) return;
     const bool own = choice_.form->place == PlaceRule::kOwn || choice_.form->place == PlaceRule::kJoint;
     if (own && choice_.axis) choice_.place = axes_.own(*choice_.axis);
-    if (!choice_.place) fail(id_, "needs branch, transform and dof: where does it act?");
+    if (!choice_.place) fail(id_, "the location of the effect is missing: give branch, transform and dof");
   }
 
   /// Throws if gravity has no effect: on a linear axis, and on a joint whose axis is parallel to
   /// gravity at every pose.
   void require_moment() const {
     if (!choice_.place) return;
-    if (!is_angle(machine_, *choice_.place)) fail(id_, "acts at a rotary joint, and this axis is none");
+    if (!is_angle(machine_, *choice_.place))
+      fail(id_, "this effect acts at a rotary joint; the axis is not a rotary joint");
     if (!GravityChain(machine_).may_turn(*choice_.place))
       fail(id_, "gravity points along this joint at every pose and has no moment about it");
   }
@@ -310,7 +312,7 @@ class AddReader {
     if (const auto text = take("from")) choice_.from = number("from", *text);
     if (const auto text = take("to")) choice_.to = number("to", *text);
     if (choice_.effect != &custom_effect() && has_range(*choice_.form) && !(choice_.to > choice_.from))
-      fail(id_, "needs from and to: the axis has no range of its own");
+      fail(id_, "the effect needs from and to, because the axis has no min and max");
     if (const auto runs = take("runs")) {
       std::string label;
       for (const char c : *runs + "|") {
@@ -325,7 +327,8 @@ class AddReader {
     for (const auto& [key, value] : values_) {
       if (key.rfind("start.", 0) != 0) continue;
       const std::string name = key.substr(6);
-      if (choice_.effect->find_unknown(name) == nullptr) fail(name, "this effect has no such unknown");
+      if (choice_.effect->find_unknown(name) == nullptr)
+        fail(name, "this effect has no unknown of this name");
       choice_.start[name] = number(key, value);
       taken_.push_back(key);
     }

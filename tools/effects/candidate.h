@@ -8,22 +8,23 @@
 
 namespace vernier::effects {
 
-/// Returns the choice of a candidate. Its scanned unknowns start at these values. tool.
+/// Returns the choice of a candidate. The scanned unknowns of the candidate start at the values `scanned`.
+/// tool.
 Choice choice_at(const Candidate& candidate, const std::vector<double>& scanned);
 
-/// Adds a candidate's unknowns to the machine's statics, so that its terms can be evaluated. The
-/// coefficients are 0, the other unknowns are at `scanned` (0 if `scanned` is empty). Returns the
+/// Adds a candidate's unknowns to the statics of the machine, so that its terms can be evaluated. The
+/// coefficients are 0; the other unknowns have the values `scanned` (0 if `scanned` is empty). Returns the
 /// index of each coefficient. tool.
 std::vector<std::size_t> add_unknowns(model::Machine& machine, const Candidate& candidate,
                                       const std::vector<double>& scanned);
 
-/// Fills the placeholders. Gives the unknowns names that differ from all names of the machine.
-/// `axes`: of the same machine. Throws InputError if the choice lacks something that the form
-/// needs. tool.
+/// Makes a candidate from a choice: fills the placeholders of the form. Gives the unknowns names that differ
+/// from all names of the machine. `axes`: AxisPlaces of the same machine. Throws InputError if the choice
+/// lacks an axis, input or location that the form needs. tool.
 Candidate make_candidate(const model::Machine& machine, const AxisPlaces& axes, const Choice& choice);
 Candidate make_candidate(const model::Machine& machine, const Choice& choice);
 
-/// Returns the effect of a term that a search found. It has no named physics.
+/// Returns the effect of a term that a search found. custom_effect() has no named physical cause.
 const Effect& custom_effect();
 
 }  // namespace vernier::effects

@@ -133,7 +133,8 @@ class CatalogueReader {
     form.label = next_word(rest);
     const std::string place = next_word(rest);
     const auto found = std::find(kPlaceNames.begin(), kPlaceNames.end(), place);
-    if (found == kPlaceNames.end()) fail(place, "not a place (own, cross, turn, length, angle, base, ...)");
+    if (found == kPlaceNames.end())
+      fail(place, "unknown location rule; known rules are own, cross, turn, length, angle, base, ...");
     if (rest.empty()) fail(form.label, "a form is \"form LABEL PLACE TERM\"");
     form.place = static_cast<PlaceRule>(found - kPlaceNames.begin());
     form.term = rest;
@@ -164,7 +165,7 @@ class CatalogueReader {
       const std::string label = next_word(rest);
       const auto form = std::find_if(effect.forms.begin(), effect.forms.end(),
                                      [&](const EffectForm& f) { return f.label == label; });
-      if (form == effect.forms.end()) fail(label, "no form of this label stands above");
+      if (form == effect.forms.end()) fail(label, "no earlier form has this label");
       form->rare = true;
     }
   }
@@ -173,7 +174,7 @@ class CatalogueReader {
     UnknownRule rule;
     rule.name = next_word(rest);
     if (!text::is_name(rule.name) || model::is_reserved_word(rule.name))
-      fail(rule.name, "not a name for an unknown");
+      fail(rule.name, "this name cannot be used for an unknown");
     if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "this unknown stands twice");
     rule.unit = next_word(rest);
     const std::string kind = next_word(rest);
@@ -203,7 +204,7 @@ class CatalogueReader {
     } else {
       fail(kind, "expected linear, time, travel, period or grid");
     }
-    if (!rest.empty()) fail(rest, "nothing more is expected in this line");
+    if (!rest.empty()) fail(rest, "this line has too many words");
     effect.unknowns.push_back(rule);
   }
 
@@ -215,7 +216,7 @@ class CatalogueReader {
     if (effect.size)
       for (const std::string& name : effect.size->unknowns)
         if (effect.find_unknown(name) == nullptr)
-          fail_at(first_line_, name, "size: no unknown of this effect");
+          fail_at(first_line_, name, "size: this effect has no unknown of this name");
     std::set<std::string> used;
     for (std::size_t i = 0; i < effect.forms.size(); ++i) {
       const std::set<std::string> here = unknowns_of(effect, effect.forms[i], form_line_[i]);
@@ -224,7 +225,8 @@ class CatalogueReader {
       used.insert(here.begin(), here.end());
     }
     for (const UnknownRule& rule : effect.unknowns)
-      if (!used.contains(rule.name)) fail_at(first_line_, rule.name, "no form uses this unknown");
+      if (!used.contains(rule.name))
+        fail_at(first_line_, rule.name, "no form of the effect uses this unknown");
   }
 
   /// Returns the unknowns that a form uses. Throws if its term contains something that a term may

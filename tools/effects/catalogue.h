@@ -12,7 +12,8 @@
 
 namespace vernier::effects {
 
-/// Where a form of an effect may act. `q` is the axis that drives it.
+/// Rule for the locations where a form of an effect may act. In the rules, `q` is the axis that drives the
+/// effect.
 enum class PlaceRule : std::uint8_t {
   kOwn,       // the degree of freedom that the axis q itself moves
   kCross,     // the other lengths of q's transform
@@ -30,7 +31,7 @@ enum class PlaceRule : std::uint8_t {
   kNormal,    // the three lengths of the measuring frame, together, along nx ny nz
 };
 
-/// How the values of a form's unknowns are found.
+/// Method that finds the values of a form's unknowns.
 enum class UnknownKind : std::uint8_t {
   kLinear,  // the term is linear in it
   kTime,    // a time constant: scanned from the spacing of the rows to a few times their duration, s
@@ -47,14 +48,14 @@ struct UnknownRule {
   std::size_t count = 0;     // kGrid, logarithmic
 };
 
-/// One form of an effect. The term is an expression with placeholders: {q} the driving axis, {T}
-/// {S} inputs that are temperatures, {L} a load, {F} an accelerometer feature, {V} any other
-/// logged quantity, {ref} the reference of {T}, {mid} {from} {to} {span} of the range of {q},
-/// {hats N} a piecewise linear basis of N functions over that range, {runs} a sum of one step per
-/// run, {sum} the sum of parallel joints up to {q} and beyond, {n} nx, ny or nz. The following are
-/// computed from the chain (gravity.h), with magnitude at most 1: {across} the moment of gravity
-/// about the angle of a bar that points along a local axis, {across1} {across2} of both such axes,
-/// {along} gravity along the length, {moment} the moment of a mass farther out.
+/// One form of an effect: its term, its unknowns and its location rule. The term is an expression with
+/// placeholders. {q}: the driving axis; {T} {S}: inputs that are temperatures; {L}: a load; {F}: an
+/// accelerometer feature; {V}: any other logged quantity; {ref}: the reference of {T}; {mid} {from} {to}
+/// {span}: of the range of {q}; {hats N}: a piecewise linear basis of N functions over that range; {runs}: a
+/// sum of one step per run; {sum}: the sum of parallel joints up to {q} and beyond; {n}: nx, ny or nz. Four
+/// placeholders are computed from the chain (gravity.h), with magnitude at most 1. {across}: the moment of
+/// gravity about the angle of a bar that points along a local axis; {across1} {across2}: of both such axes;
+/// {along}: gravity along the length; {moment}: the moment of a mass farther out.
 struct EffectForm {
   std::string label;
   PlaceRule place = PlaceRule::kOwn;
@@ -66,7 +67,7 @@ struct EffectForm {
 
   bool asks_for(const std::string& mark) const { return marks.contains(mark); }
   bool asks_for_input() const { return asks_for("T") || asks_for("L") || asks_for("F") || asks_for("V"); }
-  /// Is the condition true for any node of the term?
+  /// Returns true if the condition `is` is true for any node of the term.
   template <class Is>
   bool any(const Is& is) const {
     return std::any_of(trees.begin(), trees.end(),
@@ -74,13 +75,13 @@ struct EffectForm {
   }
 };
 
-/// Parses form.term and fills the other members from it. Throws ExpressionError. tool.
+/// Parses form.term and fills the other members of the form from it. Throws ExpressionError. tool.
 void read_term(EffectForm& form);
 /// Returns the placeholders in a name of a term: dir{q} has q, {hats 5} has "hats 5".
 std::vector<std::string> marks_in(const std::string& name);
 
-/// The number that describes an effect to a person. It is the factor times one unknown, or times
-/// the root of the sum of the squares of several unknowns (the amplitude of a sine and a cosine).
+/// The number that describes an effect to a person. The size is the factor times one unknown, or times the
+/// root of the sum of the squares of several unknowns (the amplitude of a sine and a cosine).
 struct EffectSize {
   double factor = 1;
   std::vector<std::string> unknowns;  // by their names in the catalogue
@@ -111,11 +112,11 @@ std::vector<Effect> parse_effects(const std::string& text, const std::string& fi
 /// Returns the catalogue that comes with the program.
 const std::vector<Effect>& built_in_effects();
 
-/// Returns the catalogue with the entries of users' files added. An entry with a known id replaces
-/// the old entry.
+/// Returns the catalogue with the entries of users' files added. An entry with a known id replaces the
+/// catalogue entry.
 std::vector<Effect> effect_catalogue(const std::vector<std::string>& files);
 
-/// Returns the name of a place rule as the catalogue writes it.
+/// Returns the name of a location rule as the catalogue writes it.
 const char* place_name(PlaceRule rule);
 
 }  // namespace vernier::effects

@@ -11,9 +11,8 @@
 
 namespace vernier::effects {
 
-/// A machine together with the text of its file. Effects are added to both. The machine has a row
-/// for rigid motions of the whole (with_base_row). The text has that row only after a term uses
-/// it.
+/// A machine and the text of its file; effects are added to both. The machine has a row for rigid motions of
+/// the whole machine (with_base_row). The text has this row only after a term uses it.
 struct MachineText {
   std::string text;
   model::Machine machine;
@@ -22,23 +21,23 @@ struct MachineText {
 /// Reads a machine to which effects may be added. `file` is for messages. Throws InputError. tool.
 MachineText machine_text(const std::string& text, const std::string& file);
 
-/// Returns the machine at its best fit, and its text with the fitted values. tool.
+/// Returns the machine at its best fit and the text of the machine file with the fitted values. tool.
 MachineText fitted_text(const std::string& text, const fit::FitResult& fit);
 
-/// Adds one more effect to both. Returns the effect with the final names of its unknowns. Throws
-/// InputError. tool.
+/// Adds one more effect to the machine and to the text. put_in returns the effect with the final names of its
+/// unknowns. Throws InputError. tool.
 Candidate put_in(MachineText& into, const Choice& choice);
 
 /// An effect to add and fit, with the start values of its unknowns.
 struct EffectToFit {
   Choice choice;  // with the start values of the unknowns that are not coefficients
-  /// Start values of the coefficients, in their order. A time constant has no derivative while its
-  /// term is 0. Empty: all start at 0.
+  /// Start values of the coefficients, in the order of the coefficients; empty: all coefficients start at 0.
+  /// A time constant has no derivative while its term is 0.
   std::vector<double> coefficients;
   bool hold_scanned = false;  // periods, time constants and decay lengths stay at their start
-  /// Has a fit moved the scanned unknown of this index out of the range of its search? Then the
-  /// unknown is held at its start, and everything is fitted again. Empty function: the answer is
-  /// never yes.
+  /// True if a fit moved the scanned unknown of this index out of the range of its search. Such an unknown
+  /// keeps its start value, and everything is fitted again. An empty function: no unknown is ever out of its
+  /// range.
   std::function<bool(std::size_t, double)> is_driven_out;
 };
 
@@ -49,10 +48,9 @@ struct FittedEffects {
   fit::FitResult fit;
 };
 
-/// The only function that adds effects to a machine and fits it. It writes the effects into the
-/// text one after the other, binds the rows to the new inputs and fits everything that is free.
-/// For a term that was learned on features, the text states the domain of validity. Throws
-/// InputError. tool.
+/// Adds effects to a machine and fits it; no other function does this. fit_with_effects writes the effects
+/// into the text one after another, binds the rows to the new inputs and fits all free parameters. For a term
+/// that was learned on features, the text also states the domain of validity. Throws InputError. tool.
 FittedEffects fit_with_effects(const MachineText& base, const model::Measurement& rows,
                                const std::vector<EffectToFit>& effects, const fit::FitOptions& options = {});
 

@@ -30,44 +30,45 @@ class Wave {
 
   /// Returns the sum without rounding errors: terms below 1e-6 of `scale` are removed.
   Wave cleaned(double scale) const;
-  /// Is the sum the same at all positions of all axes?
+  /// True if the sum has the same value at all positions of all axes.
   bool is_constant() const;
-  /// Returns the sums of positions on which it depends. If it has two of them, no single axis
-  /// drives it.
+  /// Returns the sums of positions on which the sum depends. If there are two such sums of positions, no
+  /// single axis drives the sum.
   std::set<std::vector<double>> phases() const;
   std::size_t terms() const { return terms_.size(); }
-  /// Returns it as an expression with the names of the machine's axes. Numbers have six digits.
-  /// tool.
+  /// Returns the sum as an expression with the names of the machine's axes. Numbers of the expression have
+  /// six digits. tool.
   model::ExprPtr expression(const model::Machine& machine) const;
 
  private:
   std::map<std::vector<Factor>, double> terms_;
 };
 
-/// Gravity along the nominal chain: its direction in every frame, and the moment of a mass about a
-/// joint. The chain is a product of turns about fixed directions (Brockett's product of
-/// exponentials). Successive turns about one direction are combined into one turn by the sum of
-/// their angles. Both branches start at the same base. A transform whose degrees of freedom are
-/// not sums of axis positions makes all later frames unknown. tool.
+/// Gravity along the nominal chain: its direction in every frame, and the moment of a mass about a joint. The
+/// chain is a product of turns about fixed directions (Brockett's product of exponentials). Successive turns
+/// about one direction are combined into one turn by the sum of their angles. Both branches of the chain
+/// start at the same base. A transform whose degrees of freedom are not sums of axis positions makes all
+/// later frames unknown. tool.
 class GravityChain {
  public:
   explicit GravityChain(const model::Machine& machine);
 
-  /// Direction of gravity in the frame in which a degree of freedom acts. For an angle the frame
-  /// is the one after its own turn.
+  /// Returns the direction of gravity in the frame in which a degree of freedom acts. For an angle, the frame
+  /// is the frame after the turn by the angle.
   std::optional<std::array<Wave, 3>> direction(const DofPlace& place) const;
-  /// Moment about an angle of a bar that points along local axis `toward` (0 to 2, not the angle's own), per
-  /// length and weight: (toward x gravity) . axis.
+  /// Returns the moment of gravity on a bar about an angle, per length and weight: (toward x gravity) . axis.
+  /// The bar points along local axis `toward` (0 to 2, not the axis of the angle).
   std::optional<Wave> across(const DofPlace& angle, std::size_t toward) const;
-  /// May gravity have a moment about an angle? False if gravity points along its axis at every
-  /// pose.
+  /// True if gravity may have a moment about the angle. False if gravity points along the axis of the angle
+  /// at every pose.
   bool may_turn(const DofPlace& angle) const;
-  /// Is this transform without a turn by an axis or a constant? Its angles then share one frame.
+  /// True if the transform has no turn by an axis or a constant. The angles of such a transform share one
+  /// frame.
   bool is_rigid(const DofPlace& transform) const;
   /// Component of gravity along a length.
   std::optional<Wave> along(const DofPlace& length) const;
-  /// Moment about a joint of a mass at the end of a transform of its branch, behind the joint. 1
-  /// is the moment of that mass if the links between are level and at full length.
+  /// Returns the moment about a joint of a mass at the end of a transform of the same branch, behind the
+  /// joint. The value 1 is the moment of that mass if the links between are level and at full length.
   std::optional<Wave> moment(const DofPlace& joint, std::size_t transform) const;
 
  private:

@@ -8,6 +8,7 @@
 
 #include "tools/format/units.h"
 #include "tools/maths/factors.h"
+#include "tools/maths/rounding.h"
 #include "tools/text/words.h"
 #include "tools/vibration/signal_features.h"
 
@@ -65,7 +66,7 @@ double usual_reference(const model::Input& input, double mean) {
   if (class_of_input(input) == InputClass::kTemperature) return standard_reference(input.unit);
   if (std::abs(mean) < 1e-9) return 0;
   const double digit = std::pow(10, std::floor(std::log10(std::abs(mean))) - 1);
-  return std::round(mean / digit) * digit;
+  return maths::rounded_to(mean, digit);
 }
 
 double standard_reference(std::string_view unit) {

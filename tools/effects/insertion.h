@@ -10,8 +10,8 @@ namespace vernier::effects {
 /// Returns the offset of an element's name in the text from which the element was read.
 std::size_t offset_of(const pugi::xml_node& node);
 
-/// Inserts `lines` at the end of an element's content. If the closing tag has a line of its own,
-/// they are inserted before that line. An empty element is opened. tool.
+/// Inserts `lines` at the end of an element's content. If the closing tag is on a separate line, the lines
+/// are inserted before that line. An empty element is opened. tool.
 text::TextEdit at_end_of(const std::string& text, const pugi::xml_node& node, const std::string& lines);
 
 }  // namespace vernier::effects

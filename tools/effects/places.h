@@ -18,43 +18,43 @@ struct DofPlace {
 
 const model::Transform& transform_at(const model::Machine& machine, const DofPlace& place);
 const char* dof_name(const model::Machine& machine, const DofPlace& place);
-/// Is the degree of freedom an angle (deg) and not a length (mm)?
+/// True if the degree of freedom is an angle (deg), false if it is a length (mm).
 bool is_angle(const model::Machine& machine, const DofPlace& place);
-/// The degree of freedom that every axis moves in the nominal chain. The constructor evaluates the
-/// chain for every degree of freedom, so construct it once per machine. tool.
+/// The degree of freedom that every axis moves in the nominal chain. The constructor evaluates the chain for
+/// every degree of freedom: construct AxisPlaces once per machine. tool.
 class AxisPlaces {
  public:
   explicit AxisPlaces(const model::Machine& machine);
 
   /// Returns nullopt for an axis that moves no degree of freedom.
   const std::optional<DofPlace>& own(std::size_t axis) const { return own_.at(axis); }
-  /// +1 or -1: sign with which its own degree of freedom follows an axis (-1 for Y="-Y"). 0 for an
-  /// axis that moves no degree of freedom.
+  /// Returns +1 or -1: the sign with which the degree of freedom of an axis follows the axis (-1 for Y="-Y").
+  /// The sign is 0 for an axis that moves no degree of freedom.
   double sense(std::size_t axis) const { return sense_.at(axis); }
   bool is_own(std::size_t axis, const DofPlace& place) const { return own(axis) == place; }
-  /// Returns the axis that moves a transform (the first one if there are several).
+  /// Returns the axis that moves a transform; the first axis if there are several.
   std::optional<std::size_t> axis_of(const DofPlace& place) const;
 
  private:
   std::vector<std::optional<DofPlace>> own_;
   std::vector<double> sense_;
 };
-/// Returns the lengths X Y Z that shift the whole measuring frame, if the chain has such a
-/// transform. It is the first transform of a chain without workpiece branch, or the last transform
-/// of a workpiece branch if that transform does not rotate.
+/// Returns the lengths X Y Z that shift the whole measuring frame; empty if the chain has no such transform.
+/// The lengths belong to the first transform of a chain without workpiece branch, or to the last transform of
+/// a workpiece branch if that transform does not rotate.
 std::vector<DofPlace> base_places(const model::Machine& machine);
-/// Returns the machine with a transform for rigid motions of the whole. If the machine has no
-/// base_places because the row there rotates (a DH row, a table), an identity sixdof is added at
-/// that end of the chain. Its number is one below the first row or one above the last. Predictions
-/// are the same. add_to_machine_text writes the row as soon as it has a term. The locations of
-/// diagnose, plan and `add` refer to this machine. tool.
+/// Returns the machine with a transform for rigid motions of the whole machine. If the machine has no
+/// base_places because the row there rotates (a DH row, a table), an identity sixdof is added at that end of
+/// the chain. The number of the added row is one below the first row or one above the last row. The added row
+/// does not change predictions. add_to_machine_text writes the row into the file when the row gets a term.
+/// The locations of diagnose, plan and `add` refer to the machine of with_base_row. tool.
 model::Machine with_base_row(model::Machine machine);
-/// Did with_base_row add the transform of this location? Such a transform is on no line of the
+/// True if with_base_row added the transform of this location. Such a transform is on no line of the machine
 /// file.
 bool is_stand_in(const model::Machine& machine, const DofPlace& place);
-/// Returns the degrees of freedom of the transforms that carry everything: the first one of the
-/// tool branch and the last one of the workpiece branch, if the chain has that branch. Next to a
-/// transform of with_base_row, the neighbouring row is used.
+/// Returns the degrees of freedom of the transforms that carry the whole machine: the first transform of the
+/// tool branch and, if the chain has a workpiece branch, its last transform. If this transform was added by
+/// with_base_row, the neighbouring row is used.
 std::vector<DofPlace> carrier_places(const model::Machine& machine);
 /// Returns all degrees of freedom, tool branch first.
 std::vector<DofPlace> all_places(const model::Machine& machine);

@@ -5,8 +5,8 @@
 
 namespace vernier::effects {
 
-/// Adds to a degree of freedom a new static of value 0. No expression can write its name. Returns
-/// its index in `machine.statics`. tool.
+/// Adds a new static of value 0 to a degree of freedom. The name of the static cannot occur in an expression
+/// of a machine file. add_probe returns the index of the static in `machine.statics`. tool.
 std::size_t add_probe(model::Machine& machine, const DofPlace& place);
 
 }  // namespace vernier::effects

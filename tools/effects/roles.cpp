@@ -75,7 +75,8 @@ std::string with_declared_columns(const std::string& text, const model::Machine&
   if (const pugi::xml_node inputs = element_named(document, "inputs"))
     return text::apply_edits(text, {at_end_of(text, inputs, lines)});
   const pugi::xml_node variables = element_named(document, "variables");
-  if (!variables) throw text::InputError(machine.file + ": no <variables> to add to");
+  if (!variables)
+    throw text::InputError(machine.file + ": the machine file has no <variables> element; add one");
   return text::apply_edits(text, {at_end_of(text, variables, "    <inputs>\n" + lines + "    </inputs>\n")});
 }
 

@@ -11,8 +11,7 @@
 
 namespace vernier::effects {
 
-/// All data that are needed to add a form of an effect to a machine: the content of an `add`
-/// string.
+/// All data that are necessary to add a form of an effect to a machine: the content of an `add` string.
 struct Choice {
   const Effect* effect = nullptr;
   const EffectForm* form = nullptr;
@@ -45,7 +44,7 @@ struct CandidateUnknown {
   double limit = 0;  // linear: largest plausible size of the term, mm or deg; 0: none
 };
 
-/// An effect at a location of a machine. It can be evaluated or written.
+/// An effect at a location of a machine. A Candidate can be evaluated, or written to a machine file.
 struct Candidate {
   Choice choice;
   std::vector<CandidateTerm> terms;
@@ -54,15 +53,16 @@ struct Candidate {
   std::string spoken;  // for people: "X carriage: backlash" (spoken.h)
 };
 
-/// Returns the unknowns that are coefficients, in their order. The term is linear in them.
+/// Returns the unknowns that are coefficients, in the order of the candidate. The term is linear in these
+/// unknowns.
 inline std::vector<CandidateUnknown> linear_unknowns(const Candidate& candidate) {
   std::vector<CandidateUnknown> unknowns;
   for (const CandidateUnknown& unknown : candidate.unknowns)
     if (unknown.kind == UnknownKind::kLinear) unknowns.push_back(unknown);
   return unknowns;
 }
-/// Returns the other unknowns: periods, time constants, decay lengths. Lists of their values are
-/// in this order.
+/// Returns the unknowns that are not coefficients: periods, time constants, decay lengths. Lists of values of
+/// these unknowns are in the order of this list.
 inline std::vector<CandidateUnknown> scanned_unknowns(const Candidate& candidate) {
   std::vector<CandidateUnknown> unknowns;
   for (const CandidateUnknown& unknown : candidate.unknowns)

@@ -7,8 +7,9 @@
 
 namespace vernier::evaluate {
 
-/// Components of the uncertainty of a positioning test by ISO 230-2. A range counts as rectangular, u = range
-/// / (2 sqrt 3), and U = 2 u: 0.58 of it (GUM 4.3.7). Absent components are 0.
+/// Components of the uncertainty of a positioning test by ISO 230-2. A range counts as a rectangular
+/// distribution: u = range / (2 sqrt 3), and U = 2 u, which is 0.58 of the range (GUM 4.3.7). Absent
+/// components are 0.
 struct PositioningBudget {
   double device_um_m = 0;         // expanded uncertainty of the calibrated instrument, um/m, k = 2
   double misalignment_mm_m = 0;   // of its line to the axis, largest, mm/m
@@ -29,14 +30,15 @@ struct BudgetPart {
   double expanded_um = 0;  // k = 2
 };
 
-/// Its components over a length: the part in proportion to the distance, and the drift. tool.
+/// Returns the components of a budget over a length: the component in proportion to the distance, and the
+/// drift. tool.
 std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double length_mm);
 
 /// U (k = 2) of A, E, M, R, B in mm, of tests with `runs` readings in each approach direction. A, E and M are
 /// differences over the length: all components count. Components proportional to the distance are equal for
-/// both approach directions of a target and for all runs. In B and R the drift remains: in B of two means of
-/// `runs`, in R of both ends of a range. tool. Components as in public descriptions of ISO/TR 230-9; combined
-/// by the GUM.
+/// both approach directions of a target and for all runs. In B and R only the drift remains: in B of two
+/// means of `runs`, in R of both ends of a range. tool. Components as in public descriptions of ISO/TR 230-9;
+/// combined by the GUM.
 std::map<std::string, double> budget_uncertainty(const PositioningBudget& budget, double length_mm,
                                                  double runs);
 

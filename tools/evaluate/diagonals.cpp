@@ -103,7 +103,7 @@ std::vector<Line> lines_of(const std::vector<Row>& rows, const std::string& file
     if (name.size() < 4)
       throw text::InputError({file, line.rows.front().line}, name,
                              name.empty()
-                                 ? "a row that is on no line with its neighbours"
+                                 ? "this row is not on a straight line with its neighbouring rows"
                                  : "a line along one axis: that is ISO 230-2 (vernier evaluate iso230-2)");
   }
   return lines;

@@ -8,11 +8,12 @@
 
 namespace vernier::evaluate {
 
-/// Decision rule of ISO 14253-1: a tolerance is met if the value with its expanded uncertainty is within it,
-/// and not met if the value without its uncertainty is beyond it. Numbers that differ by rounding (1e-12 of
+/// Decision rule of ISO 14253-1. Met: the value with its expanded uncertainty is within the tolerance. Not
+/// met: the value without its uncertainty is beyond the tolerance. Numbers that differ by rounding (1e-12 of
 /// the tolerance) are equal.
 enum class Conformity { kMet, kNotMet, kUndecided };
-/// One unit for all three. Throws std::logic_error if one is not finite.
+/// Applies the decision rule. value, tolerance, expanded_uncertainty: in one unit. Throws std::logic_error if
+/// an argument is not finite.
 Conformity conformity(double value, double tolerance, double expanded_uncertainty);
 /// "met", "not met", "not decided (within the uncertainty)".
 const char* conformity_text(Conformity conformity);
@@ -31,8 +32,8 @@ inline constexpr int kPrintedDigits = 3;
 struct JudgedText {
   std::string value, uncertainty, tolerance;
 };
-/// The numbers of a judgement with `least` digits behind the point, or with as many as needed for the printed
-/// numbers to agree with the verdict. A missing value is "–".
+/// Returns the numbers of a judgement with `least` digits after the decimal point. More digits are used if
+/// the printed numbers would not agree with the verdict. A missing value is "–".
 JudgedText judged_text(const JudgedValue& one, int least);
 
 /// Holds if every given tolerance is met. unit: of the numbers, for the sentences. tool.

@@ -47,7 +47,7 @@ TargetResult result_at(const TargetReadings& readings) {
     if (list.size() == 1)
       throw text::InputError("one reading at " + text::number_text(readings.target) +
                              (sense == 0 ? " forward" : " backward") +
-                             ": a spread needs two, ISO 230-2 asks for five");
+                             ": a standard deviation needs at least two readings, ISO 230-2 requires five");
     result.mean[sense] = mean_of(list);
     result.spread[sense] = spread_of(list, result.mean[sense]);
     result.repeatability[sense] = 4 * result.spread[sense];
@@ -101,7 +101,7 @@ PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readin
     result.targets.push_back(at);
   }
   if (result.targets.size() < 2)
-    throw text::InputError("an axis is judged by two targets at least; ISO 230-2 asks for five a metre");
+    throw text::InputError("an evaluation needs at least two targets; ISO 230-2 requires five per metre");
   for (std::size_t sense = 0; sense < 2; ++sense) {
     result.systematic[sense] = means[sense].width();
     result.accuracy[sense] = bands[sense].width();
@@ -125,7 +125,7 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
   if (dimension != format::Dimension::kLength && dimension != format::Dimension::kAngle)
     throw text::InputError(reader.header(), axis, "an axis position needs a unit like mm or deg");
   if (reader.dimension(actual) != dimension)
-    throw text::InputError(reader.header(), reading, "of another kind of unit than " + axis);
+    throw text::InputError(reader.header(), reading, "the unit has another dimension than " + axis);
   result.unit = format::base_unit(dimension);
   const model::Column position = reader.numbers(axis, dimension, true),
                       readings = reader.numbers(actual, dimension, false);

@@ -13,7 +13,7 @@ struct TargetReadings {
   std::array<std::vector<double>, 2> deviation;  // actual − target, in the order of the runs
 };
 
-/// What ISO 230-2 computes at one target (2014, 3.8 to 3.15). mm or deg; [0] forward, [1] backward.
+/// Results of ISO 230-2 at one target (2014, 3.8 to 3.15). mm or deg; [0] forward, [1] backward.
 struct TargetResult {
   double target = 0;
   std::array<std::size_t, 2> count{};
@@ -25,8 +25,8 @@ struct TargetResult {
   double repeatability_both = 0;          // R_i: the largest of 2 s+ + 2 s− + |B_i|, R_i+, R_i−
 };
 
-/// Of the axis (2014, 3.16 to 3.23). Bidirectional values are absent if only one approach direction was
-/// measured.
+/// Results of ISO 230-2 for the axis (2014, 3.16 to 3.23). Bidirectional values are absent if only one
+/// approach direction was measured.
 struct PositioningResult {
   std::vector<TargetResult> targets;                                         // in the order of positions
   std::array<std::optional<double>, 2> accuracy, systematic, repeatability;  // A, E, R of one direction
@@ -34,13 +34,14 @@ struct PositioningResult {
   std::optional<double> reversal, mean_reversal, range;                      // B, mean B, M
 };
 
-/// Evaluates readings. A target that was approached in a direction needs at least two readings in it. Throws
-/// InputError: fewer than two targets, a single reading. tool.
+/// Evaluates readings. A target that was approached in a direction needs at least two readings in this
+/// direction. Throws InputError: fewer than two targets, a single reading. tool.
 PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readings);
 
-/// Readings of one axis from a measurement file: deviation = `reading` − position of the axis (of a tracker's
-/// or interferometer's own coordinate along it; a constant between them plays no part in any result). Sense
-/// by `dirX`, else by the way from the row before. check rows count too. tool.
+/// Readings of one axis from a measurement file. Deviation = `reading` − position of the axis; for a tracker
+/// or interferometer, its own coordinate along the axis is the reading. A constant between reading and
+/// position does not affect any result. The approach direction comes from `dirX`, else from the motion from
+/// the previous row. Check rows are included. tool.
 struct PositioningFile {
   std::vector<TargetReadings> readings;
   std::string unit;  // of all values: mm or deg

@@ -12,7 +12,7 @@
 
 namespace vernier::evaluate {
 
-/// Data of a report that is handed over, besides its numbers.
+/// Texts of a report for a customer, in addition to the numbers.
 struct PositioningWords {
   std::string axis;
   std::vector<std::string> files;
@@ -24,7 +24,7 @@ struct PositioningWords {
 /// measured.
 std::optional<double> characteristic(const PositioningResult& result, const std::string& name);
 
-/// An entry of `characteristics` as a judgement; `nullopt` if it has no tolerance.
+/// Converts an entry of `characteristics` to a judgement; `nullopt` if the entry has no tolerance.
 std::optional<JudgedValue> judged_of(const nlohmann::ordered_json& characteristic);
 
 /// {axis, unit, factor, targets[…], characteristics[{name, value, tolerance, uncertainty, conformity}],
@@ -32,7 +32,7 @@ std::optional<JudgedValue> judged_of(const nlohmann::ordered_json& characteristi
 nlohmann::ordered_json positioning_json(const PositioningResult& result, const PositioningFile& file,
                                         const PositioningWords& words);
 
-/// The page of it, for improvement_report_html. tool.
+/// Returns the report page of a positioning test, for improvement_report_html. tool.
 nlohmann::ordered_json positioning_page(const nlohmann::ordered_json& json, const PositioningWords& words);
 
 }  // namespace vernier::evaluate

@@ -20,7 +20,7 @@ struct PoseReading {
   double time_s = std::numeric_limits<double>::quiet_NaN();  // not a number if it is not known
 };
 
-/// What ISO 9283:1998, 7.2 computes at one pose. mm, deg.
+/// Results of ISO 9283:1998, 7.2 at one pose. mm, deg.
 struct PoseResult {
   Eigen::Vector3d commanded_mm;
   std::size_t count = 0;
@@ -36,21 +36,24 @@ struct PoseResult {
   std::optional<Eigen::Vector3d> accuracy_deg, repeatability_deg;  // AP_a b c; RP_a b c: 3 S of each
 };
 
-/// The visits of each pose, poses and visits in their order. The pointers refer to `readings`. tool.
+/// Returns the visits of each pose. Poses and visits are in the order of the readings. The pointers refer to
+/// `readings`. tool.
 std::vector<std::vector<const PoseReading*>> visits_by_pose(const std::vector<PoseReading>& readings);
 
-/// 95 % interval of a standard deviation, or a multiple of one, with so many degrees of freedom. tool.
+/// Returns the 95 % interval of a standard deviation, or of a multiple of one. freedom: degrees of freedom.
+/// tool.
 std::pair<double, double> spread_interval(double spread, double freedom);
 
-/// The poses of a test in the order of their first visit: readings with one commanded pose (within 1 nm and 1
-/// nrad) belong together. Throws InputError: a pose with fewer than two readings. The interval takes the
-/// scatter as normal with the covariance that is seen; its degrees of freedom are those at which chi square
-/// varies as RP_l then does. tool. Source: ISO 9283:1998, 7.2.1, 7.2.2; the interval by the delta method.
+/// Returns the poses of a test in the order of their first visit. Readings with one commanded pose (within 1
+/// nm and 1 nrad) belong together. Throws InputError: a pose with fewer than two readings. The interval
+/// assumes normal scatter with the observed covariance. Its degrees of freedom are those at which chi square
+/// has the same variance as RP_l. tool. Source: ISO 9283:1998, 7.2.1, 7.2.2; the interval by the delta
+/// method.
 std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings);
 
 /// Rotates and shifts the measured poses until their barycentres are nearest to the commanded poses (least
-/// squares, Kabsch 1976): for an instrument whose frame is not that of the robot. Throws InputError if the
-/// poses do not determine a frame (fewer than three, on one line). tool.
+/// squares, Kabsch 1976). Used for an instrument whose frame is not that of the robot. Throws InputError if
+/// the poses do not determine a frame (fewer than three poses, or all on one line). tool.
 void align_to_commanded(std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate

@@ -62,7 +62,8 @@ DistanceResult distance_of(const Visits& first, const Visits& second) {
 
 std::vector<DistanceResult> evaluate_distances(const std::vector<PoseReading>& readings) {
   const std::vector<Visits> poses = visits_by_pose(readings);
-  if (poses.size() < 2) throw text::InputError("one commanded pose: a distance is between two");
+  if (poses.size() < 2)
+    throw text::InputError("the file has only one commanded pose; a distance needs two poses");
   for (const Visits& pose : poses) {
     const Vector3d& at = pose.front()->commanded_mm;
     if (pose.size() != poses.front().size() || pose.size() < 2)

@@ -6,7 +6,7 @@
 
 namespace vernier::evaluate {
 
-/// What ISO 9283:1998, 7.3 computes of the distance between two poses. mm; a turn about an axis in deg.
+/// Results of ISO 9283:1998, 7.3 for the distance between two poses. mm; a rotation about an axis in deg.
 struct DistanceResult {
   Eigen::Vector3d from_mm, to_mm;  // commanded
   std::size_t count = 0;           // of distances
@@ -19,11 +19,12 @@ struct DistanceResult {
       repeatability_xyz_mm;  // AD_x y z and RD_x y z: of the distances along each
 };
 
-/// Distances between each pose and the next, poses in the order of their first visit (two poses: one
-/// distance), of their first visits, their second ones and so on: D_j = |P1_j - P2_j|, along an axis |x1_j -
-/// x2_j|; AD = mean of D_j - D_c, RD = 3 sqrt(sum of (D_j - mean)^2 / (n - 1)). Throws InputError: fewer than
-/// two poses or visits, poses that are not visited equally often. tool. Source: ISO 9283:1998, 7.3.2, 7.3.3
-/// (the sign of AD kept: positive is too long); the interval takes the distances as normal.
+/// Returns the distances between each pose and the next pose, in the order of their first visit (two poses:
+/// one distance). The first visits are compared, then the second visits, and so on: D_j = |P1_j - P2_j|,
+/// along an axis |x1_j - x2_j|; AD = mean of D_j - D_c, RD = 3 sqrt(sum of (D_j - mean)^2 / (n - 1)). Throws
+/// InputError: fewer than two poses or visits, poses that are not visited equally often. tool. Source: ISO
+/// 9283:1998, 7.3.2, 7.3.3. AD has a sign: a positive AD is a too long distance. The interval assumes normal
+/// distances.
 std::vector<DistanceResult> evaluate_distances(const std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate

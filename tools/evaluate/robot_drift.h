@@ -7,7 +7,7 @@
 
 namespace vernier::evaluate {
 
-/// A pose in one block of cycles of a long test, against the first block.
+/// Characteristics of a pose in one block of cycles of a long test, compared with the first block.
 struct DriftBlock {
   std::string run;
   double time_s = 0;  // middle of its readings since that of the first; not a number without times
@@ -23,13 +23,12 @@ struct DriftResult {
   std::size_t accuracy_at = 0, repeatability_at = 0, shift_at = 0;  // blocks of the largest
 };
 
-/// Drift of the characteristics of each pose, from readings whose run is their block of cycles: dAP = |AP of
-/// the first block - AP of this one|, dRP = |RP of the first - RP of this one|. The largest are reported.
-/// Throws InputError: a block with fewer than two readings of a pose, a pose in one block only, blocks that
-/// go back in time. tool.
-/// Source: ISO 9283:1998, 7.6. The shift of the barycentre is not in the standard. An instrument error that
-/// is equal in both blocks is no drift: uncertainties contain the scatter only. A drift of the instrument
-/// cannot be distinguished from a drift of the robot.
+/// Returns the drift of the characteristics of each pose; the run of a reading is its block of cycles. dAP =
+/// |AP of the first block - AP of this block|, dRP = |RP of the first block - RP of this block|. The largest
+/// drifts are returned. Throws InputError: a block with fewer than two readings of a pose, a pose in one
+/// block only, blocks that go back in time. tool. Source: ISO 9283:1998, 7.6. The shift of the barycentre is
+/// not in the standard. An instrument error that is equal in both blocks is no drift: the uncertainties
+/// contain only the scatter. A drift of the instrument cannot be distinguished from a drift of the robot.
 std::vector<DriftResult> evaluate_drift(const std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate

@@ -14,15 +14,15 @@ struct PathResult {
   std::size_t accuracy_at = 0, repeatability_at = 0;  // the station of the largest
 };
 
-/// The same path followed in several cycles (runs); samples in time order, not at the same positions.
-/// Stations are equally spaced along the commanded path of the first cycle. A cycle is evaluated where its
-/// measured path crosses the plane perpendicular to the commanded path, linear between samples. Ends are
-/// excluded, because no sample is beyond them. Throws InputError: fewer than two cycles, a path without
-/// length, a station that a cycle does not cross. tool.
+/// Evaluates a path that was followed in several cycles (runs). Samples are in time order and need not be at
+/// the same positions. Stations are equally spaced along the commanded path of the first cycle. A cycle is
+/// evaluated where its measured path crosses the plane perpendicular to the commanded path. Between samples
+/// the path is linear. The ends of the path are excluded, because no sample is beyond them. Throws
+/// InputError: fewer than two cycles, a path without length, a station that a cycle does not cross. tool.
 PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations);
 
-/// Rows of a measurement file with columns px py pz (commanded) and x y z (measured), mm; run, u, t if
-/// present. check rows count too; a row without a reading is skipped. Throws InputError. tool.
+/// Reads the rows of a measurement file with columns px py pz (commanded) and x y z (measured), mm; run, u, t
+/// if present. Check rows are included; a row without a reading is skipped. Throws InputError. tool.
 std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file);
 
 }  // namespace vernier::evaluate

@@ -47,7 +47,7 @@ void check_increasing(const model::Table& table, const std::string& file,
     if (table.stations[i].loc <= table.stations[i - 1].loc)
       throw text::InputError({file, lines[i]}, table.stations[i].loc_text, "positions must increase");
   if (table.stations.size() < 2)
-    throw text::InputError({file, lines.at(0)}, "", "a table needs two rows at least");
+    throw text::InputError({file, lines.at(0)}, "", "a table needs at least two rows");
 }
 
 std::vector<std::string> words_of(const std::string& line) {
@@ -110,18 +110,20 @@ model::Table table_of_block(const Block& block, const std::string& file, const m
     throw text::InputError(place, block.header[1], "errors of two arguments: a table has one axis");
   const auto found = std::find_if(block.header.begin(), block.header.end(), is_argument);
   const auto axis = machine.find_axis(*found);
-  if (!axis) throw text::InputError(place, *found, "this machine has no axis of that name");
+  if (!axis) throw text::InputError(place, *found, "this machine has no axis of this name");
   const auto at = static_cast<std::size_t>(found - block.header.begin());
   std::vector<double> positions;
   for (std::size_t i = 0; i < block.rows.size(); ++i)
     positions.push_back(number_of(block.rows[i][at], {file, block.line[i]}));
-  if (block.rows.empty()) throw text::InputError(place, *found, "no rows below this header");
+  if (block.rows.empty()) throw text::InputError(place, *found, "the header has no rows below it");
   model::Table table = empty_table(machine, *axis, positions);
   table.interpolation = model::Interpolation::kLinear;
   for (std::size_t c = 0; c < block.header.size(); ++c) {
     if (c == at) continue;
     const auto column = error_column(block.header[c], *found);
-    if (!column) throw text::InputError(place, block.header[c], "no component error of axis " + *found);
+    if (!column)
+      throw text::InputError(place, block.header[c],
+                             "this column is not a component error of axis " + *found);
     for (std::size_t i = 0; i < block.rows.size(); ++i) {
       const double value = number_of(block.rows[i][c], {file, block.line[i]});
       table.stations[i].value[*column] = *column < 3 ? value : twelve_digits(value * maths::kDegPerRad);
@@ -155,12 +157,13 @@ model::Table parse_axis_csv(const std::string& text, const std::string& file, co
   const text::Place place{file, csv.header_line};
   const auto axis = machine.find_axis(csv.columns[0].name);
   if (!axis)
-    throw text::InputError(place, csv.columns[0].name, "the first column is no axis of this machine");
+    throw text::InputError(place, csv.columns[0].name, "the first column must be an axis of this machine");
   const auto numbers = [&](std::size_t column, format::Dimension dimension) {
     const format::Unit unit = *format::find_unit(csv.columns[column].unit);
     if (unit.dimension != dimension)
-      throw text::InputError(place, csv.columns[column].name,
-                             std::string("this column needs a unit like ") + format::base_unit(dimension));
+      throw text::InputError(
+          place, csv.columns[column].name,
+          std::string("this column needs a unit, for example ") + format::base_unit(dimension));
     std::vector<double> result;
     for (std::size_t i = 0; i < csv.rows.size(); ++i)
       result.push_back(unit.factor * number_of(csv.rows[i][column], {file, csv.line[i]}));
@@ -195,10 +198,10 @@ std::string isg_csv(const model::Machine& machine) {
     const std::string& axis = machine.axes[table.axis].name;
     if (!has_iso_letter(axis))
       throw text::InputError({machine.file, table.line}, axis,
-                             "the format knows axes X, Y, Z, A, B and C only");
+                             "this format supports only the axes X, Y, Z, A, B and C");
     if (table.interpolation != model::Interpolation::kLinear)
       throw text::InputError({machine.file, table.line}, axis,
-                             "a cubic table: the controller interpolates linearly");
+                             "a cubic table cannot be exported: the controller interpolates linearly");
     text += (first ? "" : "#\n") + axis;
     for (std::size_t k = 0; k < 6; ++k) text += "\t" + iso_name(k, axis);
     text += "\n";
@@ -223,10 +226,10 @@ std::vector<model::Table> parse_isg_csv(const std::string& text, const std::stri
     for (const model::Table& other : tables)
       if (other.axis == table.axis)
         throw text::InputError({file, block.header_line}, machine.axes[table.axis].name,
-                               "a second table of this axis");
+                               "this axis already has a table");
     tables.push_back(std::move(table));
   }
-  if (tables.empty()) throw text::InputError({file, 0}, "", "no component errors in this file");
+  if (tables.empty()) throw text::InputError({file, 0}, "", "this file contains no component errors");
   return tables;
 }
 

@@ -7,19 +7,19 @@
 
 namespace vernier::exchange {
 
-/// An error that a format cannot represent, and its size.
+/// An error of the machine that an exchange format cannot represent, and the size of the error.
 struct LeftOut {
   std::string what;
   double um = 0;
 };
 
-/// Above this an error counts as one, um: a tenth of the finest digit that controllers' tables are kept in.
+/// Limit above which an error counts, um: a tenth of the finest digit in the tables of controllers.
 inline constexpr double kNothing_um = 0.01;
 
-/// Finds the variables, other than its position and direction, on which the first-order offset of `axis`
-/// depends. Reports the largest change that other axes, inputs, speed, travel since reversal … make at random
-/// states (fixed seed) within the axis ranges, one entry for each that is significant. `at`: the fixed state
-/// (count 1). tool.
+/// Finds the variables, other than the position and direction of `axis`, on which the first-order offset of
+/// `axis` depends. The result has one entry for each significant variable (other axes, inputs, speed, travel
+/// since reversal …): the largest change at random states (fixed seed) within the axis ranges. `at`: the
+/// fixed state (count 1). tool.
 std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t axis,
                                      const model::States& at);
 

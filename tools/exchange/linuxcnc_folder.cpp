@@ -27,14 +27,15 @@ void check_names(const model::Machine& machine) {
         name.size() <= kLongestName && std::all_of(name.begin(), name.end(), [](unsigned char c) {
           return std::isalnum(c) != 0 || c == '_' || c == '-';
         });
-    if (!good) throw text::InputError({machine.file, line}, name, "a name that no HAL pin can have");
+    if (!good)
+      throw text::InputError({machine.file, line}, name, "this name cannot be the name of a HAL pin");
   };
   if (machine.axes.size() > kMostJoints)
     throw text::InputError({machine.file, 0}, machine.axes[kMostJoints].name,
-                           "more axes than the component has joints");
+                           "the machine has more axes than the component has joints");
   if (machine.inputs.size() > kMostInputs)
     throw text::InputError({machine.file, 0}, machine.inputs[kMostInputs].name,
-                           "more inputs than the component has");
+                           "the machine has more inputs than the component supports");
   for (const model::Axis& axis : machine.axes) check(axis.name, axis.line);
   for (const model::Input* input : sensors(machine)) check(input->name, input->line);
 }

@@ -199,14 +199,15 @@ std::vector<ScrewPoint> parse_screw(const std::string& text, const std::string& 
     if (!points.empty() && three[0] <= points.back().nominal)
       throw text::InputError(place, line, "positions must increase");
     if (points.size() == kMostScrewPoints)
-      throw text::InputError(place, line,
-                             fmt::format("the controller keeps only {} lines", kMostScrewPoints));
+      throw text::InputError(
+          place, line,
+          fmt::format("the file has too many lines: the controller reads only {} lines", kMostScrewPoints));
     if (type == ScrewType::kActual)
       points.push_back({three[0], three[0] - three[1], three[0] - three[2]});
     else
       points.push_back({three[0], three[1], three[2]});
   }
-  if (points.size() < 2) throw text::InputError({file, 0}, "", "a table needs two lines at least");
+  if (points.size() < 2) throw text::InputError({file, 0}, "", "a table needs at least two lines");
   return points;
 }
 
@@ -236,7 +237,7 @@ std::string screw_into_machine(const std::string& text, const model::Machine& ma
   model::Machine next = machine;
   if (!reversal.empty()) {
     const auto index = machine.find_static(reversal);
-    if (!index) throw text::InputError({machine.file, 0}, reversal, "no static of that name");
+    if (!index) throw text::InputError({machine.file, 0}, reversal, "the machine has no static of this name");
     next.statics[*index].value = nine_decimals(half);
   }
   check_used(machine, table);

@@ -55,14 +55,15 @@ std::string with_element(const std::string& text, const model::Machine& machine,
   if (machine.table_of(table.axis) != nullptr) {
     const std::size_t start = table_start(text, axis), end = find_no_case(text, "</table>", start);
     if (start == kNowhere || end == kNowhere)
-      throw text::InputError({machine.file, 0}, axis, "its table is not found");
+      throw text::InputError({machine.file, 0}, axis, "the text has no table of this axis");
     return text::apply_edits(text, {{start, end + 8 - start, element}});
   }
   const std::size_t list = find_no_case(text, "</comptables>", 0),
                     variables = find_no_case(text, "</variables>", 0);
   if (list != kNowhere) return text::apply_edits(text, {{list, 0, "  " + element + "\n    "}});
   if (variables == kNowhere)
-    throw text::InputError({machine.file, 0}, "variables", "no such section to put a table into");
+    throw text::InputError({machine.file, 0}, "variables",
+                           "the machine file has no such section for the table");
   return text::apply_edits(text,
                            {{variables, 0, "<comptables>\n      " + element + "\n    </comptables>\n  "}});
 }

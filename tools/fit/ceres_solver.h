@@ -14,14 +14,14 @@ struct CeresOutcome {
   double scale = 1;  // weighted residual beyond which the loss reduces the weight
 };
 
-/// Returns the factors by which a loss weights readings with these weighted residuals (1 within
-/// its scale). An outlier then adds the square of the scale to the sum of squares, as its
-/// influence on a robust fit (Huber 1981, 6.7). tool.
+/// Returns the factors by which a robust loss weights readings with these weighted residuals. The factor is 1
+/// within the scale of the loss. The weighted square of an outlier is then the square of the scale: this is
+/// its influence on a robust fit (Huber 1981, 6.7). tool.
 Eigen::VectorXd robust_shares(const Eigen::VectorXd& residual, Loss loss, double scale);
 
-/// Solves the same problem with Ceres, for robust losses and as a cross-check of the solver above.
-/// One residual block per observation. The analytic derivatives of all observations are evaluated
-/// in one step. tool.
+/// Solves the fit problem with Ceres, for robust losses and as a cross-check of Vernier's own solver. The
+/// Ceres problem has one residual block per observation. The analytic derivatives of all observations are
+/// evaluated in one step. tool.
 CeresOutcome solve_with_ceres(const FitProblem& problem, const Eigen::VectorXd& start,
                               const FitOptions& options);
 

@@ -10,14 +10,14 @@
 
 namespace vernier::fit {
 
-/// Returns the precision for these scales: (scale_i scale_j)^-1 precision_ij.
+/// Returns the precision matrix for these scales: (scale_i scale_j)^-1 precision_ij.
 Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const Eigen::VectorXd& scale);
 
-/// Computes scales by kind. Lengths: 3 x misfit. Angles: 3 x misfit divided by the reach. Set-ups:
-/// free, because they contain the rigid motion. Periods and time constants (in a divisor, an
-/// exponent or a lag): their own nominal value. Coefficients of any other unit: the value that
-/// moves their degree of freedom by 3 x misfit. A `scale` of the machine file replaces any of
-/// these. They are evaluated at the nominal machine, so they do not depend on the start. tool.
+/// Computes scales by kind. Lengths: 3 x misfit. Angles: 3 x misfit divided by the reach. Set-ups are free,
+/// because they contain the rigid motion. Scale of periods and time constants (in a divisor, an exponent or a
+/// lag): their own nominal value. Scale of coefficients with any other unit: the value that moves their
+/// degree of freedom by 3 x misfit. A `scale` of the machine file replaces the computed scale. The scales are
+/// evaluated at the nominal machine, so they do not depend on the start of the fit. tool.
 Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
                          const model::ParameterSet& parameters);
 

@@ -44,10 +44,11 @@ std::string first_names(const std::vector<std::string>& names) {
 
 Decision decision_of(const DecisionGroup& group) {
   const std::string names = first_names(group.names);
-  const char* said = group.unseen == group.open ? "not measured; stays at nominal +- scale"
-                     : group.names.size() > 1
-                         ? "not distinguished by these readings: as near to nominal as can be"
-                         : "determined in part: the rest as near to nominal as can be";
+  const char* said =
+      group.unseen == group.open ? "not measured; stays at nominal +- scale"
+      : group.names.size() > 1
+          ? "the readings do not distinguish these parameters; they are as near to nominal as possible"
+          : "the readings determine this parameter in part; the rest is set as near to nominal as possible";
   return {group.names, group.reach_um,
           fmt::format("{}: {}; +- {:.3g} um at the edge of the measured box", names, said, group.reach_um)};
 }

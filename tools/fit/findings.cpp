@@ -116,7 +116,7 @@ std::string unvaried_text(const model::FitRecord& record) {
                 : fmt::format("only where {} changed together with {}", one.variable, one.follows);
   }
   if (record.unvaried.size() > kMost) text += fmt::format("; and {} more", record.unvaried.size() - kMost);
-  return text + ". What it does elsewhere was not measured.";
+  return text + ". Its effect at other values was not measured.";
 }
 
 std::string alternatives_text(const model::FitRecord& record) {
@@ -125,8 +125,10 @@ std::string alternatives_text(const model::FitRecord& record) {
   std::string text =
       one.axis.empty()
           ? fmt::format("The readings do not distinguish the turn {} from a shift: one tool was used.", place)
-          : fmt::format("The readings do not distinguish the wave in {} from one of period {:.4g} along {}.",
-                        place, one.period, one.axis);
+          : fmt::format(
+                "The readings do not distinguish the cyclic error in {} from a cyclic error of period {:.4g} "
+                "along {}.",
+                place, one.period, one.axis);
   if (record.alternatives.size() > 1) text += fmt::format(" And {} more.", record.alternatives.size() - 1);
   return text;
 }
@@ -176,11 +178,10 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                     "The readings have no uncertainty u and no repeats: what the model lacks cannot be "
                     "distinguished from their noise."});
   if (result.check_ratio && *result.check_ratio > 1)
-    list.push_back(
-        {"no-gain", *result.check_ratio,
-         fmt::format("This model is no gain: it leaves {:.3g} times as much of the check rows as the "
-                     "nominal machine.",
-                     *result.check_ratio)});
+    list.push_back({"no-gain", *result.check_ratio,
+                    fmt::format("The fit does not improve the machine: the residual of the check rows is "
+                                "{:.3g} times that of the nominal machine.",
+                                *result.check_ratio)});
   if (!record.disturbance.empty())
     list.push_back({"disturbed", record.disturbed, "The survey was disturbed: " + record.disturbance + "."});
   if (const double share = repeated_poses(m); share >= 0.5)

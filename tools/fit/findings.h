@@ -9,21 +9,21 @@
 
 namespace vernier::fit {
 
-/// Discrepancy of the model, as far as the residual shows it. For each direction of workpiece
-/// coordinates it is the root of the mean squared residual beyond the noise (stated u; without u
-/// repeats), mm. It is computed for fit rows (corrected for the share that the fit absorbed) and
-/// for check rows. The larger value is used. A direction is included only if chance explains its
-/// residual one time in a thousand at most. A direction without readings gets the mean of the
-/// others. Readings belong to the direction that is nearest to their own. Zero if the noise is not
-/// known. tool.
+/// Returns the discrepancy of the model, as far as the residual shows it. For each direction of workpiece
+/// coordinates, the discrepancy is the root of the mean squared residual beyond the noise (stated u; without
+/// u repeats), mm. The discrepancy is computed for fit rows (corrected for the share that the fit absorbed)
+/// and for check rows. The larger of both discrepancies is used. A direction is included only if chance
+/// explains its residual one time in a thousand at most. A direction without readings gets the mean of the
+/// other directions. A reading belongs to the axis direction that is nearest to its own direction. The result
+/// is zero if the noise is not known. tool.
 Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurement& measurement);
 
-/// Returns the findings that every later command repeats. Codes: `something-missing` (value:
-/// residual over noise), `noise-unknown` (the readings have neither u nor repeats), `no-gain`
-/// (check rows against the nominal machine), `disturbed` (share of the residual of the nominal
-/// machine), `check-not-independent` (share of the check rows at poses of fit rows), `not-varied`
-/// (number of dependences), `not-distinguished` (number of alternatives), `absurd`,
-/// `not-converged`. record: with all other entries filled. tool.
+/// Returns the findings that every later command repeats. Codes of the findings: `something-missing` (value:
+/// residual over noise), `noise-unknown` (the readings have neither u nor repeats), `no-gain` (check rows
+/// against the nominal machine), `disturbed` (share of the residual of the nominal machine),
+/// `check-not-independent` (share of the check rows at poses of fit rows), `not-varied` (number of
+/// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`. record: with all
+/// other entries filled. tool.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);
 

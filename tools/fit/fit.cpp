@@ -87,7 +87,9 @@ StatedPriors stated_priors(FitResult& result, const FitOptions& options, const C
       stated.weight[static_cast<Eigen::Index>(i)] = 1 / (prior.std * prior.std);
       result.priors.emplace_back(result.parameters[i].name, prior.std);
     }
-    if (!found) throw text::InputError("\"" + prior.pattern + "\": no free parameter has this name");
+    if (!found)
+      throw text::InputError("\"" + prior.pattern +
+                             "\": no free parameter has this name (the JSON result of fit lists the names)");
   }
   return stated;
 }
@@ -141,8 +143,8 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
   if (!likely.one_reading) result.mistake = mistake;
   result.absurd =
       !result.converged ? fmt::format("the fit did not converge in {} iterations", result.iterations)
-      : misses ? fmt::format("the fit leaves {:.3g} mm of a measured box of +- {:.3g} mm", left_mm(result),
-                             result.reach_mm)
+      : misses ? fmt::format("the residual of the fit is {:.3g} mm in a measured box of +- {:.3g} mm",
+                             left_mm(result), result.reach_mm)
                : fmt::format("the nominal machine is off by {:.3g} mm in a measured box of +- {:.3g} mm",
                              result.misfit_mm, result.reach_mm);
   if (!mistake.empty()) result.absurd += ": " + mistake;
@@ -368,7 +370,8 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   const Eigen::VectorXd start_residual = residuals(machine, measurement);
   result.before = role_statistics(measurement, start_residual, false);
   if (result.before.count == 0)
-    throw text::InputError("no observation with role fit: there is nothing to fit");
+    throw text::InputError(
+        "the measurement has no reading with role fit; give at least some rows the role fit");
   result.noise_um = noise_um(measurement);
   const model::Measurement rows = rows_for_fit(machine, measurement);
   const Convention convention = convention_of(machine, rows, result.parameters);

@@ -17,12 +17,12 @@ struct Move {
   std::string words;
 };
 
-/// Tests whether readings from some row on belong to another tool point or another set-up than
-/// those before. Used if the residual of a fit exceeds its noise. At each of several rows, the
-/// nine shifts and rotations of both are fitted beside the model (linearised at `fitted`; scale:
-/// of its parameters, which hold them near `centre`). The move is accepted if it removes most of
-/// the excess residual and chance does not explain that. nominal: residual of the nominal machine
-/// after its set-up. Returns nullopt if there is no such row. tool.
+/// Tests whether readings from a row on belong to another tool point or another set-up than the readings
+/// before. find_move is used if the residual of a fit exceeds its noise. At each of several rows, the nine
+/// shifts and rotations of tool point and set-up are fitted beside the model (linearised at `fitted`). scale:
+/// of the model's parameters, which hold them near `centre`. The move is accepted if it explains most of the
+/// excess residual and chance does not explain that. nominal: residual of the nominal machine after its
+/// set-up. Returns nullopt if no row is accepted. tool.
 std::optional<Move> find_move(const model::Machine& fitted, const model::Measurement& rows,
                               const model::ParameterSet& parameters, const Eigen::VectorXd& centre,
                               const Eigen::VectorXd& scale, const Eigen::VectorXd& nominal);

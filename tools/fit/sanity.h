@@ -9,11 +9,12 @@
 
 namespace vernier::fit {
 
-/// If the residual divided by the reach of the model exceeds this share, the readings are of
-/// something else. Machines have 1e-5, hand-made robots 1e-2.
+/// Limit of the residual divided by the reach of the model: above this share, the readings do not belong to
+/// the machine. Machines have 1e-5, hand-made robots 1e-2.
 inline constexpr double kAbsurdResidual = 0.02;
 
-/// Beyond this share of the reach, known mistakes are tried on the nominal machine.
+/// Limit of the misfit as a share of the reach: above this limit, known mistakes are tried on the nominal
+/// machine.
 inline constexpr double kFarOff = 0.05;
 
 /// `check`: the role of the rows.
@@ -25,9 +26,9 @@ struct LikelyMistake {
   bool one_reading = false;  // a gross reading among good ones, not a mistake of all rows
 };
 
-/// Returns the reason why readings do not belong to this machine, in a sentence: one gross
-/// reading, two columns swapped, a unit, a sign. Each is tried. It is accepted if it reduces the
-/// misfit of the nominal machine fivefold. tool.
+/// Returns the reason why readings do not belong to this machine, in one sentence: one gross reading, two
+/// columns swapped, a unit, a sign. Each of these mistakes is tried. A mistake is accepted if its correction
+/// reduces the misfit of the nominal machine fivefold. tool.
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                              const WorstReading& worst);
 

@@ -8,13 +8,13 @@
 
 namespace vernier::fit {
 
-/// Size of a machine's errors, as far as its readings show it: of a kind as a whole (lengths or
-/// angles, of linear or rotary axes), and of each table relative to the others. All in units of
-/// the convention's scales.
+/// Size of a machine's errors, as far as its readings show it. Sizes are for each kind (lengths or angles, of
+/// linear or rotary axes), and for each table relative to the others. All sizes are in units of the
+/// convention's scales.
 ///
-/// If the lengths of a table, including its squareness, are larger than the others', its angles
-/// may be larger by the same factor. A survey with one tool shows only the sum of both. The errors
-/// of the good axes are no evidence about a bad axis.
+/// If the lengths of a table, including its squareness, are larger than those of the other tables, its angles
+/// may be larger by the same factor. A survey with one tool shows only the sum of lengths and angles. The
+/// errors of the good axes are no evidence about a bad axis.
 class SeenErrors {
  public:
   /// squares: expected square of each value relative to its neighbours; from_data: share of each
@@ -23,10 +23,10 @@ class SeenErrors {
   SeenErrors(const Convention& convention, const Eigen::VectorXd& squares, const Eigen::VectorXd& from_data,
              const Eigen::VectorXd& moved);
 
-  /// Does the kind's scale follow its observed errors?
+  /// True if the scale of this kind follows its observed errors.
   bool seen(int kind) const;
-  /// Returns the expected square of an entry of this kind (in that table; -1: none), within the
-  /// limits of the convention.
+  /// Returns the expected square of an entry of this kind, within the limits of the convention. table: the
+  /// table of the entry; -1: no table.
   double variance(int kind, int table) const;
 
  private:

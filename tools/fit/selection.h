@@ -9,7 +9,7 @@
 
 namespace vernier::fit {
 
-/// Does `name` match `pattern` (* any letters, ? one letter)?
+/// True if `name` matches `pattern` (* any letters, ? one letter).
 bool matches_pattern(std::string_view pattern, std::string_view name);
 
 /// Returns the set-ups that have an observation with role fit.

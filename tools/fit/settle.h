@@ -10,8 +10,8 @@
 
 namespace vernier::fit {
 
-/// Priors that the user states (`--prior`). Each acts like a measurement at `centre` with 1 /
-/// sqrt(weight).
+/// Priors that the user states (`--prior`). Each prior acts like a measurement at `centre` with the standard
+/// uncertainty 1 / sqrt(weight).
 struct StatedPriors {
   Eigen::VectorXd weight, centre;  // 1 / std^2; 0: no prior
 };
@@ -32,18 +32,18 @@ struct Settled {
   int iterations = 0;
 };
 
-/// Moves from `point`, near the minimum, to the result that depends only on data and convention.
-/// It minimises chi^2 + variance * sum ((value - centre) / scale)^2. Scales of tables are lowered
-/// to the size of the determined entries of their kind (evidence, MacKay 1992). A second pass
-/// starts from the result (iterated Tikhonov). A value that data determine to a fifth of its scale
-/// then moves by less than 1 % of its standard deviation. The result converges to rounding.
-/// `with_u`: weights are 1 / u. noise: correlation of the readings' errors, for the covariance
-/// (the point is that of independent readings); nullopt: estimated from the residual. tool.
+/// Moves from `point`, near the minimum, to the result that depends only on data and convention. settle()
+/// minimises chi^2 + variance * sum ((value - centre) / scale)^2. Scales of tables are lowered to the size of
+/// the determined entries of their kind (evidence, MacKay 1992). A second pass starts from the result
+/// (iterated Tikhonov). A value that the data determine to a fifth of its scale then moves by less than 1 %
+/// of its standard deviation. The result converges to rounding. `with_u`: weights are 1 / u. noise:
+/// correlation of the readings' errors, for the covariance (the point is that of independent readings);
+/// nullopt: the correlation is estimated from the residual. tool.
 Settled settle(FitProblem& problem, const Eigen::VectorXd& point, const Convention& convention,
                const StatedPriors& stated, std::size_t observations, bool with_u,
                const std::optional<NoiseModel>& noise);
 
-/// Returns the description that settle() gives, for a point that another solver found (robust
+/// Returns the result of settle() without moving the point, for a point that another solver found (robust
 /// losses). The point does not move. tool.
 Settled describe(FitProblem& problem, const Eigen::VectorXd& point, const Convention& convention,
                  const StatedPriors& stated, std::size_t observations, bool with_u,

@@ -37,7 +37,9 @@ std::vector<Eigen::Index> freed_in(const std::vector<std::string>& patterns,
         freed.insert(static_cast<Eigen::Index>(i));
         found = true;
       }
-    if (!found) throw text::InputError("\"" + pattern + "\": no free parameter has this name");
+    if (!found)
+      throw text::InputError("\"" + pattern +
+                             "\": no free parameter has this name (the JSON result of fit lists the names)");
   }
   return {freed.begin(), freed.end()};
 }

@@ -22,8 +22,8 @@ namespace vernier::fit {
 enum class Loss : std::uint8_t { kSquared, kHuber, kCauchy };
 enum class Solver : std::uint8_t { kNormalEquations, kCeres };
 
-/// A parameter that is held near its nominal value (its start, if the file gives none). It acts
-/// like a measurement of that value with this standard uncertainty.
+/// A parameter that is held near its nominal value (near its start, if the file has no nominal). A Prior acts
+/// like a measurement of the nominal value with this standard uncertainty.
 struct Prior {
   std::string pattern;  // name, with * and ? as in file names
   double std = 0;       // in the parameter's unit
@@ -34,14 +34,15 @@ struct FitOptions {
   double loss_scale = 3;  // in units of u (of the residual's standard deviation if u is absent)
   Solver solver = Solver::kNormalEquations;
   int max_iterations = 100;
-  /// Stages that are fitted one after the other before everything is fitted together: patterns of
-  /// the parameters freed in each stage.
+  /// Stages that are fitted one after another before all parameters are fitted together. A stage is a list of
+  /// patterns of the parameters freed in it.
   std::vector<std::vector<std::string>> stages;
   std::vector<Prior> priors;  // in addition to the convention's own
   /// Correlation of the errors of the readings, for the uncertainties; nullopt: estimated from the
   /// residual.
   std::optional<NoiseModel> noise;
-  /// Called after every iteration with its number and the weighted sum of squares.
+  /// The fit calls `progress` after every iteration with the number of the iteration and the weighted sum of
+  /// squares.
   std::function<void(int, double)> progress;
 };
 
@@ -66,18 +67,18 @@ struct NormalisedError {
   double rms = 0;       // 1 if model and uncertainties are right
   double within_3 = 0;  // share of the readings
   std::size_t count = 0;
-  /// Standard uncertainty of the square of `rms`, from blocks of successive rows. It includes
-  /// tails and correlated errors. Infinite if there are too few blocks.
+  /// Standard uncertainty of the square of `rms`, from blocks of successive rows. square_std includes tails
+  /// and correlated errors. square_std is infinite if there are too few blocks.
   double square_std = std::numeric_limits<double>::infinity();
 };
 
-/// Two estimates that are correlated.
+/// Two parameters whose estimates are correlated.
 struct Correlation {
   std::size_t first = 0, second = 0;
   double value = 0;  // -1..1
 };
 
-/// Figures of a fit after one of its stages.
+/// Statistics of a fit after one of its stages.
 struct StageFigures {
   std::string patterns;  // of the parameters freed
   std::size_t parameters = 0;
@@ -85,30 +86,32 @@ struct StageFigures {
   RoleStatistics fit, check;
 };
 
-/// The value of each parameter if the data do not determine it, and its plausible difference from
-/// that value. This convention makes a fit's result unique. Of all machines that the data cannot
-/// distinguish, it is the one nearest to nominal in these units.
+/// Value of each parameter if the data do not determine it, and its plausible difference from this value. The
+/// convention makes the result of a fit unique. Of all machines that the data cannot distinguish, the fit
+/// takes the machine nearest to nominal in these units.
 struct Convention {
-  /// Smaller kinds are of tables. This kind and larger ones are of statics.
+  /// Smaller kinds are of tables. The first kind of statics: this kind and larger kinds are statics.
   static constexpr int kFirstOfStatics = 5;
-  /// Residual of the nominal machine with the best set-up: rms, mm. A machine whose errors exceed
-  /// this total is not plausible.
+  /// Residual of the nominal machine with the best set-up: rms, mm. A machine whose errors exceed misfit_mm
+  /// in total is not plausible.
   double misfit_mm = 0;
-  /// Half the diagonal of the box of the measured points, mm. An angle moves the points by this
-  /// lever.
+  /// Half the diagonal of the box of the measured points, mm. An angle moves the points by the lever
+  /// reach_mm.
   double reach_mm = 0;
   Eigen::VectorXd centre, scale;  // in the parameters' units
-  /// Expected correlation of the values, in units of their scales. Neighbours of a table's column
-  /// are correlated (0.8 exp(-distance / 2 travels)), others are not. `precision` is its inverse.
+  /// Expected correlation of the values, in units of their scales. Neighbours of a table's column are
+  /// correlated (0.8 exp(-distance / 2 travels)); other values are independent. `precision` is the inverse of
+  /// `correlation`.
   Eigen::SparseMatrix<double> correlation, precision;
   std::vector<char> declared;  // the machine file declares the scale
   std::vector<char> shape;     // a period or a time constant: in a divisor, exponent or lag
-  /// Parameters of one kind share the information about their size. The fit lowers it to the size
-  /// of those that the data determine. 0: no kind, else the kind.
+  /// Parameters of one kind share the information about their size. The fit lowers the scale of a kind to the
+  /// size of the parameters that the data determine. 0: the parameter has no kind; else the number of its
+  /// kind.
   std::vector<int> kind;
   std::vector<int> table;  // table of an entry; -1: no table
-  /// Statics that are a slope of an axis' straightness (squareness: k*Z in X): the table of that
-  /// axis, else -1, and the length at half its travel for one unit, mm.
+  /// Statics that are a slope of an axis' straightness (squareness: k*Z in X). slope_of: the table of that
+  /// axis, else -1; the second list: the length at half its travel for one unit, mm.
   std::vector<int> slope_of;
   Eigen::VectorXd slope_mm;
 };
@@ -141,11 +144,11 @@ struct FitResult {
   std::vector<std::pair<std::string, double>> priors;  // parameter, standard uncertainty
   std::vector<StageFigures> stages;                    // as requested, then one with all parameters
   WorstReading worst, worst_check;                     // of the fit rows; of the check rows
-  /// rms of the fitted machine on check rows, divided by that of the nominal machine. Both use the
-  /// set-up of the fit rows or a new set-up. The larger ratio is used. nullopt if there are too
-  /// few check rows.
+  /// rms of the fitted machine on check rows, divided by the rms of the nominal machine. Both rms values use
+  /// the set-up of the fit rows, or a new set-up; the larger ratio is used. nullopt if there are too few
+  /// check rows.
   std::optional<double> check_ratio;
-  /// The reason why the readings are not those of this machine; empty if they are.
+  /// Reason why the readings are not those of this machine; empty if they are.
   std::string absurd;
   /// The part of `absurd` that names a mistake of all rows (a unit, a sign, columns swapped);
   /// empty if no such mistake was found.

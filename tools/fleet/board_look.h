@@ -18,13 +18,14 @@ struct BoardLook {
 /// Throws as upload::Client. tool.
 BoardLook look_at(upload::Client& board);
 
-/// The reason why the image with this fingerprint is not in effect, as a sentence; empty: it is in effect. In
-/// effect means: the image runs, the board is active, no fault is latched, no correction is held, and the
-/// whole correction of every axis is applied. tool.
+/// Returns a sentence with the reason why the image with this fingerprint is not in effect; empty: the image
+/// is in effect. An image is in effect if it runs, the board is active, no fault is latched, no correction is
+/// held, and the whole correction of every axis is applied. tool.
 std::string not_in_effect(const BoardLook& look, const upload::BoardInfo& info, std::uint64_t fingerprint);
 
-/// Reason why no image can come into effect on this board before a user changes its state; empty: an image
-/// can. Reasons: a latched fault, held corrections, or an axis with a weight below 1. tool.
+/// Returns the reason why no image can come into effect on this board before a user changes its state; empty:
+/// an image can come into effect. Reasons: a latched fault, held corrections, or an axis with a weight below
+/// 1. tool.
 std::string blocked(const BoardLook& look, const upload::BoardInfo& info);
 
 }  // namespace vernier::fleet

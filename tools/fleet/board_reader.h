@@ -12,11 +12,11 @@
 
 namespace vernier::fleet {
 
-/// Reads one board as metrics. tool.
+/// Reads one board and returns its values as metrics. tool.
 class BoardReader {
  public:
-  /// Opens the board. Throws InputError if it is not available, LimitNotMet if it is another board than
-  /// requested.
+  /// Opens the board. Throws InputError if the board is not available, LimitNotMet if it is not the requested
+  /// board.
   explicit BoardReader(const GatewayBoard& board);
   /// Present state of the board: names of tools/docs/fleet.md. Throws as upload::Client.
   std::vector<Metric> read();

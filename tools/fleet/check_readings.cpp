@@ -12,7 +12,8 @@ registry::FleetCheck parse_check(const std::string& json, const std::string& fil
   SparkplugPayload payload;
   payload.metrics = check_metrics(json, 0);
   const auto verdict = text_of(payload.find("Check/Verdict"));
-  if (!verdict) throw text::InputError({file, 0}, "", "not what `vernier check --json` writes");
+  if (!verdict)
+    throw text::InputError({file, 0}, "", "this file is not the output of `vernier check --json`");
   registry::FleetCheck check;
   check.verdict = *verdict;
   check.label = file;

@@ -9,23 +9,25 @@
 
 namespace vernier::fleet {
 
-/// One connection of a Sparkplug edge node: births before data, sequence numbers without a gap, a death as
-/// the will (Sparkplug 3.0.0, chapter 5). Every call returns false once the connection is gone. tool.
+/// One connection of a Sparkplug edge node: births before data, sequence numbers without a gap, the death
+/// certificate as the MQTT will (Sparkplug 3.0.0, chapter 5). Every call of EdgeNode returns false once the
+/// connection is lost. tool.
 class EdgeNode {
  public:
-  /// Connects with the will, and asks to hear commands and whether `host` is there. Throws InputError.
+  /// Connects with the MQTT will, and subscribes to commands and to the state of `host`. Throws InputError.
   EdgeNode(const Broker& broker, std::string group, std::string node, const std::string& host,
            std::uint64_t death_number);
 
   MqttConnection& connection() { return connection_; }
-  /// The node's birth with metrics in addition to bdSeq and Rebirth; devices are unborn after it.
+  /// Publishes the birth of the node with metrics in addition to bdSeq and Rebirth; after it no device has a
+  /// valid birth.
   bool birth(const std::vector<Metric>& metrics);
   bool born() const { return born_; }
-  /// Data of a device; before it the birth of the device if names or types are new.
+  /// Publishes data of a device; publishes the birth of the device first if names or types are new.
   bool data(const std::string& device, SparkplugPayload payload);
-  /// Publishes that the device is away; no message if it was never born.
+  /// Publishes that the device is away; sends no message if the device had no birth.
   bool death(const std::string& device);
-  /// Publishes the death certificate of the node, as its will does, and disconnects.
+  /// Publishes the death certificate of the node, as its MQTT will does, and disconnects.
   void part();
 
  private:

@@ -11,10 +11,10 @@ namespace vernier::fleet {
 /// A line for people: start, end or failure of something.
 using Say = std::function<void(const std::string&)>;
 
-/// Reads boards, keeps their data in a spool, and publishes them as a Sparkplug edge node whose devices are
-/// the machines, until `stop`. A record leaves the spool when the registry has confirmed that it is stored:
-/// brokers, registries, boards and the gateway may be unavailable or fail at any time. Throws InputError if
-/// the spool cannot be opened, DatabaseError if it fails later. tool.
+/// Reads boards, keeps their data in a spool, and publishes them as a Sparkplug edge node until `stop`. The
+/// devices of the node are the machines. A record leaves the spool when the registry has confirmed that the
+/// record is stored. Brokers, registries, boards and the gateway may be unavailable or fail at any time.
+/// Throws InputError if the spool cannot be opened, DatabaseError if the spool fails later. tool.
 void run_gateway(const GatewayFile& file, const std::atomic<bool>& stop, const Say& say);
 
 }  // namespace vernier::fleet

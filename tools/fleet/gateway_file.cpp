@@ -27,13 +27,13 @@ class Section {
       return otherwise;
     }
     const auto value = node->value_exact<std::string>();
-    if (!value) throw text::InputError(place(*node), key, "a text in quotes is wanted");
+    if (!value) throw text::InputError(place(*node), key, "the value must be a text in quotes");
     return *value;
   }
   /// A name that is used in topics.
   std::string name(const char* key, const std::string& otherwise, bool needed = false) {
     std::string name = word(key, otherwise, needed);
-    if (!fits_a_topic(name)) wrong(key, "one line without + / # is wanted, of 1 to 200 bytes");
+    if (!fits_a_topic(name)) wrong(key, "the value must be one line without + / #, of 1 to 200 bytes");
     return name;
   }
   double number(const char* key, double otherwise, double low, double high) {
@@ -81,7 +81,7 @@ void refuse_other_letters(const std::string& text, const std::string& path) {
   for (const char c : text) {
     line += c == '\n' ? 1 : 0;
     if (static_cast<unsigned char>(c) >= 0x80)
-      throw text::InputError({path, line}, "", "only ASCII is read here");
+      throw text::InputError({path, line}, "", "the text must contain only ASCII letters");
   }
 }
 

@@ -24,7 +24,8 @@ struct GatewayFile {
   std::vector<GatewayBoard> boards;
 };
 
-/// Throws InputError with file, line and word. Paths in it count from its folder. tool.
+/// Throws InputError with file, line and word. Relative paths in the gateway file refer to the folder of the
+/// file. tool.
 GatewayFile parse_gateway_file(const std::string& text, const std::string& path);
 
 }  // namespace vernier::fleet

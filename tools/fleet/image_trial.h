@@ -22,7 +22,7 @@ struct RolloutOptions {
   bool take_over_trial = false;  // a trial of another caller is reverted
 };
 
-/// How one machine's turn ended.
+/// Result of the rollout for one machine.
 struct TrialEnd {
   enum class Kind : std::uint8_t { kKept, kTakenBack, kRefused, kNotInEffect, kAway, kInterrupted } kind;
   std::string why;
@@ -30,17 +30,18 @@ struct TrialEnd {
 /// "kept", "taken-back", ...: the state in the registry.
 const char* name_of(TrialEnd::Kind kind);
 
-/// The steps for one machine: its image is put on trial, watched to be in effect, evaluated, then confirmed
-/// or reverted. No data are signed or sent before the board has proved that it is the board of the machine.
-/// The proof is repeated before each look, before the image is confirmed and before it is reverted. tool.
+/// Steps of a rollout for one machine: put its image on trial, watch that the image is in effect, evaluate
+/// it, then confirm or revert it. No data are signed or sent before the board has proved that it is the board
+/// of the machine. The board repeats this proof before each look, before the image is confirmed and before it
+/// is reverted. tool.
 class ImageTrial {
  public:
-  /// Opens the board. Throws InputError if it does not answer, LimitNotMet if it is another board. All
+  /// Opens the board. Throws InputError if the board does not answer, LimitNotMet if it is another board. All
   /// arguments outlive the trial.
   ImageTrial(const RolloutMachine& machine, const RolloutOptions& options, RolloutBook& book,
              registry::MachineLocks& locks, const std::atomic<bool>& stop);
-  /// own_issued: RolloutState::issued; it distinguishes a trial of this rollout from a trial of another
-  /// caller. Throws LockLost: the board was not changed any more. tool.
+  /// Runs the trial. own_issued: RolloutState::issued; it distinguishes a trial of this rollout from a trial
+  /// of another caller. Throws LockLost if the lock was lost; the board is not changed after that. tool.
   TrialEnd run(std::uint64_t own_issued);
 
  private:
@@ -68,8 +69,9 @@ class ImageTrial {
   std::uint64_t fingerprint_, issued_ = 0, faults_before_ = 0;
 };
 
-/// Checks a machine with a kept image, until it passes or options.settle_s are over. The board must prove its
-/// identity, have the image confirmed and have it in effect.
+/// Result of a check of a machine with a confirmed image. The check is repeated until it passes or
+/// options.settle_s are over. To pass, the board must prove its identity, have the image confirmed and have
+/// it in effect.
 struct KeptLook {
   std::string why;  // why not; empty: it is
   bool away = false;

@@ -60,7 +60,8 @@ class Listener {
     }
     for (const auto& [gateway, receipt] : writer_.write(data)) tell(gateway, receipt);
     for (const std::string& machine : writer_.take_not_entered())
-      say_("machine " + nlohmann::json(machine).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) +
+      say_("machine " +
+           nlohmann::json(machine).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) +
            " is not in the registry: its samples are not stored. The owner enters a machine with `vernier "
            "fleet add`");
     ask_for_births();

@@ -8,16 +8,16 @@
 
 namespace vernier::fleet {
 
-/// From a broker into a registry.
+/// Options of the ingest from a broker into a registry.
 struct IngestOptions {
   std::string registry, group = "vernier", host = "vernier";
   Broker broker;
 };
 
-/// The host application, which runs until `stop`. It receives the messages of all edge nodes of a group and
-/// writes their data into the registry, each sample once. It reports to the gateways which samples are
-/// stored. Broker and database may be unavailable at any time. Throws InputError if the registry is not valid
-/// at the beginning. tool.
+/// The host application, which runs until `stop`. run_ingest receives the messages of all edge nodes of a
+/// group and writes their data into the registry, each sample once. run_ingest reports to the gateways which
+/// samples are stored. Broker and database may be unavailable at any time. Throws InputError if the registry
+/// is not valid at the beginning. tool.
 void run_ingest(const IngestOptions& options, const std::atomic<bool>& stop, const Say& say);
 
 }  // namespace vernier::fleet

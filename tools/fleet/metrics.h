@@ -11,7 +11,8 @@ namespace vernier::fleet {
 /// The state of the fleet in the Prometheus text format 0.0.4; names are in tools/docs/fleet.md. tool.
 std::string metrics_text(registry::Registry& registry, std::int64_t at_us);
 
-/// Serves it as /metrics at HOST:PORT until `stop`. Throws InputError if it cannot listen there. tool.
+/// Serves the metrics of a registry as /metrics at HOST:PORT until `stop`. Throws InputError if the server
+/// cannot listen at this address. tool.
 void serve_metrics(const std::string& registry, const std::string& address, const std::atomic<bool>& stop,
                    const Say& say);
 

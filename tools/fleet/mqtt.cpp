@@ -64,7 +64,7 @@ void require_broker_address(const std::string& address) {
                                                : text::parse_count(std::string_view(place).substr(colon + 1));
   const bool named = !host.empty() && host.find_first_of(" \t\n/@") == std::string::npos;
   if (scheme == 0 || !named || !port || *port == 0 || *port > kMostPort)
-    throw text::InputError({}, address, "tcp://HOST:1883 or ssl://HOST:8883 is wanted");
+    throw text::InputError({}, address, "the address must be tcp://HOST:1883 or ssl://HOST:8883");
 }
 
 MqttConnection::MqttConnection(const Broker& broker, const std::string& client, const MqttWill& will)
@@ -112,7 +112,7 @@ bool MqttConnection::connected() const {
 
 void MqttConnection::subscribe(const std::string& filter, int qos) {
   const int code = MQTTClient_subscribe(inside_->client, filter.c_str(), qos);
-  if (code != MQTTCLIENT_SUCCESS) throw text::InputError({}, filter, "the broker takes no subscription");
+  if (code != MQTTCLIENT_SUCCESS) throw text::InputError({}, filter, "the broker refuses the subscription");
 }
 
 bool MqttConnection::publish(const std::string& topic, const std::string& payload, int qos, bool retained) {

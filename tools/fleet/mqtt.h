@@ -30,8 +30,8 @@ struct MqttWill {
   bool retained = false;
 };
 
-/// A connection to a broker (MQTT 3.1.1, clean session). What comes in is kept by a thread of the library
-/// until it is taken. tool.
+/// A connection to a broker (MQTT 3.1.1, clean session). A thread of the library keeps received messages
+/// until take() returns them. tool.
 class MqttConnection {
  public:
   /// Connects. Throws InputError naming the address.
@@ -42,9 +42,10 @@ class MqttConnection {
 
   bool connected() const;
   void subscribe(const std::string& filter, int qos);
-  /// QoS 0 as Sparkplug wants it of data and births; 1 of STATE. False: the connection is gone.
+  /// Publishes a message. QoS 0 is what Sparkplug requires for data and births; QoS 1 is for STATE. False:
+  /// the connection is gone.
   bool publish(const std::string& topic, const std::string& payload, int qos = 0, bool retained = false);
-  /// What came, at most `most`; waits up to `patience` for the first.
+  /// Returns the received messages, at most `most`; waits up to `patience` for the first message.
   std::vector<MqttMessage> take(std::chrono::milliseconds patience, std::size_t most = 1000);
   /// Disconnects in order: the broker does not publish the will.
   void part();

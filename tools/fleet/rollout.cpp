@@ -171,7 +171,7 @@ std::vector<std::size_t> stage_ends(const std::string& stages, std::size_t machi
     const bool share = one.ends_with('%');
     const auto number = text::parse_number(share ? one.substr(0, one.size() - 1) : one);
     if (!number || *number <= 0 || (share && *number > 100) || (!share && *number != std::floor(*number)))
-      throw text::InputError({}, one, "a stage is a number of machines, or a share such as 10%");
+      throw text::InputError({}, one, "a stage must be a number of machines, or a share such as 10%");
     const double count = share ? std::ceil(*number / 100 * static_cast<double>(machines)) : *number;
     const auto end = std::min(machines, static_cast<std::size_t>(std::min(count, 1e9)));
     if (ends.empty() || end > ends.back()) ends.push_back(end);

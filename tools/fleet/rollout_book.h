@@ -10,14 +10,14 @@
 
 namespace vernier::fleet {
 
-/// A machine of a rollout, in its order.
+/// A machine of a rollout; the machines are in the order of the rollout.
 struct RolloutMachine {
   std::string name, url;
   upload::BoardClaim claim;  // required identity of its board; a name at least
   std::vector<std::uint8_t> image;
   std::int64_t stage = 0;
 };
-/// Of the image of a machine.
+/// Returns the fingerprint of the image of a machine.
 std::uint64_t fingerprint_of(const RolloutMachine& machine);
 
 /// State of a machine in a rollout.
@@ -30,15 +30,15 @@ struct RolloutState {
   std::uint64_t issued = 0;  // time of signing of the last trial of this rollout; 0: no trial
 };
 
-/// A rollout's rows of the registry. They are written only while the lock of the machine is held. All calls
-/// throw DatabaseError; those that write throw LockLost. tool.
+/// A rollout's rows of the registry. The rows are written only while the caller has the lock of the machine.
+/// All calls of RolloutBook throw DatabaseError; calls that write throw LockLost. tool.
 class RolloutBook {
  public:
   RolloutBook(registry::Registry& registry, std::string name, const registry::MachineLocks& locks)
       : registry_(registry), name_(std::move(name)), locks_(locks) {}
   void enter(const std::vector<RolloutMachine>& machines);
   void write(const RolloutMachine& machine, const char* state, const std::string& said);
-  /// A trial begins; issued: time of signing, by which the board names it.
+  /// Records that a trial begins. issued: time of signing, by which the board identifies the trial.
   void begin_trial(const RolloutMachine& machine, std::uint64_t issued);
   /// Machines that were taken back are tried again.
   void allow();
@@ -50,7 +50,7 @@ class RolloutBook {
   const registry::MachineLocks& locks_;
 };
 
-/// In the order of the rollout; empty if no rollout has that name.
+/// Returns the states of the machines in the order of the rollout; empty if no rollout has this name.
 std::vector<RolloutState> rollout_states(registry::Registry& registry, const std::string& name);
 
 }  // namespace vernier::fleet

@@ -17,17 +17,18 @@ struct DeviceData {
   SparkplugPayload payload;
 };
 
-/// The last number of a gateway's store that is in the registry; it is reported to the gateway.
+/// The last number of a gateway's spool that is in the registry; the registry reports it to the gateway.
 struct Receipt {
   std::string spool;
   std::uint64_t stored = 0;
   bool resend = false;  // a record is missing: begin behind `stored`
 };
 
-/// Writes samples into the registry, each once. The records of a store are taken in the order of their
-/// numbers. The number is updated in the same transaction as the records, and earlier records are ignored.
-/// Two writers may run at the same time. Only samples of machines that are in the registry are stored. The
-/// samples of another machine are counted (Registry::not_entered), and the gateway may forget them. tool.
+/// Writes samples into the registry, each once. Records of a spool are taken in the order of their
+/// numbers. The last number is updated in the same transaction as the records, and earlier records are
+/// ignored. Two writers may run at the same time. Only samples of machines that are in the registry are
+/// stored. The samples of another machine are counted (Registry::not_entered), and the gateway may forget
+/// them. tool.
 class SampleWriter {
  public:
   explicit SampleWriter(registry::Registry& registry) : registry_(registry) {}
@@ -36,7 +37,7 @@ class SampleWriter {
   std::map<std::string, Receipt> write(const std::vector<DeviceData>& data);
   /// A machine, or all of a gateway's (machine empty), can be heard or not.
   void online(const std::string& gateway, const std::string& machine, bool online);
-  /// Samples written so far.
+  /// Returns the number of samples written so far.
   std::uint64_t written() const { return written_; }
   /// Machines that are not in the registry and whose samples write() got, each name once. The list is empty
   /// afterwards.

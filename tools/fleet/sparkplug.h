@@ -12,7 +12,7 @@ namespace vernier::fleet {
 /// A value of a metric; the alternative decides Sparkplug's datatype: Double, Int64, UInt64, Boolean, String.
 using MetricValue = std::variant<double, std::int64_t, std::uint64_t, bool, std::string>;
 
-/// A named value as it travels.
+/// A named value of a Sparkplug message.
 struct Metric {
   std::string name;
   MetricValue value;
@@ -26,12 +26,12 @@ struct SparkplugPayload {
   std::uint64_t time_ms = 0;
   std::optional<std::uint64_t> seq;  // 0..255; absent in NDEATH and commands
   std::vector<Metric> metrics;
-  /// The metric of that name; null if no metric has it.
+  /// Returns the metric of this name; null if no metric has the name.
   const Metric* find(std::string_view name) const;
 };
 
-/// Converts a payload to bytes, and back; `nullopt` if the bytes are not a payload. Metrics are skipped if
-/// their type is not read here, if they are null, or if their text is not UTF-8 without NUL. tool.
+/// Converts a payload to bytes, and back; `nullopt` if the bytes are not a payload. A metric is skipped if
+/// its type is not supported here, if it is null, or if its text is not UTF-8 without NUL. tool.
 std::string encode(const SparkplugPayload& payload);
 std::optional<SparkplugPayload> decode(std::string_view bytes);
 
@@ -48,9 +48,9 @@ struct SparkplugTopic {
   SparkplugKind kind = SparkplugKind::kNData;
 };
 std::string topic_text(const SparkplugTopic& topic);
-/// `nullopt` if it is not a topic of an edge node.
+/// Parses the topic of an edge node; `nullopt` if the text is no such topic.
 std::optional<SparkplugTopic> parse_topic(std::string_view text);
-/// The topic on which a host application publishes its state.
+/// Returns the topic on which a host application publishes its state.
 std::string state_topic(const std::string& host);
 /// The state message: JSON of Sparkplug 3.0.0, 6.4.24.
 std::string state_text(bool online, std::uint64_t time_ms);

@@ -46,7 +46,7 @@ Spool::Lock::Lock(const std::string& file) : fd_(::open(file.c_str(), O_CREAT | 
   if (fd_ < 0) throw text::InputError({}, file, std::strerror(errno));
   if (::flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
   ::close(fd_);
-  throw text::InputError({}, file, "held by another process: a store is one gateway's");
+  throw text::InputError({}, file, "another process uses this store; each gateway needs its own store");
 }
 
 Spool::Lock::~Lock() { ::close(fd_); }

@@ -10,7 +10,7 @@
 
 namespace vernier::fleet {
 
-/// A sample of a machine that waits to be stored: payload as encode() made it.
+/// A sample of a machine that waits to be stored; payload as encode() made it.
 struct SpoolRecord {
   std::uint64_t number = 0;  // 1, 2, 3 … in this spool
   std::string machine;
@@ -18,18 +18,19 @@ struct SpoolRecord {
   std::string payload;
 };
 
-/// Data that a gateway has read and no registry has confirmed yet, in a file: bounded, durable, numbered. A
-/// record leaves it when the registry has stored it. It is also removed, and counted, when the file is full.
-/// tool.
+/// A file with the data that a gateway has read and no registry has confirmed yet: bounded, durable,
+/// numbered. A record leaves the spool when the registry has stored it. A record is also removed, and
+/// counted, when the file is full. tool.
 class Spool {
  public:
   /// owner: the gateway; the file of another gateway (a copied medium) gets a new id. most: number of records
   /// that fit. Throws InputError if the file cannot be opened or created.
   Spool(const std::string& file, const std::string& owner, std::uint64_t most);
 
-  /// Unique id of this spool: new if the file was created, so that a number never has two meanings.
+  /// Returns the unique id of this spool. A new file gets a new id, so that a number never has two meanings.
   const std::string& id() const { return id_; }
-  /// Writes records with numbers, and removes those up to stored(), in one transaction. Throws DatabaseError.
+  /// Writes records with numbers, and removes the records up to stored(), in one transaction. Throws
+  /// DatabaseError.
   void take(std::vector<SpoolRecord>& records);
   /// The records after `number`, at most `most`, in order.
   std::vector<SpoolRecord> after(std::uint64_t number, std::size_t most);
@@ -41,17 +42,17 @@ class Spool {
   std::uint64_t dropped() const { return dropped_; }
   /// The last number that is no longer here.
   std::uint64_t gone() const { return gone_; }
-  /// Called if the registry has numbers that this spool never gave: the file is an older, restored one. Its
-  /// records get new numbers under a new id.
+  /// Call begin_anew if the registry has numbers that this spool never gave: the file is an older, restored
+  /// file. The records then get new numbers under a new id.
   void begin_anew();
-  /// The number of this birth, one more at each call (Sparkplug's bdSeq, 0..255).
+  /// Returns the number of the next birth; increases by one at each call (Sparkplug's bdSeq, 0..255).
   std::uint64_t next_birth();
 
  private:
-  /// Lock of a file beside the store (flock(2)): others may read the store meanwhile.
+  /// Lock of a file beside the spool (flock(2)): other processes may still read the spool.
   class Lock {
    public:
-    /// Throws InputError if another process, or this one, has it.
+    /// Throws InputError if another process, or this process, has the lock.
     explicit Lock(const std::string& file);
     ~Lock();
     Lock(const Lock&) = delete;

@@ -14,7 +14,7 @@
 
 namespace vernier::format {
 
-/// Names of columns, for code that reads or writes one of them.
+/// Names of columns, for code that reads or writes a column.
 namespace columns {
 inline constexpr std::array kPoint = {"x", "y", "z"};
 inline constexpr std::array kRotation = {"rx", "ry", "rz"};
@@ -50,7 +50,7 @@ enum class ColumnUse : std::uint8_t {
   kLabel         // groups the rows
 };
 
-/// Columns of one meaning: "x y z", or one alone.
+/// Columns with one meaning: "x y z", or a single column.
 struct ColumnGroup {
   std::array<const char*, 3> names;
   std::size_t count;
@@ -59,8 +59,8 @@ struct ColumnGroup {
   const char* meaning;                     // a phrase; of one column and of several
   ReadingForm form = ReadingForm::kPoint;  // of kReading and kBeside
   bool words = false;                      // words, not numbers
-  /// Column of a later version of the format: a machine file may use the name for an input. In that case, or
-  /// with another unit, the column is a user's column.
+  /// Column of a later version of the format: a machine file may use the name for an input. If a machine file
+  /// uses the name, or with another unit, the column is a user's column.
   bool later = false;
   bool filled = false;              // no cell may be empty
   bool in_terms = false;            // expressions read it by this name: the name is reserved
@@ -70,26 +70,29 @@ struct ColumnGroup {
   std::span<const char* const> list() const { return std::span(names).first(count); }
 };
 
-/// All columns that have a meaning for every machine.
+/// Returns all columns that have a meaning for every machine.
 std::span<const ColumnGroup> column_groups();
 
-/// One of them by its name; nullptr: no column of the format has it. Names are case-sensitive.
+/// Finds a column of the format by its name; nullptr: the format has no such column. Names are
+/// case-sensitive.
 const ColumnGroup* find_column(std::string_view name);
-/// The columns that hold readings of a form; the columns that belong to them.
+/// reading_columns: the columns that contain readings of a form. columns_beside: the columns that belong to
+/// these readings.
 const ColumnGroup& reading_columns(ReadingForm form);
 std::vector<const ColumnGroup*> columns_beside(ReadingForm form);
 
-/// The dimension that a column needs; the second one of `u`, else nullopt.
+/// dimension_of: the dimension that a column needs. other_dimension_of: the second dimension of `u`, else
+/// nullopt.
 Dimension dimension_of(const ColumnGroup& group);
 std::optional<Dimension> other_dimension_of(const ColumnGroup& group);
 /// The unit in which files give a column; "": a pure number, a word, or no column of the format.
 const char* column_unit(std::string_view name);
 /// "x[mm]", "nx".
 std::string heading(std::string_view name, std::string_view unit);
-/// The same with the unit of the table: "feed[mm/min]".
+/// Returns the name of a column with the unit of the table: "feed[mm/min]".
 std::string heading(std::string_view name);
 
-/// "x[mm],y[mm],z[mm]": several of them, as a header has them.
+/// Returns the headings of several columns as one header: "x[mm],y[mm],z[mm]".
 std::string headings(std::span<const char* const> names);
 
 /// A quantity that has a column for each axis.
@@ -142,26 +145,29 @@ struct AxisColumnName {
   AxisQuantity quantity;
   std::string axis;
 };
-/// Axis and quantity of a name; nullopt: no axis. An axis with exactly this name comes first.
+/// Axis and quantity of a name; nullopt: no axis. An axis whose name is exactly the column name has
+/// precedence.
 std::optional<AxisColumnName> axis_column_named(std::string_view name,
                                                 const std::function<bool(const std::string&)>& is_axis);
 
-/// "nx ny nz": names of columns in one text, for messages.
+/// Returns names of columns in one text, for messages: "nx ny nz".
 std::string words_of(std::span<const char* const> names);
 /// "x y z rx …": the columns of all readings, for messages.
 std::string reading_column_names();
 
-/// True if a column is a reading in a file with this header. A column of the first version is a reading by
-/// its name. A column of a later version is a reading only with its companions: `from` with `distance`, an
-/// angle's unit for `ix` and `iy`, all of `ax ay az` without a unit. `find`: a column of the header; nullptr:
-/// the header has no column of this name, or the machine file uses the name for an input.
+/// True if a column is a reading in a file with this header. A column of the first version of the format is a
+/// reading by its name. A column of a later version is a reading only with its companions: `from` with
+/// `distance`, an angle's unit for `ix` and `iy`, all of `ax ay az` without a unit. `find`: finds a column of
+/// the header by name; nullptr: the header has no such column, or the machine file uses the name for an
+/// input.
 bool is_reading(const CsvColumn& column, const std::function<const CsvColumn*(std::string_view)>& find);
 
-/// True if an expression reads a quantity of this name (t, feed, nx …). Then the name must not be used
-/// otherwise.
+/// True if an expression reads a quantity of this name (t, feed, nx …). An axis or input must not have such a
+/// name.
 bool is_name_of_terms(std::string_view name);
 
-/// The reading that holds a rotary axis' angle: rx, ry, rz of A, B, C (ISO 841); nullopt for other axes.
+/// Returns the name of the reading of a rotary axis' angle: rx, ry, rz for A, B, C (ISO 841); nullopt for
+/// other axes.
 std::optional<std::string> angle_about(std::string_view axis);
 
 /// Words of the column `role`. An empty cell is `fit`.

@@ -18,10 +18,11 @@ CsvColumn column_of(const std::string& field, const text::Place& place) {
     if (field.back() != ']') throw text::InputError(place, field, "a column is name[unit]");
     column.name = text::trimmed(field.substr(0, open));
     column.unit = text::trimmed(field.substr(open + 1, field.size() - open - 2));
-    if (column.unit.empty()) throw text::InputError(place, field, "no unit in the brackets");
+    if (column.unit.empty())
+      throw text::InputError(place, field, "the brackets of this column contain no unit");
   }
   if (!text::is_name(column.name))
-    throw text::InputError(place, field, "a column name is letters, digits and _");
+    throw text::InputError(place, field, "a column name may have only letters, digits and _");
   if (!find_unit(column.unit))
     throw text::InputError(place, column.unit, "unknown unit; known are " + known_units());
   column.unit = canonical_unit(column.unit);
@@ -65,7 +66,8 @@ CsvFile parse_csv(const std::string& text, const std::string& file) {
     csv.line.push_back(line);
   }
   if (csv.columns.empty()) throw text::InputError({file, 0}, "", "no header line");
-  if (csv.rows.empty()) throw text::InputError({file, csv.header_line}, "", "no rows below the header");
+  if (csv.rows.empty())
+    throw text::InputError({file, csv.header_line}, "", "the file has no rows below the header");
   return csv;
 }
 

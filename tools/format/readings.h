@@ -10,7 +10,7 @@
 
 namespace vernier::format {
 
-/// What one measured number is. The numbers of the kinds index every table by kind.
+/// Kind of one measured number. The numbers of the kinds index every table by kind.
 enum class ReadingKind : std::uint8_t {
   kX,
   kY,
@@ -27,7 +27,8 @@ enum class ReadingKind : std::uint8_t {
   kIy
 };
 
-/// How a reading is taken. Readings of one form share their columns and their formula.
+/// Form of a reading: how the instrument takes it. Readings of one form share their columns and their
+/// formula.
 enum class ReadingForm : std::uint8_t {
   kPoint,
   kRotation,
@@ -38,12 +39,14 @@ enum class ReadingForm : std::uint8_t {
   kInclination
 };
 
-/// One form of reading. Its columns are in columns.h: those with the reading, and those that belong to it.
+/// One form of reading. The columns of the form are in columns.h: the columns with the reading, and the
+/// columns that belong to it.
 struct ReadingFormEntry {
   ReadingForm form;
   bool rotation;        // the reading is an angle, deg; else a length, mm
   bool free_of_set_up;  // the set-up of the instrument (BaseShift) does not change it
-  /// One reading takes all columns of the form; a row without one of them has no reading of this form.
+  /// True if one reading takes all columns of the form; a row without one of these columns then has no
+  /// reading of this form.
   bool together;
   /// The reading is the length of an arm: never below 0.
   bool never_negative;
@@ -72,7 +75,7 @@ constexpr const ReadingFormEntry& entry_of(ReadingForm form) {
   return kReadingForms[static_cast<std::size_t>(form)];
 }
 
-/// One kind of reading.
+/// Properties of one kind of reading.
 struct ReadingKindEntry {
   ReadingKind kind;
   const char* name;  // in results and messages; also its column, except for the two angles of a direction
@@ -81,7 +84,8 @@ struct ReadingKindEntry {
   const char* meaning;    // one plain sentence
 };
 
-/// Every kind, in the order of ReadingKind. A direction weighs as two angles a1 and a2 across it.
+/// All kinds of readings, in the order of ReadingKind. A direction counts as two angles a1 and a2 across the
+/// direction.
 inline constexpr std::array kReadingKinds = {
     ReadingKindEntry{ReadingKind::kX, "x", ReadingForm::kPoint, 0,
                      "The x coordinate of the tool point in the measuring frame."},
@@ -116,30 +120,32 @@ constexpr const ReadingKindEntry& entry_of(ReadingKind kind) {
   return kReadingKinds[static_cast<std::size_t>(kind)];
 }
 constexpr ReadingForm form_of(ReadingKind kind) { return entry_of(kind).form; }
-/// Within its form, from 0.
+/// Returns the component of a kind within its form, from 0.
 constexpr std::size_t component_of(ReadingKind kind) { return entry_of(kind).component; }
 /// "x", "a1": in results and messages.
 constexpr const char* name_of(ReadingKind kind) { return entry_of(kind).name; }
-/// An angle, deg; the others are lengths, mm.
+/// True for a kind that is an angle, deg; other kinds are lengths, mm.
 constexpr bool is_rotation(ReadingKind kind) { return entry_of(form_of(kind)).rotation; }
 /// "mm" or "deg".
 constexpr const char* unit_of(ReadingKind kind) { return is_rotation(kind) ? "deg" : "mm"; }
-/// Unit of a residual in results: "um" or "urad".
+/// Returns the unit of a residual in results: "um" or "urad".
 constexpr const char* report_unit_of(ReadingKind kind) { return is_rotation(kind) ? "urad" : "um"; }
 /// The set-up of the instrument does not change the reading.
 constexpr bool is_free_of_setup(ReadingKind kind) { return entry_of(form_of(kind)).free_of_set_up; }
 constexpr bool is_direction(ReadingKind kind) { return form_of(kind) == ReadingForm::kDirection; }
 constexpr bool is_inclination(ReadingKind kind) { return form_of(kind) == ReadingForm::kInclination; }
 
-/// The kind of that name; nullopt: no kind has it.
+/// Returns the kind of this name; nullopt: no kind has the name.
 std::optional<ReadingKind> kind_named(std::string_view name);
-/// The unit in results of the kind of that name; "um" if no kind has it.
+/// Returns the unit in results of the kind of this name; "um" if no kind has the name.
 const char* report_unit_of(std::string_view name);
 
-/// Name of the residual of a kind in a sentence: "X error", "rotation error about Z", "length error".
+/// Returns the name of the residual of a kind in a sentence: "X error", "rotation error about Z", "length
+/// error".
 std::string subject_of(ReadingKind kind);
 
-/// A reading as `vernier new --reading` names it: one form, or several that one instrument reads together.
+/// A reading as `vernier new --reading` names it: one form, or several forms that one instrument reads
+/// together.
 struct SurveyReading {
   const char* word;
   std::array<ReadingForm, 2> forms;
@@ -159,9 +165,9 @@ inline constexpr std::array kSurveyReadings = {
     SurveyReading{"inclination", {ReadingForm::kInclination}, 1, "electronic level on the tool"},
 };
 
-/// nullptr: no survey reading has this word.
+/// Finds a survey reading by its word; nullptr: no survey reading has the word.
 const SurveyReading* survey_reading(std::string_view word);
-/// "point, length, touch …", with `last` before the last one.
+/// Lists the words of all survey readings, with `last` before the last word: "point, length, touch …".
 std::string survey_words(const std::string& last);
 
 }  // namespace vernier::format

@@ -4,8 +4,8 @@
 
 namespace vernier::format {
 
-/// The page tools/docs/measurement_columns.md: every column, kind of reading, unit and reserved name, as the
-/// tables of this room have them. tool.
+/// Returns the page tools/docs/measurement_columns.md: every column, kind of reading, unit and reserved name,
+/// from the tables of tools/format. tool.
 std::string reference_page();
 
 }  // namespace vernier::format

@@ -29,7 +29,7 @@ enum class Dimension {
   kRatio,
 };
 
-/// A unit that measurement files may write. value in base unit = factor * value + offset; base units are mm,
+/// A unit that measurement files may use. value in base unit = factor * value + offset; base units are mm,
 /// deg, degC, s, mm/s, deg/s, mm/s^2, deg/s^2, V, N, kg, 1/mm, A, Hz, Pa, Nm, W, um/m.
 struct Unit {
   const char* name;
@@ -37,21 +37,22 @@ struct Unit {
   double factor, offset;
 };
 
-/// The unit of that name (case-sensitive), also with usual signs (µ, °, ²: `usual_spelling`); `nullopt` for
-/// an unknown one. "" is the pure number.
+/// Finds a unit by its name (case-sensitive), also with usual signs (µ, °, ²: `usual_spelling`); `nullopt`
+/// for an unknown name. "" is the pure number.
 std::optional<Unit> find_unit(std::string_view name);
 
-/// The text with signs of the keyboard: µ (both of Unicode's) as u, °C as degC, ° as deg, ″ as arcsec, ² as
-/// ^2, a middle dot left out. tool.
+/// Replaces special signs by signs of the keyboard: µ (both of Unicode's) by u, °C by degC, ° by deg, ″ by
+/// arcsec, ² by ^2; a middle dot is removed. tool.
 std::string usual_spelling(std::string_view unit);
 
-/// The name that find_unit has for it; the text itself if find_unit does not know it. tool.
+/// Returns the name that find_unit has for a unit; the text unchanged if find_unit does not know it. tool.
 std::string canonical_unit(std::string_view unit);
 
-/// All names, for messages.
+/// Returns the names of all units, for messages.
 std::string known_units();
 
-/// All dimensions in the order of Dimension; the names of the units of one of them.
+/// all_dimensions: all dimensions in the order of Dimension. units_of: the names of the units of one
+/// dimension.
 std::vector<Dimension> all_dimensions();
 std::vector<std::string> units_of(Dimension dimension);
 

@@ -49,7 +49,7 @@ void set_word(const model::Machine& machine, model::States& states, std::set<std
   const std::string name = text::trimmed(word.substr(0, equals));
   const std::string value = equals == std::string::npos ? "" : text::trimmed(word.substr(equals + 1));
   if (name.empty() || value.empty()) throw text::InputError({}, word, "a state is NAME=NUMBER,NAME=NUMBER…");
-  if (!seen.insert(name).second) throw text::InputError({}, name, "stands twice in one state");
+  if (!seen.insert(name).second) throw text::InputError({}, name, "this name occurs twice in one state");
   if (name == format::columns::kRun) {
     states.run_names = {value};
     return;
@@ -57,7 +57,7 @@ void set_word(const model::Machine& machine, model::States& states, std::set<std
   model::Column* column = column_of(machine, states, name);
   if (column == nullptr)
     throw text::InputError({machine.file, 0}, name,
-                           "this machine has no axis, input or motion quantity of that name");
+                           "this machine has no axis, input or motion quantity of this name");
   const auto number = text::parse_number(value);
   if (!number) throw text::InputError({}, value, "not a number, for " + name);
   (*column)[0] = *number;

@@ -12,18 +12,18 @@ namespace vernier::kinematics {
 
 const char* name_of(InverseFault fault);
 
-/// Newton iteration with damping (Levenberg-Marquardt, Marquardt 1963) on the forward kinematics,
-/// for all states together. A rotary axis is moved by whole turns into its range. The verification
-/// applies to the returned values. `target`: one pose per state, workpiece coordinates (rotation
-/// unused for kPosition). `start`: first guess, and unchanged motion, inputs, runs and time. The
-/// Jacobian is computed by central differences, so that it includes every expression of the chain.
-/// Throws InputError if the chain is not finite. tool.
+/// Newton iteration with damping (Levenberg-Marquardt, Marquardt 1963) on the forward kinematics, for all
+/// states together. A rotary axis is moved by whole turns into its range. The verification applies to the
+/// returned values. `target`: one pose per state, workpiece coordinates (rotation unused for kPosition).
+/// `start`: first guess, and unchanged motion, inputs, runs and time. The Jacobian is computed by central
+/// differences and therefore includes every expression of the chain. Throws InputError if the chain is not
+/// finite. tool.
 InverseResult solve(const model::Machine& machine, const model::Poses& target, const model::States& start,
                     const InverseOptions& options);
 
-/// The same for one pose from many starts: `start` first, then up to `restarts` starts distributed
-/// over the axis ranges (Halton sequence, the same in every call). Returns the first solution
-/// within the ranges, else the best failure. Axes without min and max keep their start. tool.
+/// Solves for one pose from many starts: `start` first, then up to `restarts` starts distributed over the
+/// axis ranges (Halton sequence, equal in every call). solve_anywhere returns the first solution within the
+/// ranges, else the best failure. Axes without min and max keep their start value. tool.
 InverseResult solve_anywhere(const model::Machine& machine, const model::Poses& target,
                              const model::States& start, const InverseOptions& options, int restarts);
 

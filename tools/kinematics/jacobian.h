@@ -9,29 +9,30 @@
 
 namespace vernier::kinematics {
 
-/// target - pose of state i: three lengths (mm), then, depending on `match`, nothing, two tilts of
-/// the tool's z axis about directions across it, or the rotation vector. Rotations are multiplied
-/// by lever_mm. tool.
+/// Returns target - pose of state i. Three lengths (mm); then, depending on `match`, nothing, two tilts of
+/// the tool's z axis about directions across it, or the rotation vector. Rotations are multiplied by
+/// lever_mm. tool.
 Eigen::VectorXd pose_error(const model::Poses& poses, const model::Poses& target, std::size_t i, Match match,
                            double lever_mm);
 
-/// Returns the decrease of pose_error per mm or deg of each axis, one matrix per state. It uses
+/// Returns the decrease of pose_error per mm or deg of each axis, one matrix per state. axis_jacobian uses
 /// central differences of the forward kinematics. An axis is moved in all states together. tool.
 std::vector<Eigen::MatrixXd> axis_jacobian(const model::Machine& machine, const model::States& states,
                                            const std::vector<std::size_t>& axes, Match match,
                                            double lever_mm);
 
-/// Unit of each axis in the scaled Jacobian: 1 mm for a linear axis, 1 rad / lever for a rotary
-/// one (in deg), so that both kinds of columns have similar size.
+/// Returns the unit of each axis in the scaled Jacobian: 1 mm for a linear axis, 1 rad / lever for a rotary
+/// axis (in deg). Both kinds of columns then have similar size.
 Eigen::VectorXd axis_scales(const model::Machine& machine, const std::vector<std::size_t>& axes,
                             double lever_mm);
 
-/// Ratio of the largest singular value of the scaled Jacobian to the smallest one of a full rank.
-/// Infinite if that is 0, or if there are fewer axes than conditions. tool.
+/// Returns the ratio of the largest singular value of the scaled Jacobian to the smallest singular value of a
+/// full rank. The ratio is infinite if the smallest value is 0, or if there are fewer axes than conditions.
+/// tool.
 double condition_of(const Eigen::MatrixXd& jacobian, const model::Machine& machine,
                     const std::vector<std::size_t>& axes, const InverseOptions& options);
 
-/// Length of the part of `residual` that the axes can reach (singular values below 1 /
+/// Returns the length of the part of `residual` that the axes can reach (singular values below 1 /
 /// most_condition of the largest do not count). tool.
 double reducible(const Eigen::MatrixXd& jacobian, const model::Machine& machine,
                  const std::vector<std::size_t>& axes, const Eigen::VectorXd& residual,

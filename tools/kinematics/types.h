@@ -29,7 +29,7 @@ struct InverseOptions {
   double tolerance_mm = 1e-9, tolerance_deg = 1e-9;
   /// Weight of a rotation against a length in the damped step and in the condition number, mm per rad.
   double lever_mm = 300;
-  /// Beyond this condition number of the Jacobian a pose counts as singular.
+  /// Condition number of the Jacobian above which a pose counts as singular.
   double most_condition = 1e6;
   bool keep_ranges = true;
   /// Least squares in the directions that the axes can move. The other components remain as

@@ -6,7 +6,7 @@
 
 namespace vernier::lint {
 
-/// How much a finding weighs.
+/// Severity of a lint finding.
 enum class LintWeight {
   kError,    // the file cannot be used
   kWarning,  // it can be used, but its meaning probably differs from the intention
@@ -16,7 +16,7 @@ enum class LintWeight {
 /// "error", "warning", "remark".
 const char* weight_name(LintWeight weight);
 
-/// One thing that is wrong or odd.
+/// One error or doubtful entry that lint found.
 struct LintFinding {
   std::string file;
   std::size_t line = 0;  // 0: the file as a whole
@@ -26,10 +26,11 @@ struct LintFinding {
   std::string meaning;  // probable meaning, and what to do; may be empty
 };
 
-/// "file:12: error: "word": what (meaning)". tool.
+/// Formats a finding as one line: "file:12: error: "word": what (meaning)". tool.
 std::string in_one_line(const LintFinding& finding);
 
-/// LintFindings in the order of files and lines; of the same thing in many rows the first, with their number.
+/// Lint findings in the order of files and lines. For an equal finding in many rows, only the first is kept,
+/// with the number of rows.
 class LintFindings {
  public:
   explicit LintFindings(std::string file) : file_(std::move(file)) {}
@@ -47,7 +48,7 @@ class LintFindings {
               const std::string& meaning = "") {
     add(LintWeight::kRemark, line, word, what, meaning);
   }
-  /// As add; a further one with the same `kind` is only counted.
+  /// Adds a finding like add(); a further finding with the same `kind` is only counted.
   void add_of_kind(const std::string& kind, LintWeight weight, std::size_t line, const std::string& word,
                    const std::string& what, const std::string& meaning = "");
   bool any(LintWeight weight) const;

@@ -20,7 +20,7 @@ struct LintedFile {
   std::vector<LintFinding> findings;
 };
 
-/// Machine and measurement files in any mix and order: machines first, then each measurement against the
+/// Tests machine and measurement files in any order: first the machines, then each measurement against the
 /// first machine that could be read. Throws InputError for a file that cannot be opened. tool.
 std::vector<LintedFile> lint_files(const std::vector<std::string>& paths);
 

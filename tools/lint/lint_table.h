@@ -10,7 +10,7 @@
 
 namespace vernier::lint {
 
-/// A column of a measurement file, also if it has errors.
+/// A column of a measurement file, even with errors in it.
 struct LintColumn {
   std::string name, unit;
   bool label = false;         // words, not numbers
@@ -18,13 +18,13 @@ struct LintColumn {
   std::vector<std::string> cell;
 };
 
-/// A line that counts, as its fields.
+/// A line of data of a measurement file, as its fields.
 struct LintRow {
   std::vector<std::string> cells;
   std::size_t line = 0;
 };
 
-/// A measurement file as far as it can be read.
+/// The readable part of a measurement file.
 struct LintTable {
   std::size_t header_line = 0;
   std::vector<LintColumn> columns;
@@ -32,15 +32,16 @@ struct LintTable {
   const LintColumn* find(const std::string& name) const;
 };
 
-/// Meanings of names in a measurement file: of a machine, or without a machine of any (X Y Z A B C U V W J1
-/// …).
+/// Meanings of names in a measurement file: the names of a machine, or without a machine the usual names (X Y
+/// Z A B C U V W J1 …).
 class LintNames {
  public:
   explicit LintNames(const model::Machine* machine) : machine_(machine) {}
   bool is_axis(const std::string& name) const;
-  /// Of a name that is an axis.
+  /// True if the axis of this name is rotary.
   bool is_rotary(const std::string& name) const;
-  /// The axis and the quantity of a column such as "dirX" or "X"; nullopt: a column of no axis.
+  /// Returns the axis and the quantity of a column such as "dirX" or "X"; nullopt: the column belongs to no
+  /// axis.
   std::optional<format::AxisColumnName> of_axis(const std::string& name) const;
   bool is_of_axis(const std::string& name, format::AxisQuantity quantity) const;
   bool is_input(const std::string& name) const {
@@ -48,9 +49,9 @@ class LintNames {
   }
   /// True if a column of this table is a reading (format::is_reading).
   bool is_reading(const LintTable& table, const LintColumn& column) const;
-  /// The unit that a column of this name needs, as a base unit; "" without a unit; "?" any.
+  /// Returns the unit that a column of this name needs, as a base unit; "" no unit; "?" any unit.
   std::string needed_unit(const std::string& name) const;
-  /// All names that mean something.
+  /// Returns all names that have a meaning.
   std::vector<std::string> known() const;
 
  private:

@@ -197,7 +197,7 @@ std::string meaning_of(const Problem& problem, const std::string& text) {
     if (const auto meant = text::word_meant(problem.word, kElements)) return "did you mean " + *meant + "?";
   }
   if (has(problem.what, "stations must increase"))
-    return "list stations in the order of their positions, each once";
+    return "the stations must be in the order of their positions, each once";
   return "";
 }
 
@@ -259,7 +259,8 @@ class Oddities {
     for (std::size_t i = 0; i < m_.inputs.size(); ++i) look_at(m_.inputs[i], i);
     for (const model::Table& table : m_.tables) look_at(table);
     if (m_.base_shifts.empty())
-      findings_.remark(0, "BaseShift", "missing: the measuring frame is the frame of the machine",
+      findings_.remark(0, "BaseShift",
+                       "BaseShift is missing: the measuring frame is then the frame of the machine",
                        "a tracker or CMM has another frame; <BaseShift X=\"0\" …/> lets a fit find where");
     std::set<std::string> runs;
     for (const model::BaseShift& shift : m_.base_shifts)
@@ -330,7 +331,7 @@ class Oddities {
                      "X=\"" + axis.name + "\" is missing in some sixdof, or the name differs");
     if (!axis.min || !axis.max)
       findings_.add_of_kind("travel", LintWeight::kRemark, axis.line, axis.name,
-                            "no min and max: compile and plan want the travel");
+                            "the axis has no min and max: compile and plan need its travel");
     const bool turns = axis.name.size() == 1 && std::string("ABC").find(axis.name) != std::string::npos;
     if (turns && !axis.rotary)
       findings_.warn(axis.line, axis.name, "not marked as rotary: its positions are read as mm",
@@ -355,7 +356,7 @@ class Oddities {
                      "µm? It is in the axis' unit");
     if (!axis.max_correction)
       findings_.add_of_kind("maxcorrection", LintWeight::kRemark, axis.line, axis.name,
-                            "no maxcorrection: a board may add any amount to this axis");
+                            "the axis has no maxcorrection: a board may add any amount to it");
   }
 
   void look_at(const model::Input& input, std::size_t index) {
@@ -386,12 +387,12 @@ class Oddities {
     if (table.stations.empty() || !axis.min || !axis.max) return;
     const double slack = 1e-6 * (*axis.max - *axis.min);
     if (table.stations.front().loc > *axis.min + slack || table.stations.back().loc < *axis.max - slack)
-      findings_.remark(
-          table.line, axis.name,
-          fmt::format("stations from {} to {}, travel from {} to {}: beyond its ends a table holds",
-                      text::number_text(table.stations.front().loc),
-                      text::number_text(table.stations.back().loc), text::number_text(*axis.min),
-                      text::number_text(*axis.max)));
+      findings_.remark(table.line, axis.name,
+                       fmt::format("stations are from {} to {}, travel is from {} to {}: beyond its ends a "
+                                   "table uses its last value",
+                                   text::number_text(table.stations.front().loc),
+                                   text::number_text(table.stations.back().loc), text::number_text(*axis.min),
+                                   text::number_text(*axis.max)));
     if (table.stations.front().loc < *axis.min - slack || table.stations.back().loc > *axis.max + slack)
       findings_.warn(table.line, axis.name, "stations outside the travel of the axis",
                      "another unit, or another axis?");
@@ -427,7 +428,7 @@ MachineLint lint_machine(const std::string& text, const std::string& file) {
   }
   if (!all_read)
     findings.add(LintWeight::kRemark, 0, "", "the text after the last error was not checked",
-                 "correct it and run lint again");
+                 "correct the error and run lint again");
   if (machine) {
     for (const std::string& note : machine->notes)
       findings.add(LintWeight::kRemark, 0, "",

@@ -14,9 +14,9 @@ struct MachineLint {
   std::optional<model::Machine> machine;  // if the file has no error
 };
 
-/// Reads a machine file to its end, past its errors (a wrong word is removed and the rest is read again).
-/// Then reports parts that are valid in form but doubtful in meaning: a unit that is unknown or that does not
-/// scale, an axis, static, input or table that no transform uses, a missing range or nominal. tool.
+/// Reads a machine file to its end, past its errors: a wrong word is removed and the rest is read again. Then
+/// lint_machine reports parts that are valid in form but doubtful in meaning: a unit that is unknown or that
+/// does not scale, an axis, static, input or table that no transform uses, a missing range or nominal. tool.
 MachineLint lint_machine(const std::string& text, const std::string& file);
 
 }  // namespace vernier::lint

@@ -108,7 +108,7 @@ class Look {
       lines.push_back(line);
       numbers.push_back(number);
     }
-    if (lines.empty()) return findings_.error(0, "", "nothing but remarks and empty lines"), false;
+    if (lines.empty()) return findings_.error(0, "", "the file contains only remarks and empty lines"), false;
     std::string joined_lines;
     for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 200); ++i)
       joined_lines += lines[i] + "\n";
@@ -152,7 +152,7 @@ class Look {
     for (const std::string& cell : header_) numbers += sheet::plain_number(cell, false).has_value() ? 1 : 0;
     if (numbers * 2 > header_.size())
       return findings_.error(table_.header_line, header_.front(),
-                             "a row of numbers where the header should be",
+                             "the first line contains numbers, but it must be the header",
                              "the first line names the columns: X[mm],x[mm],…"),
              false;
     std::set<std::string> seen;
@@ -189,9 +189,10 @@ class Look {
       } else if (!column.unit.empty() && names_.needed_unit(column.name) != "?") {
         const std::string needs = names_.needed_unit(column.name);
         if (needs.empty())
-          findings_.error(table_.header_line, cell, "a pure number or a word: it has no unit");
+          findings_.error(table_.header_line, cell,
+                          "this column is a pure number or a word and must not have a unit");
         else if (format::find_unit(needs)->dimension != format::find_unit(column.unit)->dimension)
-          findings_.error(table_.header_line, cell, "this column needs a unit like " + needs);
+          findings_.error(table_.header_line, cell, "this column needs a unit, for example " + needs);
       }
       if (!seen.insert(column.name).second)
         findings_.error(table_.header_line, column.name, "this column occurs twice");
@@ -338,7 +339,7 @@ class Look {
     if (own && 2 * words > filled) {
       column.label = true;
       findings_.remark(table_.header_line, column.name, "a column of words",
-                       "numbers can explain an error, words only distinguish rows");
+                       "a column of numbers can explain an error; a column of words only distinguishes rows");
     }
     for (const LintRow& row : table_.rows) {
       const std::string& cell = row.cells[k];
@@ -350,7 +351,7 @@ class Look {
         column.value.back() = (unit ? unit->factor : 1) * *number + (unit ? unit->offset : 0);
         continue;
       }
-      std::string meaning = "an empty cell is a reading that is missing";
+      std::string meaning = "an empty cell means that the reading is missing";
       if (sheet::plain_number(cell, true))
         meaning = "decimal comma? " + command(file_) + " reads it";
       else if (sheet::plain_number(cell, false))

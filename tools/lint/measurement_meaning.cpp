@@ -151,7 +151,7 @@ class Meaning {
         check += word == format::kCheckRole ? 1 : 0;
       }
     if (check == table_.rows.size())
-      findings_.warn(table_.header_line, columns::kRole, "all rows are check rows: no row remains for a fit");
+      findings_.warn(table_.header_line, columns::kRole, "all rows are check rows: the fit has no rows");
     if (check == 0)
       findings_.remark(table_.header_line, columns::kRole, "no check rows: the fit will not be tested",
                        "give some rows the role check, spread over the volume");
@@ -160,7 +160,7 @@ class Meaning {
                        "no standard uncertainty: the noise is taken from repeats, else from the residual",
                        "a column u[um], the instrument's");
     if (!any_reading_)
-      findings_.error(table_.header_line, "", "no reading in any row",
+      findings_.error(table_.header_line, "", "no row has a reading",
                       "a template that is still to be filled in?");
   }
 
@@ -193,7 +193,7 @@ class Meaning {
       if (std::isnan(size) || std::abs(size - 1) <= 0.01) continue;
       findings_.add_of_kind("normal", d != nullptr ? LintWeight::kError : LintWeight::kWarning, line(row),
                             nx->cell[row],
-                            fmt::format("nx ny nz is no unit vector: its length is {:.4g}", size));
+                            fmt::format("nx ny nz is not a unit vector: its length is {:.4g}", size));
     }
   }
 

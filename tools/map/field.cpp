@@ -14,7 +14,8 @@ constexpr double kSlack_mm = 1e-6;
 const model::Axis& ranged(const model::Machine& machine, std::size_t axis) {
   const model::Axis& one = machine.axes[axis];
   if (!one.min || !one.max)
-    throw text::InputError({machine.file, one.line}, one.name, "this axis needs min and max");
+    throw text::InputError({machine.file, one.line}, one.name,
+                           "this axis has no min and max; give them in the machine file");
   return one;
 }
 
@@ -23,7 +24,7 @@ const model::Axis& ranged(const model::Machine& machine, std::size_t axis) {
 ErrorField error_field(const model::Machine& machine, const model::States& at,
                        const std::vector<std::size_t>& axes, std::size_t count) {
   if (axes.empty() || axes.size() > 3)
-    throw text::InputError({machine.file, 0}, "", "a map is over one to three axes");
+    throw text::InputError({machine.file, 0}, "", "--over needs one to three axes");
   ErrorField field;
   field.axes = axes;
   field.counts.assign(axes.size(), count);

@@ -18,32 +18,32 @@ struct ErrorField {
   Eigen::Matrix3Xd deviation;       // actual - nominal, mm
 };
 
-/// Returns the field over the declared ranges of `axes`, `count` nodes along each. Everything else
-/// is as in `at` (count 1). Throws InputError: an axis without min and max, no axis or more than
+/// Returns the field over the declared ranges of `axes`, `count` nodes along each. Other axes, motion and
+/// inputs are as in `at` (count 1). Throws InputError: an axis without min and max, no axis or more than
 /// three. tool.
 ErrorField error_field(const model::Machine& machine, const model::States& at,
                        const std::vector<std::size_t>& axes, std::size_t count);
 
-/// A machine on which measurements are simulated. Its nominal chain gives the command, the machine
-/// itself the actual position. Its linear axes come from the closed inverse solution if the
-/// nominal chain has one, else from iteration.
+/// A machine on which measurements are simulated. The nominal chain gives the command; the machine itself
+/// gives the actual position. The linear axes come from the closed inverse solution if the nominal chain has
+/// one, else from iteration.
 class Bench {
  public:
-  /// Throws InputError if the chain has no linear axis or more than three, or one without a range.
+  /// Throws InputError if the chain has no linear axis, more than three, or a linear axis without a range.
   Bench(const model::Machine& machine, const model::States& at);
 
   const std::vector<std::size_t>& axes() const { return axes_; }
   /// Returns the nominal tool point (mm) with the linear axes at these fractions (0..1) of their
   /// ranges.
   Eigen::Vector3d point_at(const Eigen::VectorXd& fraction) const;
-  /// Can the linear axes bring the nominal tool point to all of these points (3 x N, mm), without
-  /// regard to ranges?
+  /// True if the linear axes can bring the nominal tool point to all of these points (3 x N, mm), without
+  /// regard to ranges.
   bool meets(const Eigen::Matrix3Xd& points) const;
-  /// The same within their ranges.
+  /// True if the linear axes can bring the nominal tool point to all of these points within their ranges.
   bool reaches(const Eigen::Matrix3Xd& points) const;
-  /// Returns the actual tool points if these points are commanded one after the other, at rest at
-  /// each. Directions of motion and travel since reversal are those of this path. The first point
-  /// is approached in the same way as the second.
+  /// Returns the actual tool points if these points are commanded one after another, at rest at each point.
+  /// Directions of motion and travel since reversal are those of this path. The first point is approached in
+  /// the same direction as the second.
   Eigen::Matrix3Xd measure(const Eigen::Matrix3Xd& points) const;
 
  private:

@@ -306,7 +306,7 @@ Json free_lines_json(const Bench& bench, const std::string& path) {
   }
   Json list = Json::array();
   for (const auto& [name, points] : lines) {
-    if (points.size() < 2) throw text::InputError({path, 0}, name, "a line needs two points at least");
+    if (points.size() < 2) throw text::InputError({path, 0}, name, "a line needs at least two points");
     Matrix3Xd nominal(3, static_cast<Index>(points.size()));
     for (std::size_t i = 0; i < points.size(); ++i) nominal.col(static_cast<Index>(i)) = points[i];
     const Matrix3Xd actual = bench.measure(nominal);

@@ -10,14 +10,14 @@ struct RigidMotion {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
-/// Returns the rigid motion that brings `from` closest to `to` in the sum of squared distances.
-/// from, to: 3 x N, N >= 1, in correspondence. Points on one line do not determine the rotation
-/// about it: the smallest rotation is used. For a single point no rotation is used. Source:
-/// Umeyama, IEEE PAMI 13 (1991) 376, equations 40-43, without scale. tool.
+/// Returns the rigid motion that brings `from` closest to `to` in the sum of squared distances. from, to: 3 x
+/// N, N >= 1, in correspondence. Points on one line do not determine the rotation about the line: the
+/// smallest rotation is used. For a single point the rotation is zero. Source: Umeyama, IEEE PAMI 13 (1991)
+/// 376, equations 40-43, without scale. tool.
 RigidMotion align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
-/// Do points (3 x N) determine a rigid motion: are there three that are not on one line (to 1e-9
-/// of their extent)?
+/// True if points (3 x N) determine a rigid motion: three of them are not on one line (to 1e-9 of their
+/// extent).
 bool fixes_motion(const Eigen::Matrix3Xd& points);
 
 /// Returns the motion applied to `from`, minus `to`.

@@ -51,8 +51,8 @@ Solution<Right> solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixBas
 /// Returns x of a x = b; a square and regular. Gauss with row pivots. tool.
 Eigen::MatrixXd solve_square(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Returns an orthonormal basis, n x rank, of the range of a. Columns that depend on others to
-/// `threshold` of the largest pivot (0: the library's, rounding) are excluded. Householder QR with
+/// Returns an orthonormal basis, n x rank, of the range of a. Columns that depend on other columns to
+/// `threshold` of the largest pivot are excluded (0: the limit of the library, rounding). Householder QR with
 /// column pivoting. tool.
 Eigen::MatrixXd range_of(const Eigen::MatrixXd& a, double threshold = 0);
 /// Returns n x p, orthonormal: the first p <= n columns of Q of a = Q R, for any rank. tool.

@@ -2,8 +2,8 @@
 #pragma once
 #include <numbers>
 
-/// Factors between the units that tools write. They are defined only here. Files use mm, deg, degC
-/// and s. Radians occur only inside functions that need them.
+/// Factors between the units that tools write. All factors between units are defined only here. Files use mm,
+/// deg, degC and s. Radians occur only inside functions that need radians.
 namespace vernier::maths {
 
 inline constexpr double kRadPerDeg = std::numbers::pi / 180;

@@ -8,12 +8,12 @@ namespace vernier::maths {
 /// tool.
 double median(std::vector<double> values);
 
-/// Returns the standard deviation of a normal distribution with this median size (Hampel 1974:
-/// 1.4826 of it). tool.
+/// Returns the standard deviation of a normal distribution with this median size: 1.4826 of the median size
+/// (Hampel 1974). tool.
 double spread_of_median(double median_size);
 
-/// Returns the standard deviation of deviations from 0, from their median size, so that outliers
-/// do not change it; 0 for an empty list. tool.
+/// Returns the standard deviation of deviations from 0, computed from their median size: outliers do not
+/// change the result. 0 for an empty list. tool.
 double robust_spread(std::vector<double> deviations);
 
 }  // namespace vernier::maths

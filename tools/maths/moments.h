@@ -13,8 +13,8 @@ struct Moments {
   Eigen::VectorXd score;  // functions
   double sum = 0;         // of squares of the residual
   double freedom = 0;     // of the residual, not an integer after a fit shared with other kinds
-  /// Share of a function's squared length that must remain for it to count as independent
-  /// (rounding leaves 1e-14).
+  /// Share of a function's squared length that must remain for the function to count as independent (rounding
+  /// leaves 1e-14).
   double least_remainder = 1e-6;
 };
 
@@ -27,23 +27,23 @@ struct Explained {
 
 using FunctionSet = std::vector<Eigen::Index>;
 
-/// `adjust` is fitted first, then `subject`. Only the latter counts. tool.
+/// First `adjust` is fitted, then `subject`. The result counts only the part that `subject` explains. tool.
 Explained explained(const Moments& moments, const FunctionSet& adjust, const FunctionSet& subject);
 
-/// log p of several kinds together: each kind's sum in units of its own variance. Exact for one
-/// kind, conservative for more. tool.
+/// Returns log p of several kinds together, from the explained sum of each kind in units of its variance. The
+/// result is exact for one kind and conservative for several kinds. tool.
 double log_p_together(const std::vector<const Moments*>& moments, const std::vector<Explained>& parts);
 
-/// Removes `functions` from all others and from the residual. tool.
+/// Removes `functions` from all other functions and from the residual. tool.
 void condition_on(Moments& moments, const FunctionSet& functions);
 
-/// Returns coefficients of the joint fit of `functions` (0 for combinations of earlier ones), in
-/// their order. tool.
+/// Returns the coefficients of the joint fit of `functions`, in their order; 0 for combinations of earlier
+/// functions. tool.
 Eigen::VectorXd coefficients(const Moments& moments, const FunctionSet& functions);
 
-/// log p of the F test of the explained part: its mean square divided by that of the rest.
-/// `inflation`: factor by which serial correlation increases the variance of the explained sum, at
-/// least 1. tool.
+/// Returns log p of the F test of the explained part: its mean square divided by the mean square of the rest.
+/// `inflation`: factor by which serial correlation increases the variance of the explained sum, at least 1.
+/// tool.
 double log_p(const Moments& moments, const Explained& part, double inflation = 1);
 
 }  // namespace vernier::maths

@@ -6,8 +6,8 @@
 
 namespace vernier::maths {
 
-/// Returns the columns, made orthonormal one after the other. Columns with less than `least` of
-/// their length remaining are dropped. `kept`: the remaining ones.
+/// Returns the columns, made orthonormal one after another. Columns with less than `least` of their length
+/// remaining are dropped. `kept`: indices of the columns that remain.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::vector<std::size_t>* kept);
 
 }  // namespace vernier::maths

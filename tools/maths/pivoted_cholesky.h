@@ -5,15 +5,15 @@
 
 namespace vernier::maths {
 
-/// L L^T of the rows and columns of a positive semidefinite matrix that are not (nearly) dependent
-/// on the others: diagonal pivoting, block by block (Lucas, LAPACK-style codes for level 2 and 3
-/// pivoted Cholesky factorizations, LAPACK working note 161). The remaining columns define the
-/// null space, which is reported and not damped. tool.
+/// Factor L L^T of a positive semidefinite matrix, for the rows and columns that are not (nearly) dependent
+/// on the others. Diagonal pivoting, block by block (Lucas, LAPACK-style codes for level 2 and 3 pivoted
+/// Cholesky factorizations, LAPACK working note 161). The remaining columns define the null space, which is
+/// reported and not damped. tool.
 class PivotedCholesky {
  public:
-  /// matrix: n x n, the lower triangle is read; its diagonal is about 1. A column whose remaining
-  /// square is below `cutoff` times the largest diagonal depends on earlier columns. `held`:
-  /// columns that may not be pivots (empty: all may).
+  /// matrix: n x n, the lower triangle is read; the diagonal of the matrix is about 1. A column depends on
+  /// earlier columns if its remaining square is below `cutoff` times the largest diagonal. `held`: columns
+  /// that must not be pivots (empty: all columns may be pivots).
   PivotedCholesky(Eigen::MatrixXd matrix, double cutoff, const std::vector<char>& held = {});
 
   Eigen::Index rank() const { return rank_; }
@@ -22,9 +22,9 @@ class PivotedCholesky {
   Eigen::MatrixXd solve_many(const Eigen::MatrixXd& right) const;
   /// Returns the remaining columns.
   std::vector<char> left_over() const;
-  /// n x (n - rank), orthonormal: directions that the kept rows do not determine.
+  /// Returns n x (n - rank), orthonormal: directions that the kept rows do not determine.
   Eigen::MatrixXd null_basis() const;
-  /// Inverse over the kept rows and columns, zero elsewhere.
+  /// Returns the inverse over the kept rows and columns, zero elsewhere.
   Eigen::MatrixXd inverse() const;
 
  private:

@@ -23,8 +23,8 @@ Column ColumnReader::numbers(const std::string& name, format::Dimension dimensio
     throw text::InputError(
         header(), csv_.columns[column].unit.empty() ? name : name + "[" + unit.name + "]",
         dimension == format::Dimension::kNone
-            ? std::string("this column is a pure number, it has no unit")
-            : std::string("this column needs a unit like ") + format::base_unit(dimension));
+            ? std::string("this column is a pure number and must not have a unit")
+            : std::string("this column needs a unit, for example ") + format::base_unit(dimension));
   return read(column, unit.factor, unit.offset, filled);
 }
 

@@ -11,29 +11,28 @@
 
 namespace vernier::model {
 
-/// The columns of one measurement file as numbers in their base units. NaN: an empty cell. Every
-/// reader of measurement files uses this class for its numbers. It keeps a reference to the file.
-/// Except for has(), the requested names must be in the file. tool.
+/// The columns of one measurement file as numbers in their base units. NaN: an empty cell. Every reader of
+/// measurement files uses this class for its numbers. ColumnReader keeps a reference to the file. Except for
+/// has(), the requested names must be in the file. tool.
 class ColumnReader {
  public:
   explicit ColumnReader(const format::CsvFile& csv);
 
   bool has(const std::string& name) const { return index_.contains(name); }
-  /// Throws InputError if the file has no such column. `why` is the message.
+  /// Throws InputError if the file does not have the column. `why` is the message.
   void require(const std::string& name, const std::string& why) const;
 
   /// Returns a column that must have this dimension. `filled`: an empty cell is an error. Throws
   /// InputError with file, line and word.
   Column numbers(const std::string& name, format::Dimension dimension, bool filled);
-  /// Returns a column as it is written, without conversion.
+  /// Returns a column without conversion, as the file has it.
   Column raw(const std::string& name);
   std::vector<std::string> words(const std::string& name);
-  /// Returns the same for a column that belongs to another reading. The column is not marked as
-  /// read.
+  /// Returns a column that belongs to another reading, without conversion. The column is not marked as read.
   std::vector<std::string> peek(const std::string& name) const;
 
-  /// Does a column contain words in most of its filled cells? If it has fewer words, they are
-  /// errors in a column of numbers.
+  /// True if a column contains words in most of its filled cells. Fewer words are errors in a column of
+  /// numbers.
   bool is_text(const std::string& name) const;
   format::Dimension dimension(const std::string& name) const;
   const std::string& unit(const std::string& name) const { return column(name).unit; }

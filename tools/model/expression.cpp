@@ -63,7 +63,7 @@ class Parser {
     if (comparison_sign()) {
       at_ = before;
       skip_space();
-      fail("comparisons do not chain; use parentheses");
+      fail("two comparisons in a row are not allowed; use parentheses");
     }
     return left;
   }
@@ -160,7 +160,7 @@ class Parser {
 
   ExprPtr symbol(const std::string& name, std::size_t start) {
     if (name == format::columns::kRun || is_function(name))
-      fail_at(start, name, "a function needs its argument in parentheses");
+      fail_at(start, name, "the argument of a function must be in parentheses");
     return make_symbol(name);
   }
 

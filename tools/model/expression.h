@@ -40,7 +40,7 @@ enum class Op : std::uint8_t {
   kLag,  // lag(u, tau): first-order lag over t, state starts at u's first value in each run
 };
 
-/// The quantity that a name in an expression refers to, after it is resolved against a machine.
+/// The quantity that a name in an expression refers to, after the name is resolved against a machine.
 enum class SymbolKind : std::uint8_t {
   kUnresolved,
   kStatic,        // index: Machine::statics
@@ -76,7 +76,7 @@ struct Expr {
   std::vector<ExprPtr> args;  // operands in order
 };
 
-/// An error in the text of an expression, with its position and the word at that position.
+/// An error in the text of an expression, with the position and the word of the error.
 class ExpressionError : public std::runtime_error {
  public:
   ExpressionError(std::size_t offset_, std::string word_, const std::string& what)
@@ -89,38 +89,38 @@ class ExpressionError : public std::runtime_error {
 /// tool.
 ExprPtr parse_expression(std::string_view text);
 
-/// The same for a term with placeholders. Names may contain text in braces ({q}, dir{q}, {hats
-/// 5}). The braces are a part of the name until substitute() replaces them. tool.
+/// Parses a term with placeholders. Names may contain text in braces ({q}, dir{q}, {hats 5}). The braces are
+/// a part of the name until substitute() replaces the name. tool.
 ExprPtr parse_template(std::string_view text);
 
-/// Returns the expression with some of its names replaced. `replace` is called for every name. It
+/// Returns the expression with some of its names replaced. `replace` is called for every name. `replace`
 /// returns the replacement, or null to keep the name.
 ExprPtr substitute(const ExprPtr& expr, const std::function<ExprPtr(const std::string&)>& replace);
 
-/// Returns a text that parses back to the same tree, with the fewest parentheses.
+/// Returns a text that parses back to the same expression, with the fewest parentheses.
 std::string to_text(const Expr& expr);
 
 ExprPtr make_number(double value);
 /// Returns a symbol with an unresolved name.
 ExprPtr make_symbol(std::string name);
-/// Returns an expression that is 1 in the rows of one run.
+/// Returns an expression that is 1 in the rows of one run and 0 in other rows.
 ExprPtr make_run(std::string label);
 /// Returns left - value in its simplest form: "x", "x-3", "x+3".
 ExprPtr subtract_number(ExprPtr left, double value);
 ExprPtr make_node(Op op, std::vector<ExprPtr> args);
 
-/// Is the expression a number after folding? Then `value` is that number.
+/// True if the expression is a number after folding. `value` is then set to that number.
 bool is_constant(const Expr& expr, double& value);
 
 /// Returns the function's name in expressions ("sin"), or nullptr for operators and leaves.
 const char* function_name(Op op);
 /// Returns the names of all functions: sin, cos …
 std::vector<std::string> function_names();
-/// Is `name` a function or a fixed quantity of the expression language (t, feed, run, sin ...)?
+/// True if `name` is a function or a fixed quantity of the expression language (t, feed, run, sin ...).
 bool is_reserved_word(std::string_view name);
 
-/// Returns the value of one operation on plain numbers. Comparisons give 1 or 0. Not for leaves
-/// and kLag.
+/// Returns the value of one operation on plain numbers. Comparisons give 1 or 0. apply() must not be called
+/// for leaves and kLag.
 double apply(Op op, double a, double b);
 
 /// Calls visit(node) for every node, children first.
@@ -130,7 +130,7 @@ void walk(const Expr& expr, const Visit& visit) {
   visit(expr);
 }
 
-/// Is `is(node)` true for any node of the expression?
+/// Returns true if `is(node)` is true for any node of the expression.
 template <class Is>
 bool any_node(const Expr& expr, const Is& is) {
   bool found = false;
@@ -138,7 +138,7 @@ bool any_node(const Expr& expr, const Is& is) {
   return found;
 }
 
-/// Does the expression depend on the symbol?
+/// True if the expression depends on the symbol.
 inline bool has_symbol(const Expr& expr, const Symbol& symbol) {
   return any_node(expr, [&](const Expr& node) { return node.op == Op::kSymbol && node.symbol == symbol; });
 }

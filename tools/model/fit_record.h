@@ -10,8 +10,8 @@ namespace vernier::model {
 
 struct Machine;
 
-/// Result of the last fit, kept in the machine file (`<fitted>`): uncertainties, findings and the
-/// measured region. The values in the file alone do not state how well they are known.
+/// Result of the last fit, kept in the machine file (`<fitted>`): uncertainties, findings and the measured
+/// region. The values in the machine file alone do not state their uncertainty.
 struct FitRecord {
   struct Range {
     std::string name;  // of an axis or input
@@ -25,13 +25,13 @@ struct FitRecord {
     std::string text;  // one sentence
   };
   std::vector<Finding> findings;
-  /// Discrepancy: standard deviation of the tool point's deviation that the model does not
-  /// contain, as the readings show it. It excludes the noise. Along x, y, z of workpiece
-  /// coordinates, mm (Kennedy and O'Hagan 2001). 0: not found.
+  /// Discrepancy: standard deviation of the tool point's deviation that the model does not contain, as the
+  /// readings show it. The discrepancy excludes the noise. Along x, y, z of workpiece coordinates, mm
+  /// (Kennedy and O'Hagan 2001). 0: not found.
   std::array<double, 3> discrepancy_mm{};
-  /// A coefficient whose dependence on a variable the readings do not show. All its rows had
-  /// nearly one value of an axis or input on which its effect depends. Or that variable followed
-  /// another variable along a line.
+  /// A coefficient whose dependence on a variable the readings do not show. First case: all rows of the
+  /// coefficient had nearly one value of an axis or input on which its effect depends. Second case: that
+  /// variable followed another variable along a line.
   struct Unvaried {
     std::string coefficient, variable;  // `k_heat` or `table.X.rY`; an axis or an input
     double at = 0;                      // value of the variable, in its unit
@@ -39,8 +39,8 @@ struct FitRecord {
     double slope = 0, about = 0;        // variable = at + slope * (follows - about), in their units
   };
   std::vector<Unvaried> unvaried;
-  /// Another term that explains the readings as well as a term of the model. It is in the same
-  /// degree of freedom. A shift instead of a rotation is in the three lengths of the same
+  /// Another term that explains the readings as well as a term of the model. The other term is in the same
+  /// degree of freedom. If a shift replaces a rotation, the shift is in the three lengths of the same
   /// transform.
   struct Alternative {
     bool workpiece = false;
@@ -48,13 +48,13 @@ struct FitRecord {
     std::size_t dof = 0;  // of the model's term, 0..5 = X Y Z rX rY rZ
     std::string axis;     // axis of a cyclic error; empty: a shift
     double period = 0;    // of the cyclic error, axis unit
-    /// Of a cyclic error: sine and cosine, mm or deg. Of a shift: mm in X, Y, Z for one unit of
-    /// the model's term.
+    /// Size of a cyclic error: sine and cosine, mm or deg. Size of a shift: mm in X, Y, Z for one unit of the
+    /// model's term.
     std::array<double, 3> size{};
   };
   std::vector<Alternative> alternatives;
-  /// Correlation of the errors of the readings (fit::NoiseModel). In units of u, or of mm if no u
-  /// was given. Kept if the errors were correlated or larger than u.
+  /// Correlation of the errors of the readings (fit::NoiseModel). The components are in units of u, or in mm
+  /// if no u was given. Kept if the errors were correlated or larger than u.
   struct Noise {
     double own = 1, pose = 0, run = 0, drift = 0;
     double time_constant = 0, step = 0;  // of the drift, and median of the intervals between rows: s or rows
@@ -63,14 +63,14 @@ struct FitRecord {
   std::optional<Noise> noise;
   std::vector<std::string> parameters;  // names as in the JSON of `fit`
   Eigen::VectorXd values;  // as fitted: the covariance does not cover a value that was changed later
-  /// Source of each value: data, convention, prior, as in the JSON of `fit`. Empty in files of
+  /// Source of each value: data, convention, prior, as in the JSON of `fit`. `origins` is empty in files of
   /// older versions.
   std::vector<std::string> origins;
-  /// n x n lower triangle L, covariance = L L^T in the parameters' units. It comes from the data,
-  /// and from the scales where the data do not determine the parameters.
+  /// Lower triangle L, n x n; covariance = L L^T in the units of the parameters. The factor comes from the
+  /// data, and from the scales where the data do not determine the parameters.
   Eigen::MatrixXd factor;
-  /// n x m, the part O O^T of the covariance that no reading determines: the spread of the scales
-  /// that are used there. m = 0: the readings determine everything.
+  /// Matrix O, n x m. O O^T is the part of the covariance that no reading determines: the spread of the
+  /// scales that are used there. m = 0: the readings determine everything.
   Eigen::MatrixXd open;
   bool open_known = false;      // false: the file is older than this entry
   std::vector<Range> measured;  // of the fit rows
@@ -91,15 +91,14 @@ struct FitRecord {
   std::size_t line = 0;
 };
 
-/// Returns L of a covariance (its lower triangle is read), rounded as the machine file stores it.
+/// Returns the factor L of a covariance (the lower triangle is read), rounded as the machine file stores L.
 Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance);
 
-/// Returns the element, indented by two, with its line end.
+/// Returns the element `<fitted>` as text, indented by two, with its line end.
 std::string fit_record_xml(const FitRecord& record);
 
-/// Returns O of a part of a covariance. It has m columns for the m directions (pivoted Cholesky)
-/// that are larger than 1e-3 of the covariance's own squares. It is rounded as the machine file
-/// stores it. tool.
+/// Returns the factor O of a part of a covariance. O has m columns: the directions (pivoted Cholesky) that
+/// are larger than 1e-3 of the covariance's own squares. O is rounded as the machine file stores it. tool.
 Eigen::MatrixXd open_factor(const Eigen::MatrixXd& part, const Eigen::MatrixXd& covariance);
 
 /// Reads the numbers of an `open` element: n x columns. Returns false if the text has another
@@ -110,7 +109,7 @@ bool read_open_numbers(std::string_view text, std::size_t n, FitRecord& record);
 /// false if the text has another format.
 bool read_fit_numbers(std::string_view text, std::size_t n, FitRecord& record);
 
-/// Returns the text with its `<fitted>` replaced, or inserted before the end of the root. tool.
+/// Returns the machine text with its `<fitted>` replaced, or inserted before the end of the root. tool.
 std::string with_fit_record(const std::string& text, const FitRecord& record);
 
 }  // namespace vernier::model

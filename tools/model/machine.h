@@ -40,8 +40,8 @@ struct Axis {
   std::size_t line = 0;
 };
 
-/// A measured quantity that is no axis. An axis with Hide is one of these too (`hidden_axis`).
-/// What a logged column is. kGuessed: what its unit says, or its name where it has none.
+/// A measured quantity that is no axis. An axis with Hide is an input too (`hidden_axis`). Role of a logged
+/// column. kGuessed: the role follows from the unit, or from the name if there is no unit.
 enum class InputRole : std::uint8_t { kGuessed, kTemperature, kLoad, kVibration, kSetpoint, kOther };
 inline constexpr std::array<const char*, 6> kInputRoleNames = {"",          "temperature", "load",
                                                                "vibration", "set-point",   "other"};
@@ -83,7 +83,7 @@ struct BaseShift {
   std::size_t line = 0;
 };
 
-/// A tool with a name. `point` is its position in the frame at the end of the tool branch. The
+/// A tool with a name. `point` is the position of the tool in the frame at the end of the tool branch. The
 /// tool of the file is at the origin of that frame and has no name.
 struct Tool {
   std::string name;
@@ -113,8 +113,8 @@ struct Transform {
 
 struct FitRecord;
 
-/// A machine file: chain, statics, axes, inputs, tables. It is a value type. Expressions are
-/// resolved against it.
+/// A machine file: chain, statics, axes, inputs, tables. Machine is a value type. Expressions are resolved
+/// against the machine that contains them.
 struct Machine {
   std::string name, file;
   std::array<double, 3> gravity{0, 0, -1};  // unit vector in the chain's base frame
@@ -138,16 +138,15 @@ struct Machine {
   const Table* table_of(std::size_t axis) const;
 };
 
-/// Returns the machine with another tool: the tool branch has one more shift at its end, by
-/// `point` (mm, its last frame).
+/// Returns the machine with another tool: the tool branch gets one more shift at its end, by `point` (mm, in
+/// its last frame).
 Machine with_tool(const Machine& machine, const std::array<double, 3>& point);
 
-/// Returns the range in which an axis works: <volume>, else its min and max. Returns nullopt if
-/// neither is given.
+/// Returns the working range of an axis: <volume>, else its min and max. work_range returns nullopt if the
+/// file has neither.
 std::optional<std::array<double, 2>> work_range(const Machine& machine, std::size_t axis);
 
-/// Returns the meaning of a name in expressions of this machine, or kUnresolved if it has no
-/// meaning.
+/// Returns the meaning of a name in expressions of this machine; kUnresolved if the name has no meaning.
 Symbol resolve_name(const Machine& machine, std::string_view name);
 /// Parses and resolves an expression for this machine. Throws ExpressionError with the unknown name.
 ExprPtr parse_expression_for(const Machine& machine, std::string_view text);
@@ -156,9 +155,8 @@ std::string symbol_name(const Machine& machine, const Symbol& symbol);
 /// Returns the unit of a symbol ("mm", "deg/s", ...), for reports and unit checks.
 std::string symbol_unit(const Machine& machine, const Symbol& symbol);
 
-/// Returns the machine of the nominal chain. Statics are at `nominal` (hidden statics without it
-/// at their value), tables and scalefactor are 0. Inputs and motion are unchanged. BaseShift is
-/// the identity.
+/// Returns the machine of the nominal chain. Statics are at `nominal` (a hidden static without `nominal` at
+/// its value); tables and scalefactor are 0. Inputs and motion are unchanged. BaseShift is the identity.
 Machine nominal_machine(const Machine& machine);
 
 }  // namespace vernier::model

@@ -102,7 +102,7 @@ class Reader {
                                       {"time", &noise.time_constant},
                                       {"step", &noise.step}}) {
       *value = number(node, name, *value);
-      if (*value < 0) fail_attribute(node, name, name, "no negative number belongs here");
+      if (*value < 0) fail_attribute(node, name, name, "the number must not be negative");
     }
     const std::string clock = attribute(node, "clock").value_or("row"),
                       unit = attribute(node, "unit").value_or("u");
@@ -247,7 +247,7 @@ class Reader {
       check_attributes(node, {"X", "Y", "Z", "note"});
       Tool tool{node.name(), {}, line(node)};
       for (const Tool& other : machine_.tools)
-        if (other.name == tool.name) fail(node, tool.name, "a second tool of this name");
+        if (other.name == tool.name) fail(node, tool.name, "two tools have this name");
       for (std::size_t i = 0; i < 3; ++i) tool.point[i] = number(node, kSixDofNames[i], 0);
       machine_.tools.push_back(std::move(tool));
     }
@@ -257,7 +257,8 @@ class Reader {
     no_children(node);
     check_attributes(node, {"u", "X", "Y", "Z", "note"});
     const auto stated = attribute(node, "u");
-    if (!stated) fail(node, node.name(), "an instrument states its u: u=\"15um + 6um/m\"");
+    if (!stated)
+      fail(node, node.name(), "the instrument needs its uncertainty, for example u=\"15um + 6um/m\"");
     try {
       machine_.instrument = parse_reading_uncertainty(*stated);
     } catch (const text::InputError& wrong) {
@@ -346,12 +347,12 @@ class Reader {
     bool position = false;
     while (words >> word) {
       if (!text::equal_no_case(word, "position") && !text::equal_no_case(word, "orientation"))
-        fail_attribute(list, "correct", word, "correct is \"position\" or \"position orientation\"");
+        fail_attribute(list, "correct", word, "correct must be \"position\" or \"position orientation\"");
       (text::equal_no_case(word, "position") ? position : machine_.correct_orientation) = true;
     }
     if (!position)
       fail_attribute(list, "correct", *attribute(list, "correct"),
-                     "correct is \"position\" or \"position orientation\"");
+                     "correct must be \"position\" or \"position orientation\"");
   }
 
   void read_axes(const pugi::xml_node& list) {
@@ -401,7 +402,8 @@ class Reader {
       if (const auto word = attribute(node, "role")) {
         const auto role = input_role_named(*word);
         if (!role)
-          fail_attribute(node, "role", *word, "a role is temperature, load, vibration, set-point or other");
+          fail_attribute(node, "role", *word,
+                         "the role must be temperature, load, vibration, set-point or other");
         input.role = *role;
       }
       machine_.inputs.push_back(input);
@@ -419,7 +421,7 @@ class Reader {
       const auto axis = machine_.find_axis(axis_name);
       if (!axis) fail_attribute(node, "axis", axis_name, "no such axis");
       if (machine_.table_of(*axis) != nullptr)
-        fail_attribute(node, "axis", axis_name, "a second table of this axis");
+        fail_attribute(node, "axis", axis_name, "this axis already has a table");
       table.axis = *axis;
       table.periodic = machine_.axes[*axis].rollover;
       const std::string interpolation = attribute(node, "interpolation").value_or("linear");
@@ -439,7 +441,8 @@ class Reader {
     std::string word;
     while (words >> word) {
       const auto* const found = std::find(kSixDofNames.begin(), kSixDofNames.end(), word);
-      if (found == kSixDofNames.end()) fail_attribute(node, "fit", word, "columns are X Y Z rX rY rZ");
+      if (found == kSixDofNames.end())
+        fail_attribute(node, "fit", word, "the columns of fit must be among X Y Z rX rY rZ");
       table.free[static_cast<std::size_t>(found - kSixDofNames.begin())] = true;
     }
   }
@@ -519,7 +522,7 @@ class Reader {
     const double n = number(node, "n", expected);
     if (n != std::floor(n) || std::abs(n) > 1e6 || (!before.empty() && n <= before.back().n))
       fail_attribute(node, "n", attribute(node, "n").value_or(""),
-                     "transforms are numbered upwards with whole numbers");
+                     "the numbers n of the transforms must be whole and increasing");
     transform.n = static_cast<int>(n);
     for (std::size_t i = 0; i < transform.dof_count(); ++i) {
       transform.text[i] = attribute(node, transform.dof_name(i)).value_or("0");
@@ -631,7 +634,7 @@ class Reader {
   std::vector<pugi::xml_node> children(const pugi::xml_node& node) {
     std::vector<pugi::xml_node> list;
     for (const pugi::xml_node child : node.children()) {
-      if (child.type() != pugi::node_element) fail(node, child.value(), "text is not expected here");
+      if (child.type() != pugi::node_element) fail(node, child.value(), "this element must not contain text");
       list.push_back(child);
     }
     return list;
@@ -639,7 +642,7 @@ class Reader {
   void no_children(const pugi::xml_node& node) {
     for (const pugi::xml_node child : node.children())
       fail(node, child.type() == pugi::node_element ? child.name() : child.value(),
-           "nothing may stand inside this element");
+           "this element must be empty");
   }
   void once(const pugi::xml_node& node, bool& seen) {
     if (seen) fail(node, node.name(), "this element stands twice");

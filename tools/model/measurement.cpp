@@ -93,7 +93,7 @@ class Builder {
     const std::string_view prefix = format::entry_of(AxisQuantity::kCorrection).prefix;
     for (const format::CsvColumn& column : reader_.unused())
       if (column.name.starts_with(prefix) && reader_.has(column.name.substr(prefix.size())))
-        throw text::InputError(reader_.header(), column.name, "the machine file has no such axis");
+        throw text::InputError(reader_.header(), column.name, "the machine file has no axis of this name");
     if (reader_.has(columns::kCorrected)) read_fingerprints();
   }
 
@@ -329,12 +329,14 @@ class Builder {
             *number != std::floor(*number))
           throw text::InputError(reader_.place(row), from[row],
                                  known == rows_of_word.end()
-                                     ? "no row has this label, and it is no number of a row"
-                                     : "more than one row has this label");
+                                     ? "`from` names no row: no row has this label or this number"
+                                     : "`from` is ambiguous: more than one row has this label");
         result_.other_end[row] = static_cast<std::size_t>(*number) - 1;
       }
       if (result_.other_end[row] == row)
-        throw text::InputError(reader_.place(row), from[row], "a distance has two ends, this row is both");
+        throw text::InputError(
+            reader_.place(row), from[row],
+            "the distance of this row refers to the row itself; give another row in `from`");
     }
     has_distances_ = true;
   }

@@ -11,7 +11,7 @@
 
 namespace vernier::model {
 
-/// The kinds of reading are those of the measurement format.
+/// Kind of an observation: the kinds of reading of the measurement format.
 using ObservationKind = format::ReadingKind;
 using format::is_direction;
 using format::is_free_of_setup;
@@ -25,7 +25,7 @@ struct Observation {
   double value = 0;
 };
 
-/// A column that the machine file does not declare. A missing effect may depend on it. NaN: the
+/// A column that the machine file does not declare. A missing effect may depend on such a column. NaN: the
 /// cell is empty.
 struct CandidateInput {
   std::string name, unit;
@@ -41,8 +41,8 @@ struct LabelColumn {
 /// `other_end` of a row without a distance.
 inline constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
 
-/// The rows of one or several measurement files, bound to a machine (FORMATS section 2). Rows with
-/// an empty input cell are not included. They are only counted.
+/// The rows of one or several measurement files, bound to a machine (FORMATS section 2). Rows with an empty
+/// input cell are not included; only their number is kept.
 struct Measurement {
   std::vector<std::string> files;
   States states;
@@ -71,44 +71,44 @@ struct Measurement {
   bool has_recorded(std::string_view name) const;
 };
 
-/// Returns the standard uncertainty of a reading. For a rotation it is ua of its row if given,
-/// else u. 0 if none is given. mm or deg. tool.
+/// Returns the standard uncertainty of a reading. For a rotation the result is ua of its row if given, else
+/// u. The result is 0 if the row has no uncertainty. mm or deg. tool.
 double uncertainty_of(const Measurement& measurement, const Observation& observation);
 
-/// Returns the commanded position of an axis in each row (the read position, if it was logged), mm
-/// or deg. Two rows with the same commanded positions are at one pose. It is states.axis minus the
-/// correction, rounded to 1e-9 as it was written. tool.
+/// Returns the commanded position of an axis in each row (the read position, if it was logged), mm or deg.
+/// Two rows with the same commanded positions are at one pose. The commanded position is states.axis minus
+/// the correction, rounded to 1e-9 as it was written. tool.
 Column commanded(const Measurement& measurement, std::size_t axis);
 double commanded(const Measurement& measurement, std::size_t axis, Eigen::Index row);
 /// Returns the rows at their commanded positions, without a correction. tool.
 States commanded_states(const Measurement& measurement);
 
-/// Fills `correction` in the rows of one file where `corrected` names an image. It is 0 in all
+/// Computes `correction` in the rows of one file where `corrected` names an image. `correction` is 0 in all
 /// rows before the call. states.axis is the commanded position. text: the text of the file.
 using ImageCorrection =
     std::function<void(Measurement& rows, const Machine& machine, const std::string& text)>;
 
-/// Reads measurement files for a machine. Columns may be in any order. Units are converted to the
-/// base units (an input to the unit that the machine declares). images: for files that name an
-/// image but have no correction column. Without `images` such a file is refused. Throws InputError
-/// with file, line and word. tool.
+/// Reads measurement files for a machine. Columns may be in any order. Units are converted to the base units
+/// (an input to the unit that the machine declares). images: for files that name an image but have no
+/// correction column. Without `images` a file that names an image is refused. Throws InputError with file,
+/// line and word. tool.
 Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine,
                              const ImageCorrection& images = {});
 
-/// Throws InputError with file and line if `t` decreases from one row of a run to the next.
-/// Time-dependent terms and lags have no meaning there. tool.
+/// Throws InputError with file and line if `t` decreases from one row of a run to the next. In rows without
+/// time order, time-dependent terms and lags have no meaning. tool.
 void require_time_order(const Measurement& measurement);
 
-/// Returns the rows `keep` of a measurement with their observations. A row may be repeated. A
-/// distance is kept only if both its ends are kept.
+/// Returns the rows `keep` of a measurement with their observations. `keep` may contain a row several times.
+/// A distance is kept only if both its ends are kept.
 Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& keep);
 
-/// Appends rows that are bound to the same machine. Runs (and set-ups ...) with the same name are
-/// merged. If `apart`, none of `next` is merged with one of `all`. Throws InputError if a column
-/// has two units. tool.
+/// Appends rows that are bound to the same machine. Runs (and set-ups ...) with the same name are merged. If
+/// `apart`, a run of `next` is never merged with a run of `all`. Throws InputError if a column has two units.
+/// tool.
 void append_measurement(Measurement& all, Measurement next, bool apart = false);
 
-/// Reads the same from a text (one file), for tests and imports.
+/// Reads one measurement file from a text, for tests and imports.
 Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine,
                               const ImageCorrection& images = {});
 

@@ -6,12 +6,13 @@
 
 namespace vernier::model {
 
-/// Is this name forbidden for an axis, because a column of the measurement format has it?
+/// True if an axis must not have this name, because a column of the measurement format has the name.
 /// `machine`: its axes have columns "correctionX" and so on.
 bool is_no_axis_name(const Machine& machine, std::string_view name);
-/// The same for an input. An input may have the name of a column of a later version of the format.
+/// True if an input must not have this name, because a column of the measurement format has the name. An
+/// input may have the name of a column of a later version of the format.
 bool is_no_input_name(const Machine& machine, std::string_view name);
-/// The message about such a name.
+/// The message about a name that a measured column has.
 inline constexpr const char* kMeasuredName = "measurement files use this name for a measured column";
 
 }  // namespace vernier::model

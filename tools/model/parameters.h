@@ -30,7 +30,7 @@ class Freedom {
   ParameterKind kind() const { return kind_; }
   /// `alpha`, `scalefactor.X`, `table.X.rY`, `BaseShift`, `BaseShift[s2]`.
   const std::string& name() const { return name_; }
-  /// Statics and BaseShifts store whether they are hidden, the others whether they are free.
+  /// Statics and BaseShifts store whether they are hidden; the other units store whether they are free.
   bool is_free() const { return flag_ != says_hidden(); }
   void set_free(bool free) { flag_ = free != says_hidden(); }
 
@@ -42,18 +42,18 @@ class Freedom {
   bool& flag_;
 };
 
-/// Returns everything that a fit could free, in the order of ParameterSet. It is the only such
-/// list. The entries point into the machine.
+/// Returns all units that a fit could free, in the order of ParameterSet. freedoms_of is the only list of
+/// such units. The entries point into the machine.
 std::vector<Freedom> freedoms_of(Machine& machine);
 
 /// The free parameters of a machine, in a fixed order: statics, scale factors, stations, BaseShifts.
 class ParameterSet {
  public:
   ParameterSet() = default;
-  /// All parameters that are free by FORMATS: statics and BaseShifts without Hide, table columns
-  /// named by `fit`. A BaseShift whose run is not in `runs` is excluded. The plain BaseShift is
-  /// excluded if every run has its own. In a periodic table the last station repeats the first one
-  /// and is not a parameter.
+  /// Contains all parameters that are free by FORMATS: statics and BaseShifts without Hide, table columns
+  /// named by `fit`. A BaseShift whose run is not in `runs` is excluded. The plain BaseShift is excluded if
+  /// every run has a separate BaseShift. In a periodic table the last station repeats the first station and
+  /// is not a parameter.
   ParameterSet(const Machine& machine, const std::vector<std::string>& runs);
 
   std::size_t size() const { return list_.size(); }
@@ -68,7 +68,8 @@ class ParameterSet {
   std::vector<Parameter> list_;
 };
 
-/// Returns the BaseShift of a run: its own, else the plain one, else nullopt (identity).
+/// Returns the BaseShift of a run: the BaseShift of this run, else the plain BaseShift, else nullopt
+/// (identity).
 std::optional<std::size_t> base_shift_of(const Machine& machine, const std::string& run);
 
 }  // namespace vernier::model

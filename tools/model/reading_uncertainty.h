@@ -5,8 +5,8 @@
 
 namespace vernier::model {
 
-/// Standard uncertainty of a reading that grows with the length from the instrument, as the data
-/// sheet of a tracker, a distance meter or a coordinate measuring machine states it.
+/// Standard uncertainty of a reading that grows with the length from the instrument. The data sheet of a
+/// tracker, a distance meter or a coordinate measuring machine states it.
 struct ReadingUncertainty {
   double constant_mm = 0, per_mm = 0;
   std::array<double, 3> at{0, 0, 0};  // position of the instrument in the measuring frame, mm

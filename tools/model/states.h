@@ -54,20 +54,20 @@ inline constexpr std::array<Labels States::*, 3> kStateLabels = {&States::setup,
 
 /// Makes all moments one run of this name, with one set-up, one clock and one block.
 void make_one_run(States& states, const std::string& name);
-/// Starts a new run of this name at a moment. Every other label starts anew too.
+/// Starts a new run of this name at a moment. All other labels also start again at this moment.
 void begin_run(States& states, std::size_t moment, const std::string& name);
-/// Appends the runs, set-ups, clocks and blocks of `next`. Labels with the same name are merged.
-/// If `apart`, none of `next` is merged with one of `all`. The columns are not changed.
+/// Appends the runs, set-ups, clocks and blocks of `next`. Labels with the same name are merged. If `apart`,
+/// a label of `next` is never merged with a label of `all`. The columns are not changed.
 void append_labels(States& all, const States& next, bool apart = false);
 
 /// `since` without a recorded column: far beyond any decay length.
 inline constexpr double kLongWay = 1e9;
 
-/// States of `count` moments for a machine with these numbers of axes and inputs: all columns zero, `since`
+/// Returns `count` states for a machine with these numbers of axes and inputs: all columns zero, `since`
 /// kLongWay, one run named "".
 States make_states(std::size_t count, std::size_t axes, const std::vector<double>& input_references);
 
-/// The same for the axes and inputs of a machine, each input at its reference.
+/// Returns `count` states for the axes and inputs of a machine, with each input at its reference.
 States make_states(std::size_t count, const Machine& machine);
 
 /// Returns the rows `which` of `states`, in that order.

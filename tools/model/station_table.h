@@ -9,19 +9,19 @@
 
 namespace vernier::model {
 
-/// Interpolation in a station table: linear or cubic (natural, or periodic). Beyond both ends the
-/// last value is used. If the axis rolls over, the table is periodic. The result is linear in the
-/// station values, so the weight of each station is available too. tool.
+/// Interpolation in a station table: linear or cubic (natural, or periodic). Beyond both ends of the table
+/// the last value is used. If the axis rolls over, the table is periodic. The result is linear in the values
+/// at the stations; weights() gives the weight of each station. tool.
 class StationTable {
  public:
   explicit StationTable(const Table& table);
 
-  /// Six values (mm, deg) at a raw axis position.
+  /// Returns the six values (mm, deg) at a raw axis position.
   std::array<double, 6> values(double raw) const;
-  /// d value / d raw of the six columns; 0 beyond the ends.
+  /// Returns d value / d raw of the six columns; 0 beyond the ends.
   std::array<double, 6> slopes(double raw) const;
-  /// Index and weight of every station that takes part at this position. In a periodic table the
-  /// last station repeats the first one, so its weight is added to index 0.
+  /// Appends index and weight of every station that takes part at this position. In a periodic table the last
+  /// station repeats the first station; its weight is added to index 0.
   void weights(double raw, std::vector<std::pair<std::size_t, double>>& result) const;
 
  private:
@@ -38,7 +38,8 @@ class StationTable {
   std::vector<std::array<double, 6>> bend_;  // cubic: second derivative of the six columns at every station
 };
 
-/// Values of a table at a raw axis position, mm and deg; node, edge and periodic rules of FORMATS.
+/// Returns the values of a table at a raw axis position, mm and deg; node, edge and periodic rules of
+/// FORMATS.
 std::array<double, 6> table_values(const Table& table, double raw);
 
 }  // namespace vernier::model

@@ -29,19 +29,19 @@ class AxisMotion {
 
   /// Shares between which the directions of all axes do not change: 0, reversals, 1.
   std::vector<double> stretches(const ProgramMove& move) const;
-  /// Axes that move from one position to another without a reversal in between.
+  /// Records that the axes move from one position to another without a reversal in between.
   void set_out(const Eigen::VectorXd& from, const Eigen::VectorXd& to);
-  /// Positions with the motion at shares of a move, all within the planned range.
+  /// Returns the positions with the motion at shares of a move, all within the planned range.
   model::States along(const ProgramMove& move, const std::vector<double>& shares) const;
-  /// Returns the shares of a stretch at which the correction is evaluated, first and last among them:
-  /// those of even_looks, and closer ones where an expression of the chain is sharp
+  /// Returns the shares of a part of a move at which the correction is evaluated, including its first and
+  /// last. The shares are those of even_looks, and closer ones where an expression of the chain is sharp
   /// (model::Detail::Sharp).
   std::vector<double> looks(const ProgramMove& move, double from, double to, double deviation_mm) const;
 
  private:
-  /// Number of equal parts of a stretch that are evaluated. A part is at most a millimetre or a tenth of
-  /// a degree. Each period of a cyclic error of the chain has 32 parts, each interval between stations
-  /// 4. Parts of an arc are so short that chords of them stay within an eighth of the deviation.
+  /// Returns the number of equal parts that are evaluated. A part is at most a millimetre or a tenth of a
+  /// degree. Each period of a cyclic error of the chain has 32 parts, each interval between stations
+  /// 4. Parts of an arc are so short that their chords stay within an eighth of the deviation.
   int even_looks(const ProgramMove& move, double from, double to, double deviation_mm) const;
 
   const model::Machine& machine_;

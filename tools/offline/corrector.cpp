@@ -72,7 +72,7 @@ void refuse_corrected(const std::string& text, const std::string& file) {
                             std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
   throw text::InputError(
       {file, line}, kCorrectedMark,
-      "this was corrected before; a second correction would give the same error with the other sign");
+      "this file was already corrected; a second correction would reverse the sign of the error");
 }
 
 }  // namespace vernier::offline

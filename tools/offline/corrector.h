@@ -12,8 +12,8 @@ namespace vernier::offline {
 struct CorrectorOptions {
   bool with_rotary =
       false;  // all axes put point and tool direction right, not the linear ones the point alone
-  /// The positions of the machine with its errors are given; the commands of an ideal machine at the same
-  /// tool point are computed.
+  /// If true, the positions of the machine with its errors are given, and the commands of an ideal machine at
+  /// the same tool point are computed.
   bool back = false;
 };
 
@@ -24,12 +24,12 @@ struct CorrectionSummary {
   std::vector<double> largest;    // by axis, mm or deg
   double left_mm = 0;             // largest distance between the corrected tool point and the ideal one
 
-  /// Largest correction of the linear axes together, um.
+  /// Returns the largest correction of the linear axes together, um.
   double largest_um(const model::Machine& machine) const;
 };
 
-/// Commands with the correction: axis positions that bring the tool of the machine with errors to the tool
-/// point of its nominal chain.
+/// Computes commands with the correction: axis positions that bring the tool of the machine with errors to
+/// the tool point of its nominal chain.
 class Corrector {
  public:
   explicit Corrector(const model::Machine& machine, CorrectorOptions options = {});
@@ -52,7 +52,7 @@ class Corrector {
 /// First words of the output, by which a file that was corrected before is recognised.
 inline constexpr const char* kCorrectedMark = "corrected by vernier";
 
-/// Throws InputError, naming the line, if a text states that it was corrected. tool.
+/// Throws InputError with the line if a text states that the text was already corrected. tool.
 void refuse_corrected(const std::string& text, const std::string& file);
 
 }  // namespace vernier::offline

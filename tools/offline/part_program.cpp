@@ -92,8 +92,9 @@ class Translator {
     if (is_one_of(word,
                   {10, 28, 30, 33, 38.2, 38.3, 38.4, 38.5, 41, 41.1, 42, 42.1, 43.1, 51, 52,  53,  68,
                    73, 76, 81, 82, 83,   84,   85,   86,   87, 88,   89, 92,   95,   5,  5.1, 5.2, 5.3}))
-      throw text::InputError(place_, word.text,
-                             "what this code does to positions is not followed; write the moves out first");
+      throw text::InputError(
+          place_, word.text,
+          "this code changes positions in a way that is not supported; write out the moves first");
     if (word.letter == 'O' || word.letter == '#' ||
         (word.letter == 'M' && (word.value == 98 || word.value == 99)))
       throw text::InputError(place_, word.text, "subprograms and loops have to be written out first");
@@ -141,7 +142,7 @@ class Translator {
       return;
     }
     if (motion_ == Motion::kNone)
-      throw text::InputError(place_, line.substr(0, 20), "an axis word, and no G0, G1, G2 or G3 before it");
+      throw text::InputError(place_, line.substr(0, 20), "an axis word has no G0, G1, G2 or G3 before it");
     move(words, arc);
   }
 
@@ -188,7 +189,8 @@ class Translator {
             place_, std::string(1, letters_[i]),
             "the position of this axis is not known yet: name it in the first move, or with --at");
     if (arc && !start_known)
-      throw text::InputError(place_, words.front().text, "an arc from a place that is not known: --at");
+      throw text::InputError(place_, words.front().text,
+                             "the start of this arc is not known; give it with --at");
     if (arc) move.arc = arc_of(words, arc_reading(), move.from, move.to, place_);
     const bool rapid = motion_ == Motion::kRapid;
     move.feed = rapid || inverse_time_ ? 0 : feed_;

@@ -17,7 +17,8 @@ struct ProgramStretch {
 };
 
 struct PartProgramOptions {
-  /// How far the written path may leave the one that a correction at every moment would make, mm.
+  /// Largest allowed distance between the written path and the path that a correction at every moment would
+  /// make, mm.
   double deviation_mm = 0.0005;
   /// Machine position of the program's zero, by axis: 0 if the program uses machine coordinates.
   std::vector<double> zero;
@@ -30,20 +31,19 @@ struct PartProgram {
   std::string text;
   std::size_t moves = 0, written = 0;  // blocks with a motion, before and after
   std::size_t arcs = 0;                // of those written
-  /// Largest distance found between the written path and the one that is corrected at every moment, mm,
-  /// before the digits of the program: between every two places that the blocks were laid through.
+  /// Largest distance found between the written path and the path that is corrected at every moment, mm,
+  /// before rounding to the digits of the program.
   double worst_mm = 0;
 };
 
-/// Reads a part program (RS-274: G0 G1 G2 G3, planes G17 to G19, G20/G21, G90/G91, G90.1/G91.1, G93/G94) and
-/// writes it with the correction in its positions. A block is split if the correction along it is not a
-/// straight line. An arc or helix is written as arcs in its plane, with I J K as steps, or as chords if these
-/// reach as far; under G93 the parts share the block's time. The speed and direction of each axis are those
-/// of the move and its F word. Words without motion are not changed. `at`: positions of the axes before the
-/// first block, and inputs.
-/// Throws InputError with file, line and word for words that would be wrong in the output: cycles, cutter
-/// compensation, other zeros and rotations, parameters, loops, an axis that was never commanded and that `at`
-/// does not name. tool.
+/// Reads a part program and writes it with the correction in its positions. Words: RS-274: G0 G1 G2 G3,
+/// planes G17 to G19, G20/G21, G90/G91, G90.1/G91.1, G93/G94. A block is split if the correction along it is
+/// not a straight line. An arc or helix is written as arcs in its plane, with I J K as steps, or as chords if
+/// the chords reach as far; under G93 the parts share the block's time. The speed and direction of each axis
+/// are those of the move and its F word. Words without motion are not changed. `at`: positions of the axes
+/// before the first block, and inputs. Throws InputError with file, line and word for words that would be
+/// wrong in the output. Such words: cycles, cutter compensation, other zeros and rotations, parameters,
+/// loops, an axis that was never commanded and that `at` does not name. tool.
 PartProgram corrected_program(const std::string& text, const std::string& file, const model::States& at,
                               const std::vector<char>& known, const PartProgramOptions& options,
                               Corrector& corrector);

@@ -42,8 +42,9 @@ class PositionTable {
     const format::CsvColumn& head = csv_.columns[column];
     const format::Unit unit = *format::find_unit(head.unit);
     if (unit.dimension != dimension)
-      throw text::InputError({csv_.file, csv_.header_line}, head.name,
-                             std::string("this column needs a unit like ") + format::base_unit(dimension));
+      throw text::InputError(
+          {csv_.file, csv_.header_line}, head.name,
+          std::string("this column needs a unit, for example ") + format::base_unit(dimension));
     model::Column result(static_cast<Index>(csv_.rows.size()));
     for (std::size_t row = 0; row < csv_.rows.size(); ++row) {
       const auto number = text::parse_number(csv_.rows[row][column]);

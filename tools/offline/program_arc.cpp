@@ -17,7 +17,7 @@ Vector2d centre_by_radius(double radius, bool clockwise, const Vector2d& start, 
   const Vector2d chord = end - start;
   const double half = chord.norm() / 2, height = radius * radius - half * half;
   if (half <= 0 || height < -1e-6 * radius * radius)
-    throw text::InputError(place, "R", "no arc of this radius joins its ends");
+    throw text::InputError(place, "R", "no arc of this radius connects the two ends");
   const double side = (clockwise ? -1 : 1) * (radius > 0 ? 1 : -1);
   return start + chord / 2 +
          side * std::sqrt(std::max(height, 0.0)) * Vector2d(-chord.y(), chord.x()) / (2 * half);
@@ -35,7 +35,7 @@ Vector2d centre_by_letters(const std::vector<Word>& words, const ArcReading& rea
     else if (given)
       centre[row] = *given * reading.unit + reading.zero[k];
     else
-      throw text::InputError(place, std::string(1, letter), "under G90.1 the centre needs both its places");
+      throw text::InputError(place, std::string(1, letter), "with G90.1 the arc needs both centre words");
   }
   return centre;
 }

@@ -8,7 +8,7 @@
 
 namespace vernier::offline {
 
-/// State that defines a block's arc in addition to its words.
+/// State of the program that defines a block's arc, in addition to the words of the block.
 struct ArcReading {
   int plane = 17;  // G17, G18, G19
   bool clockwise = false;
@@ -18,7 +18,7 @@ struct ArcReading {
   std::array<double, 2> zero{};        // machine position of the program's zero, mm
 };
 
-/// An arc or helix between two places of the machine: turns about its centre, and moves all other axes
+/// An arc or helix between two positions of the machine: turns about its centre, and moves all other axes
 /// evenly with the angle. Ends at unequal distances from the centre are joined by a spiral.
 struct ProgramArc {
   Eigen::VectorXd from, to;
@@ -32,12 +32,12 @@ struct ProgramArc {
   bool whole() const;
 };
 
-/// Letters of a plane's axes in the order in which G3 turns from the first to the second, and the letters of
-/// its centre.
+/// Returns the letters of a plane's axes in the order in which G3 turns from the first to the second. The
+/// letters of the centre (I J K) follow from them.
 std::array<char, 2> plane_letters(int plane);
 
-/// The arc of a block from R, or from I J K. Ends that coincide are a whole turn. Throws InputError: no such
-/// arc, a centre that is not at one distance from both ends, several turns (P). tool.
+/// Returns the arc of a block from R, or from I J K. Ends that coincide are a whole turn. Throws InputError:
+/// no such arc, a centre whose distances from both ends differ, several turns (P). tool.
 ProgramArc arc_of(const std::vector<Word>& words, const ArcReading& reading, const Eigen::VectorXd& from,
                   const Eigen::VectorXd& to, const text::Place& place);
 

@@ -15,11 +15,11 @@ struct Word {
   std::string text;  // unchanged
 };
 
-/// The words of a block. Throws InputError for a remark without an end, and for text that is neither a word
-/// nor a remark: parameters, expressions, loops. tool.
+/// Returns the words of a block. Throws InputError for a remark without an end, and for text that is neither
+/// a word nor a remark: parameters, expressions, loops. tool.
 std::vector<Word> words_of(const std::string& line, const text::Place& place);
 
-/// Value of the first word with this letter.
+/// Returns the value of the first word with this letter; nullopt if the block has no such word.
 std::optional<double> value_of(const std::vector<Word>& words, char letter);
 
 }  // namespace vernier::offline

@@ -9,16 +9,16 @@
 
 namespace vernier::part {
 
-/// A machine file whose nominal chain is that of the five-axis machine with B head and C table. Its errors
-/// may be any that the file format can represent; its free statics are the parameters of the part.
+/// A machine file whose nominal chain is that of the five-axis machine with B head and C table. The machine
+/// may have any errors that the file format can represent; its free statics are the parameters of the part.
 struct BHeadMachine {
   model::Machine machine;
   double pivot_mm = 0;                // B axis to tool tip, read off the nominal chain
   std::array<std::size_t, 5> axis{};  // indices of X Y Z B C among the machine's axes
 
-  /// Joint values of the origin of the work coordinates: tip at (0, 0, 0), tool vertical, C = 0.
+  /// Returns the joint values of the origin of the work coordinates: tip at (0, 0, 0), tool vertical, C = 0.
   JointPose origin() const { return {0, 0, pivot_mm, 0, 0}; }
-  /// Rows for the chain; inputs at their reference, motion zero.
+  /// Returns rows for the chain; inputs are at their reference, motion is zero.
   model::States states(const std::vector<JointPose>& joints) const;
 };
 
@@ -26,8 +26,8 @@ struct BHeadMachine {
 /// Throws InputError if an axis is missing or the chain is another. tool.
 BHeadMachine b_head_machine(model::Machine machine);
 
-/// tables/machines/five_axis_bhead_ctable.xml as it was when the program was built: the machine of the paper
-/// with its eight location errors, all 0; angles in deg, L0 499.889 mm (the paper's simulation).
+/// Returns tables/machines/five_axis_bhead_ctable.xml as it was when the program was built: the machine of
+/// the paper with its eight location errors, all 0; angles in deg, L0 499.889 mm (the paper's simulation).
 std::string default_b_head_text();
 
 /// Names of the eight location errors, in the order of the paper.

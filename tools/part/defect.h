@@ -8,17 +8,17 @@
 
 namespace vernier::part {
 
-/// A point of the part: flank 0 (A) or 1 (B), and its position on the flank.
+/// A point of the part: flank 0 (A) or 1 (B), and the position of the point on the flank.
 struct PartPoint {
   std::size_t flank = 0;
   double u = 0, v = 0;
 };
 
 /// Point and direction of the evaluated tool displacement. Contact: the cutter is a rigid body; its
-/// displacement is evaluated at the height of the point, along the surface normal there. Tip: as in the
-/// paper, displacement of the tool tip along N(u,1). In plane: as contact, but only the horizontal part of
-/// the displacement, along the horizontal part of the normal (unit length): the value that a profile at
-/// constant height shows of a nearly vertical wall.
+/// displacement is evaluated at the height of the point, along the surface normal at the point. Tip: the
+/// displacement of the tool tip along N(u,1), as in the paper. In plane: like contact, but only the
+/// horizontal part of the displacement, along the horizontal part of the normal (unit length). A profile at
+/// constant height shows this value for a nearly vertical wall.
 enum class DefectReading : std::uint8_t { kContact, kTip, kInPlane };
 
 struct DefectOptions {
@@ -27,13 +27,14 @@ struct DefectOptions {
   RotarySolution solution = RotarySolution::kContinuous;
 };
 
-/// Where the errors of a machine put the tool: actual - nominal chain, in workpiece coordinates.
+/// Displacement of the tool by the errors of a machine: actual - nominal chain, in workpiece coordinates.
 struct ToolDisplacement {
   Eigen::Vector3d shift;  // mm, exact, at the height asked for
   Eigen::Matrix3Xd by;    // its derivatives, 3 x free statics of the machine, mm per unit of the static
 };
 
-/// At joint poses, for the point of the tool axis `height_mm` above the tip (as many as joints). tool.
+/// Returns the displacements at joint poses, for the point of the tool axis `height_mm` above the tip (one
+/// height per joint pose). tool.
 std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
                                             const std::vector<double>& height_mm);
 
@@ -46,18 +47,18 @@ struct PartDefect {
   Eigen::Matrix3Xd position,
       normal;                 // nominal surface, workpiece coordinates; normal of the reading: unit, outward
   Eigen::VectorXd defect_mm;  // along the normal, positive: material left; exact, not linearised
-  /// d defect / d static, N x free statics, mm per unit of the static, at the machine's values.
+  /// Matrix d defect / d static, N x free statics, mm per unit of the static, at the machine's values.
   Eigen::MatrixXd jacobian;
 };
 
 /// Mdef(u) = n . (displacement of the tool at the point - displacement at the origin of the work coordinates,
 /// where the offsets were set); displacement = actual - nominal chain. The part is clamped on the table where
-/// it was cut; no alignment. The point counts as cut at its parameter u: the true contact of the envelope is
-/// up to 0.55 mm further along the surface at 11 mm height. tool.
+/// it was cut; the part is not aligned. The point counts as cut at its parameter u. The true contact of the
+/// envelope is up to 0.55 mm further along the surface at 11 mm height. tool.
 PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>& points,
                        const DefectOptions& options = {});
 
-/// The hundred points of the test: 25 on each flank at the bottom and the top line (11 and 25 mm), at
+/// Returns the hundred points of the test: 25 on each flank at the bottom and the top line (11 and 25 mm), at
 /// u = 0.02, 0.06 ... 0.98. Flank by flank, bottom line first.
 std::vector<PartPoint> standard_points();
 inline constexpr std::size_t kPointsPerLine = 25;  // of the test part's standard

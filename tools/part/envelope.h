@@ -6,38 +6,38 @@
 
 namespace vernier::part {
 
-/// A point that the moving cutter leaves behind, and the cutter's normal there (from its axis outwards it is
+/// A point of the surface that the moving cutter leaves, and the cutter's normal at the point (outwards from
+/// the cutter's axis the normal is
 /// -normal: `normal` points out of the part).
 struct EnvelopePoint {
   Eigen::Vector3d position, normal;
 };
 
-/// Characteristic point of the swept cylinder on the generatrix at `v`: the point at that height of the tool
-/// whose normal is at right angles both to the axis and to the velocity (tangency condition of sweeps,
-/// equation 5 of the paper). The velocity by u is dTip + h dR. Only where the motion is not along the axis.
-/// tool.
+/// Returns the characteristic point of the swept cylinder on the generatrix at `v`. Its normal is at right
+/// angles both to the axis and to the velocity (tangency condition of sweeps, equation 5 of the paper). The
+/// velocity by u is dTip + h dR. The result is valid only where the motion is not along the axis. tool.
 EnvelopePoint envelope_point(const FlankPose& pose, const Cutter& cutter, double v);
 
-/// The paper's overcut R (1 - |sin theta|), theta = atan2(-V.T, V.N) (equation 6, recovered from the formula
-/// that follows it), mm. This is one interpretation of the formula. The result is no normal distance,
-/// because the paper's vector T(u,1) is not perpendicular to the tool axis.
+/// Returns the paper's overcut R (1 - |sin theta|), theta = atan2(-V.T, V.N) (equation 6, recovered from the
+/// formula that follows it), mm. The function uses one of several interpretations of the formula. The result
+/// is no normal distance, because the paper's vector T(u,1) is not perpendicular to the tool axis.
 double overcut_formula_mm(const FlankPose& pose, const Cutter& cutter, double v);
 
-/// Distance of the envelope point of u at `v` to the true surface, along its outward normal; negative is
-/// overcut. 0 if the nearest point is beyond an end of the part.
+/// Returns the distance of the envelope point of u at `v` to the true surface, along its outward normal;
+/// negative is overcut. 0 if the nearest point is beyond an end of the part.
 double envelope_distance_mm(const RuledSurface& surface, const Cutter& cutter, double u, double v,
                             NormalReading reading = {});
 
-/// The largest value over 0 <= u <= 1 and its position.
+/// The largest value over 0 <= u <= 1, and the u of this value.
 struct Worst {
   double value_mm = 0, u = 0;
 };
 
-/// Largest overcut by the paper's formula at `v`. Every knot is evaluated (the largest value may be a cusp
-/// there), and the largest of 40 samples per span is refined within its span to 1e-9 of u.
+/// Returns the largest overcut by the paper's formula at `v`. Every knot is evaluated (the largest value may
+/// be a cusp at a knot). The largest of 40 samples per span is refined within its span to 1e-9 of u.
 Worst worst_formula(const RuledSurface& surface, const Cutter& cutter, double v, NormalReading reading);
 
-/// Largest overcut as a distance (positive), likewise.
+/// Returns the largest overcut as a distance (positive), with the same search as worst_formula.
 Worst worst_distance(const RuledSurface& surface, const Cutter& cutter, double v, NormalReading reading = {});
 
 }  // namespace vernier::part

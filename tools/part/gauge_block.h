@@ -4,9 +4,9 @@
 
 namespace vernier::part {
 
-/// Readings in Y of a gauge block on the table at table positions C = 0, 90, 180, 270 deg with the tool
-/// vertical, X = 0 and the tip at the height of the work origin (Z = L0). Four readings give two of the
-/// location errors (equation 14 of the paper, second of that number, with X = 0 and Z = L0).
+/// Readings in Y of a gauge block on the table at table positions C = 0, 90, 180, 270 deg. The tool is
+/// vertical, X = 0, and the tip is at the height of the work origin (Z = L0). Four readings give two of the
+/// location errors (equation 14 of the paper, the second of that number, with X = 0 and Z = L0).
 struct GaugeBlockEstimate {
   double ea0b_rad = 0;  // (y0 - y180) / (2 L0); negative for the paper's readings, which prints it positive
   double ex0b_mm = 0;   // (y270 - y90) / 2

@@ -12,11 +12,11 @@ namespace vernier::part {
 
 struct IdentifyOptions {
   DefectOptions defect;
-  /// The part was aligned to its model by best fit: six numbers of a rigid motion are fitted together with
-  /// the errors (`part.X` ... `part.rZ`; mm and deg about the work origin).
+  /// If true, the part was aligned to its model by best fit: six numbers of a rigid motion are fitted
+  /// together with the errors (`part.X` ... `part.rZ`; mm and deg about the work origin).
   bool aligned = false;
-  /// The cutter's radius is fitted too (`tool.radius`: actual - programmed, mm): one too small leaves
-  /// material on both flanks.
+  /// If true, the radius of the cutter is fitted too (`tool.radius`: actual - programmed, mm). A too small
+  /// radius leaves material on both flanks.
   bool tool_radius = false;
 };
 
@@ -36,19 +36,20 @@ struct Identification {
   Eigen::Index freedom = 0;
   int iterations = 0;
   bool converged = false;
-  /// Sentences: a rest far above the points' uncertainty, and whether a tool of another radius explains it.
+  /// Sentences: a residual far above the points' uncertainty, and whether a tool of another radius explains
+  /// it.
   std::vector<std::string> warnings;
 };
 
 /// Weighted least squares of the free statics of the machine to the measured defects. Errors that the points
-/// cannot distinguish (at nominal errors) keep their start values along those directions and are named in
-/// `observability`. Standard uncertainties as those of `vernier fit`. Throws InputError if no static is free
-/// or if there are fewer points than errors. tool.
+/// cannot distinguish (at nominal errors) keep their start values along those directions; `observability`
+/// names them. Standard uncertainties are computed as in `vernier fit`. Throws InputError if no static is
+/// free or if there are fewer points than errors. tool.
 Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
                         const IdentifyOptions& options = {});
 
-/// Singular values of the free statics (at their nominal values) for N points, each point with standard
-/// uncertainty 1 mm.
+/// Returns the singular values of the free statics (at their nominal values) for N points, each point with
+/// standard uncertainty 1 mm.
 fit::Observability part_observability(const BHeadMachine& machine, const std::vector<PartPoint>& points,
                                       const DefectOptions& options);
 

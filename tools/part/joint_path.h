@@ -18,23 +18,25 @@ struct ToolPose {
 };
 
 /// Choice of the solution of tan(C) = -j/i. Continuous: C turns as little as possible from pose to pose and B
-/// changes sign when the tool passes the vertical. Positive B: C jumps by 180 deg there.
+/// changes sign when the tool passes the vertical. Positive B: C jumps by 180 deg when the tool passes the
+/// vertical.
 enum class RotarySolution : std::uint8_t { kContinuous, kPositiveB };
 
 /// Direct solution (the paper's equation 9): the nominal machine. pivot_mm: B axis to tool tip.
 ToolPose tool_pose(const JointPose& q, double pivot_mm);
 
-/// Back solution of one pose with the rotary axes given.
+/// Returns the back solution of one pose with given rotary axes.
 JointPose joints_for(const ToolPose& pose, double pivot_mm, double b_deg, double c_deg);
 
-/// Back solution along a path. Where the tool is vertical C is free and runs evenly between its values at
-/// either end of that stretch. Of the two continuous solutions, which lie a half turn apart, the one with the
-/// smaller |C| is taken. poses: in the order of the path, close enough that C turns less than 90 deg from one
-/// to the next. tool.
+/// Returns the back solution along a path. Where the tool is vertical, C is free: C changes evenly between
+/// its values at both ends of the vertical part. There are two continuous solutions, which differ by a half
+/// turn; the solution with the smaller |C| is used. poses: in the order of the path, close enough that C
+/// turns less than 90 deg between two poses. tool.
 std::vector<JointPose> back_solution(const std::vector<ToolPose>& poses, double pivot_mm,
                                      RotarySolution solution = RotarySolution::kContinuous);
 
-/// The joint path of a flank at `u` (increasing, 0..1); C is followed on a finer grid that includes them.
+/// Returns the joint path of a flank at `u` (increasing, 0..1). C is followed on a finer grid that includes
+/// `u`.
 std::vector<JointPose> joint_path(const RuledSurface& surface, const Cutter& cutter,
                                   const std::vector<double>& u, double pivot_mm,
                                   RotarySolution solution = RotarySolution::kContinuous);

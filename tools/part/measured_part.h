@@ -21,10 +21,10 @@ struct MeasuredPart {
   std::vector<MeasuredPoint> points;
 };
 
-/// Reads `sx[mm],sy[mm],sz[mm]` (nominal surface point, workpiece coordinates), `defect[mm]` and, if there,
-/// `u[mm]`; other columns are of no concern. Each point is placed on the flank that it is nearest to. Throws
-/// InputError with file, line and word: a missing column, no number, a point farther than 0.05 mm from both
-/// flanks, u not positive or given for some rows only. tool.
+/// Reads `sx[mm],sy[mm],sz[mm]` (nominal surface point, workpiece coordinates), `defect[mm]` and, if present,
+/// `u[mm]`; other columns are ignored. Each point is assigned to the nearest flank. Throws InputError with
+/// file, line and word: a missing column, not a number, a point farther than 0.05 mm from both flanks, u not
+/// positive or given for some rows only. tool.
 MeasuredPart read_measured_part(const std::string& text, const std::string& file);
 
 }  // namespace vernier::part

@@ -11,7 +11,7 @@ PartColumn::PartColumn(const format::CsvFile& csv, const std::string& name, form
   for (std::size_t i = 0; i < csv.columns.size(); ++i)
     if (csv.columns[i].name == name) index_ = i;
   const text::Place header{csv.file, csv.header_line};
-  if (!index_ && required) throw text::InputError(header, name, "this file needs this column");
+  if (!index_ && required) throw text::InputError(header, name, "a required column is missing");
   if (!index_) return;
   const std::optional<format::Unit> unit = format::find_unit(csv.columns[*index_].unit);
   if (!unit || unit->dimension != dimension)

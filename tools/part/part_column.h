@@ -8,10 +8,10 @@
 
 namespace vernier::part {
 
-/// One column of a file, in mm or deg. The file outlives it.
+/// One column of a file, in mm or deg. The file must outlive the PartColumn.
 class PartColumn {
  public:
-  /// Throws InputError if it is required and missing, or has a unit of another dimension. tool.
+  /// Throws InputError if the column is required and missing, or has a unit of another dimension. tool.
   PartColumn(const format::CsvFile& csv, const std::string& name, format::Dimension dimension, bool required);
   bool present() const { return index_.has_value(); }
   /// Throws InputError if the cell is not a number. tool.

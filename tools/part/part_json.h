@@ -10,7 +10,7 @@
 
 namespace vernier::part {
 
-/// All that one run of `part s-shape` found out.
+/// All results of one run of `part s-shape`.
 struct PartJob {
   BHeadMachine machine;
   DefectOptions options;
@@ -25,7 +25,7 @@ struct PartJob {
 /// The result for programs; the keys are in tools/docs/s_part.md.
 nlohmann::ordered_json part_json(const PartJob& job);
 
-/// A reading as the command line writes it.
+/// Returns the name of a reading as the command line writes it.
 const char* reading_name(DefectReading reading);
 
 }  // namespace vernier::part

@@ -8,7 +8,7 @@
 
 namespace vernier::part {
 
-/// The joint path of one flank, timed.
+/// The joint path of one flank, with times.
 struct PartPath {
   std::size_t flank = 0;
   std::vector<double> u, t_s;
@@ -31,19 +31,20 @@ PartPath part_path(const BHeadMachine& machine, std::size_t flank, const PathOpt
 /// `t[s]` and the axes of the machine (path columns of `vernier simulate`).
 std::string path_csv(const BHeadMachine& machine, const PartPath& path);
 
-/// The same for a controller: millimetres, absolute, inverse-time feed (G93), one G1 a step. Positions are
-/// those of the axes, not of the tool tip.
+/// Returns the path for a controller: millimetres, absolute, inverse-time feed (G93), one G1 per step.
+/// Positions are those of the axes, not of the tool tip.
 std::string path_gcode(const PartPath& path, const PathOptions& options);
 
-/// One row a point: flank, curve parameter, surface point (sx, sy, sz), normal, defect, joint values. What
-/// read_measured_part() reads is among it.
+/// Returns one row per point: flank, curve parameter, surface point (sx, sy, sz), normal, defect, joint
+/// values. The columns include those that read_measured_part() reads.
 std::string defect_csv(const std::vector<PartPoint>& points, const PartDefect& defect);
 
-/// Axes of the machine that the path leads beyond their min or max, as "B 17.84 deg is beyond max 15".
+/// Lists the axes of the machine that the path moves beyond their min or max, as "B 17.84 deg is beyond max
+/// 15".
 std::vector<std::string> beyond_limits(const BHeadMachine& machine, const PartPath& path);
 
-/// Throws InputError if the cutter is too thick for a hollow of the flank (its centre would run backwards) or
-/// not longer than the flank.
+/// Throws InputError if the cutter is too thick for a concave part of the flank (its centre would move
+/// backwards) or not longer than the flank.
 void check_cutter(const RuledSurface& surface, const Cutter& cutter);
 
 }  // namespace vernier::part

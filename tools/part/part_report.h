@@ -11,10 +11,10 @@
 
 namespace vernier::part {
 
-/// What improvement_report_html() draws: `result` is part_json() of the same job.
+/// Returns the data of a report for improvement_report_html(). `result`: part_json() of the same job.
 nlohmann::ordered_json part_report(const PartJob& job, const nlohmann::ordered_json& result);
 
-/// "EA0Z and EA0C; EB0Z and EB0C" of a list of lists of names; "none" of an empty one.
+/// Joins a list of lists of names: "EA0Z and EA0C; EB0Z and EB0C"; "none" for an empty list.
 std::string joined_groups(const nlohmann::ordered_json& groups);
 
 }  // namespace vernier::part

@@ -87,7 +87,7 @@ RecordedPath read_recorded(const std::string& text, const std::string& file, con
     path.joints.push_back({x.at(row) - zero.x_mm, y.at(row) - zero.y_mm, z.at(row) - zero.z_mm,
                            b.at(row) - zero.b_deg, c.at(row) - zero.c_deg});
   if (path.joints.size() < 2)
-    throw text::InputError({file, csv.header_line}, "X", "a path has two rows at least");
+    throw text::InputError({file, csv.header_line}, "X", "a path needs at least two rows");
   return path;
 }
 

@@ -8,7 +8,7 @@
 
 namespace vernier::part {
 
-/// Positions that a controller recorded while it cut the part, in the order of time.
+/// Positions that a controller recorded during the cut of the part, in the order of time.
 struct RecordedPath {
   std::string file;
   std::vector<JointPose> joints;
@@ -35,16 +35,17 @@ struct RecordedDeviations {
 };
 
 /// Computes for each point how far the cutter reaches in along the normal of the surface. The ray is cut with
-/// the cylinder of the flank at recorded poses and at poses on the straight path of the axes between two of
-/// them; the deepest cut counts. Poses are evaluated with the nominal machine: the results are deviations of
-/// the positions, not of the machine. Throws InputError if no pose comes within 1 mm of a point. tool.
+/// the cylinder of the flank at recorded poses, and at poses on the straight path of the axes between two
+/// recorded poses; the deepest cut counts. Poses are evaluated with the nominal machine: the results are
+/// deviations of the positions, not of the machine. Throws InputError if no pose comes within 1 mm of a
+/// point. tool.
 RecordedDeviations recorded_deviations(const BHeadMachine& machine, const RecordedPath& recorded,
                                        const std::vector<PartPoint>& points, const Cutter& cutter);
 
 /// `file`, `points`, and of each kind of deviation the least, the largest and the rms.
 nlohmann::ordered_json recorded_json(const RecordedDeviations& deviations);
 
-/// One row per point: its position, the deviations, the defect of the machine, and their sum.
+/// Returns one row per point: its position, the deviations, the defect of the machine, and the sum of both.
 std::string recorded_csv(const std::vector<PartPoint>& points, const PartDefect& defect,
                          const RecordedDeviations& deviations);
 

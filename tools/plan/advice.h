@@ -9,9 +9,9 @@
 
 namespace vernier::plan {
 
-/// Advice for the next measurement if the first candidate of an ambiguous diagnosis and an alternative
-/// explain the rows equally well; empty if no effects need to be distinguished. text: the machine file's.
-/// tool.
+/// Returns advice for the next measurement if the first candidate of an ambiguous diagnosis and an
+/// alternative explain the rows equally well. Empty if no effects need to be distinguished. text: of the
+/// machine file. tool.
 std::vector<std::string> advice_for(const std::string& text, const model::Machine& machine,
                                     const model::Measurement& measurement,
                                     const diagnose::Diagnosis& diagnosis,

@@ -8,10 +8,10 @@
 
 namespace vernier::plan {
 
-/// Finds other causes that explain the rows nearly as well as the best candidate of all. A
-/// diagnosis compares them too, so rows that separate two named effects should separate these as
-/// well. One per effect, driving axis and input, best first, at most `most`. The named effects are
-/// not included. tool.
+/// Finds other causes that explain the rows nearly as well as the best candidate of all. A diagnosis also
+/// compares these causes: rows that separate two named effects should separate these causes too. The result
+/// has one cause per effect, driving axis and input, best first, at most `most`. The named effects are not
+/// included. tool.
 std::vector<FittedRival> find_bystanders(const effects::MachineText& model,
                                          const model::Measurement& measurement,
                                          const std::vector<const FittedRival*>& named,

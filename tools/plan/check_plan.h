@@ -32,13 +32,13 @@ struct CheckPlan {
 };
 
 /// Chooses the poses one by one. Each pose raises most the sum over the tested parameters of log(1 +
-/// information on a change that moves the tool point by `expected_um`), with a free set-up and the
-/// uncertainty of the fit. A change is detected from five standard deviations on: evidence of 100 against
-/// some thirty parameters of six sizes needs this. Throws InputError: never fitted, an axis without range.
-/// tool.
+/// information). The information is about a change that moves the tool point by `expected_um`, with a free
+/// set-up and the uncertainty of the fit. A change is detected from five standard deviations on: an evidence
+/// of 100 with about thirty parameters of six sizes needs this. Throws InputError: never fitted, an axis
+/// without range. tool.
 CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options = {});
 
-/// Returns a measurement file with these rows. The readings must be filled in.
+/// Returns a measurement file with the poses of the plan. The readings must be filled in.
 std::string check_plan_csv(const model::Machine& machine, const CheckPlan& plan, double reading_um);
 
 }  // namespace vernier::plan

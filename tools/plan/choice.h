@@ -6,8 +6,8 @@
 
 namespace vernier::plan {
 
-/// All comparisons that the rows must decide: one entry per pair of a true effect and an alternative that is
-/// refitted.
+/// All comparisons that the rows must decide. Each pair of a true effect and an alternative that is refitted
+/// has one entry.
 struct Sides {
   std::vector<Discrimination> side;
   std::vector<double> needed;
@@ -17,13 +17,13 @@ struct Sides {
   void assume(const std::vector<std::size_t>& chosen);
 };
 
-/// Adds offers (with repeats) to `chosen`, always the one that improves the worst side most. Ends when
-/// `least` are chosen and `reached()` is at least `goal`, when `most` are chosen, or when no offer improves
-/// it. tool.
+/// Adds offered rows (with repeats) to `chosen`; each time the row that improves the worst comparison most.
+/// Ends in three cases: `least` rows are chosen and `reached()` is at least `goal`; `most` rows are chosen;
+/// no offered row improves the worst comparison. tool.
 void choose_rows(Sides& sides, std::vector<std::size_t>& chosen, std::size_t least, std::size_t most,
                  double goal);
 
-/// One pass of exchanges: each chosen row in turn for the offer that does better in its place. tool.
+/// Makes one pass of exchanges: replaces each chosen row by the offered row that gives a better result. tool.
 void exchange_rows(Sides& sides, std::vector<std::size_t>& chosen);
 
 }  // namespace vernier::plan

@@ -5,23 +5,25 @@
 
 namespace vernier::plan {
 
-/// Computes how well rows distinguish two alternatives if one of them is true and the other one, with all
-/// free parameters of the model, is fitted to the rows. The non-centrality of the residual's chi^2 is
+/// Computes how well rows distinguish two alternatives. One alternative is true; the other, with all free
+/// parameters of the model, is fitted to the rows. The non-centrality of the residual's chi^2 is
 ///   lambda = min over theta of |d - J theta|^2 = d'd - (J'd)' (J'J)^-1 (J'd),
-/// d the difference between the two predictions and J the Jacobian of the wrong model, both weighted by 1/u
-/// (T-optimal discrimination: Atkinson and Fedorov, Biometrika 62 (1975) 57-70, eq. 2.3).
+/// d is the difference between the two predictions and J the Jacobian of the wrong model, both weighted by
+/// 1/u (T-optimal discrimination: Atkinson and Fedorov, Biometrika 62 (1975) 57-70, eq. 2.3).
 class Discrimination {
  public:
   /// `jacobian`, `difference`: weighted, one row per observation. `first`: the first observation of each row
-  /// of the measurement, and one past the last. The first `existing` rows count; the others are offers. tool.
+  /// of the measurement, and one past the last. The first `existing` rows are measured; the other rows are
+  /// offers. tool.
   Discrimination(Eigen::MatrixXd jacobian, Eigen::VectorXd difference, std::vector<Eigen::Index> first,
                  std::size_t existing);
 
   std::size_t offers() const { return first_.size() - 1 - existing_; }
-  /// Adds these offers (with repeats) to the existing rows; needs a factorisation.
+  /// Adds these offered rows (with repeats) to the existing rows; needs a factorisation.
   void assume(const std::vector<std::size_t>& chosen);
   double non_centrality() const { return lambda_; }
-  /// What each offer would add: r' (I + J_row (J'J)^-1 J_row')^-1 r, r its difference after the refit.
+  /// Returns the non-centrality that each offered row would add: r' (I + J_row (J'J)^-1 J_row')^-1 r, with r
+  /// its difference after the refit.
   Eigen::VectorXd gains() const;
 
  private:
@@ -36,12 +38,12 @@ class Discrimination {
   double square_ = 0, lambda_ = 0;
 };
 
-/// Non-centrality at which a chi^2 difference falls on the right side with this confidence: the difference of
-/// the two fits is distributed as lambda + 2 sqrt(lambda) z, and it must exceed `lead`. Hence
+/// Returns the non-centrality at which a chi^2 difference has the right sign with this confidence. The
+/// difference of the two fits is distributed as lambda + 2 sqrt(lambda) z and must exceed `lead`. Therefore
 /// sqrt(lambda) = z + sqrt(z^2 + lead). confidence: 0.5 to 1, both exclusive. tool.
 double needed_non_centrality(double confidence, double lead);
 
-/// Quantile of the standard normal distribution (bisection of erfc). p: 0 to 1, exclusive.
+/// Returns the quantile of the standard normal distribution (bisection of erfc). p: 0 to 1, exclusive.
 double normal_quantile(double p);
 
 }  // namespace vernier::plan

@@ -29,19 +29,19 @@ struct FirstPlan {
   bool reached = true;                 // the accuracy that was asked for
 };
 
-/// Chooses the poses one by one that lower most the expected uncertainty of the tool point over the work
-/// volume and all its tools (I-optimal, without exchange: Fedorov 1972, 2.5), for the free parameters of the
-/// machine file. A rigid motion belongs to the set-up and is not counted. The poses are in the order of a
-/// path through the axes' travels; the first pose is repeated, check poses are in between. Throws InputError
-/// for an axis without a range, or without a free parameter. tool.
+/// Chooses one by one the poses that lower most the expected uncertainty of the tool point over the work
+/// volume with all its tools, for the free parameters of the machine file (I-optimal, without exchange:
+/// Fedorov 1972, 2.5). A rigid motion belongs to the set-up and does not count. The poses are in the order of
+/// a path through the axes' travels; the first pose is repeated, check poses are in between. Throws
+/// InputError for an axis without a range, or without a free parameter. tool.
 FirstPlan first_plan(const model::Machine& machine, const FirstPlanOptions& options = {});
 
-/// Expanded uncertainty (k = 2) of the tool point over the work volume, um, after readings at any poses, in
-/// the same terms as `after_um`. tool.
+/// Returns the expanded uncertainty (k = 2) of the tool point over the work volume, um, after readings at any
+/// poses, computed like `after_um`. tool.
 double planned_uncertainty_um(const model::Machine& machine, const model::States& poses,
                               const FirstPlanOptions& options = {});
 
-/// A measurement file with these rows, readings to be filled in.
+/// Returns a measurement file with the poses of the plan; the readings must be filled in.
 std::string first_plan_csv(const model::Machine& machine, const FirstPlan& plan, double reading_um);
 
 }  // namespace vernier::plan

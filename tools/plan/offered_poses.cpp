@@ -9,6 +9,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/maths/halton.h"
+#include "tools/maths/rounding.h"
 #include "tools/model/chain/work_poses.h"
 #include "tools/text/error.h"
 
@@ -23,7 +24,7 @@ model::States offered_poses(const model::Machine& machine, std::size_t count, st
     const auto range = model::work_range(machine, axis);
     if (!range)
       throw text::InputError({machine.file, machine.axes[axis].line}, machine.axes[axis].name,
-                             "a plan needs min and max of every axis");
+                             "the plan needs min and max of this axis in the machine file");
     for (std::size_t i = 0; i < count; ++i) {
       double share = maths::radical_inverse(from + i + 1, kPrimes[axis % std::size(kPrimes)]);
       // A third of the poses are at the ends of an axis, taken from another sequence.
@@ -33,7 +34,7 @@ model::States offered_poses(const model::Machine& machine, std::size_t count, st
       const double value = (*range)[0] + share * ((*range)[1] - (*range)[0]);
       const double digit = std::pow(10, std::floor(std::log10(((*range)[1] - (*range)[0]) / 500)));
       states.axis[axis][static_cast<Index>(i)] =
-          std::clamp(std::round(value / digit) * digit, (*range)[0], (*range)[1]);
+          std::clamp(maths::rounded_to(value, digit), (*range)[0], (*range)[1]);
       states.direction[axis][static_cast<Index>(i)] =
           maths::radical_inverse(from + i + 1, kPrimes[(axis + 2) % std::size(kPrimes)]) < 0.5 ? -1 : 1;
     }

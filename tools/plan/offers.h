@@ -9,10 +9,10 @@
 
 namespace vernier::plan {
 
-/// Label of the planned rows: a set-up of their own.
+/// Label of the planned rows: the plan has a separate set-up.
 inline constexpr const char* kPlanRun = "plan";
 
-/// Returns the rows of `first`, followed by those of `second`. Both must be bound to the same
+/// Returns the rows of `first`, followed by those of `second`. Both measurements must be bound to the same
 /// machine and have the same columns. tool.
 model::Measurement append_rows(const model::Measurement& first, const model::Measurement& second);
 
@@ -28,13 +28,13 @@ struct Offers {
       not_settable;  // inputs that an alternative uses and that cannot be set (a false cause)
 };
 
-/// Returns `count` random rows with low discrepancy. If the tool point is read, the poses are in
-/// the declared ranges (corners, edges, interior). If a length about a centre or a deviation along
-/// a normal is read, they are the recorded poses. Both approach directions occur. Recorded motion
-/// is at half, once and twice its speed. Travel since the reversal, time and inputs are as the
-/// effects need them. Temperatures extend 5 K beyond the recorded range, loads from 0 to 1.5 times
-/// the largest. Each row is a separate run, labelled kPlanRun, so that a lag has reached its final
-/// value. u: the median of the existing rows. tool.
+/// Returns `count` random rows with low discrepancy. If the tool point is read, the poses are in the declared
+/// ranges (corners, edges, interior). If a length about a centre or a deviation along a normal is read, the
+/// poses are the recorded poses. The offered rows contain both approach directions. Recorded motion is
+/// offered at half, once and twice its speed. Travel since the reversal, time and inputs are as the effects
+/// need them. Temperatures extend 5 K beyond the recorded range, loads from 0 to 1.5 times the largest. Each
+/// offered row is a separate run, labelled kPlanRun, so that a lag has reached its final value. u: the median
+/// of the existing rows. tool.
 Offers offer_rows(const model::Machine& machine, const model::Measurement& existing, const Drivers& drivers,
                   std::size_t count);
 

@@ -16,8 +16,8 @@ Plan plan_next(const std::string& text, const model::Machine& machine, const mod
                const std::string& a, const std::string& b, const std::vector<effects::Effect>& effects,
                const PlanOptions& options = {});
 
-/// The sentence of the plan and what the plan needs, for the list of a diagnosis. Empty if the plan has no
-/// advice for the pair. tool.
+/// Returns the sentence of the plan and the requirements of the plan, for the list of a diagnosis. The list
+/// is empty if the plan has no advice for the pair. tool.
 std::vector<std::string> next_measurement(const std::string& text, const model::Machine& machine,
                                           const model::Measurement& measurement, const std::string& a,
                                           const std::string& b, const std::vector<effects::Effect>& effects,

@@ -135,7 +135,8 @@ std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
     parts.push_back(argument.substr(from));
   }
   if (parts.size() != 2)
-    throw text::InputError("--separate wants two effects, there are " + std::to_string(parts.size()));
+    throw text::InputError("--separate needs two effects; the number given is " +
+                           std::to_string(parts.size()));
   return parts;
 }
 

@@ -13,11 +13,11 @@
 
 namespace vernier::plan {
 
-/// The machine at its best fit, to which the alternatives are added.
+/// Returns the machine at its best fit, to which the alternatives are added.
 effects::MachineText fit_model(const std::string& text, const model::Machine& machine,
                                const model::Measurement& measurement);
 
-/// An effect added to a fitted machine and fitted to the same rows.
+/// An effect that was added to a fitted machine and fitted to the same rows.
 struct FittedRival {
   effects::Candidate candidate;
   std::string add;
@@ -25,12 +25,12 @@ struct FittedRival {
 };
 
 /// `name`: an effect id (the candidate of that effect which fits the rows best) or a complete `add` string.
-/// The effects must outlive the result. Throws InputError: unknown effect, no candidate of it in these rows.
-/// tool.
+/// The effects must outlive the result. Throws InputError: unknown effect, no candidate of the effect in
+/// these rows. tool.
 FittedRival fit_rival(const effects::MachineText& model, const model::Measurement& measurement,
                       const std::string& name, const std::vector<effects::Effect>& effects);
 
-/// The same with the evidence of the model and the rows at hand.
+/// Fits an alternative with given evidence of the model and the rows.
 FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidence& evidence,
                       const model::Measurement& measurement, const std::string& name,
                       const std::vector<effects::Effect>& effects);
@@ -38,8 +38,8 @@ FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidenc
 /// Fall of chi^2 in units of the noise less the price of the unknowns (BIC).
 double value_of(const diagnose::Scored& scored, const diagnose::Evidence& evidence);
 
-/// The parts of `--separate`: separated at a comma only if the text after it begins with the id of an effect.
-/// Throws InputError if the number of parts is not two. tool.
+/// Splits the text of `--separate` at commas. A comma separates only if the text after it begins with the id
+/// of an effect. Throws InputError if the number of parts is not two. tool.
 std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
                                       const std::vector<effects::Effect>& effects);
 
@@ -50,7 +50,7 @@ struct Drivers {
 };
 Drivers drivers_of(const std::vector<const FittedRival*>& rivals);
 
-/// The machine of the alternative without its effect: its coefficients are 0.
+/// Returns the machine of the alternative without its effect: the coefficients of the effect are 0.
 model::Machine without_effect(const FittedRival& rival);
 
 }  // namespace vernier::plan

@@ -6,20 +6,22 @@
 
 namespace vernier::plan {
 
-/// The planned rows as a measurement file with empty readings: units in the header, run kPlanRun. Only
-/// columns that the existing rows have or the two effects use. tool.
+/// Returns the planned rows as a measurement file with empty readings: units in the header, run kPlanRun. The
+/// file has only columns that the existing rows have or the two effects use. tool.
 std::string plan_csv(const Plan& plan);
 
-/// The planned rows as G-code. Each pose is approached in the required direction of motion; rows at speed are
-/// passed through along their velocity. Values that a person must set are in comments. Millimetres, degrees,
-/// mm/min; axes have the names of the machine file. Approaches end within the declared ranges. tool.
+/// Returns the planned rows as G-code. Each pose is approached in the required direction of motion; at rows
+/// with a speed the machine passes along the velocity without a stop. Values that a person must set are in
+/// comments. Millimetres, degrees, mm/min; axes have the names of the machine file. Approaches end within the
+/// declared ranges. tool.
 std::string plan_gcode(const Plan& plan);
 
-/// Poses to be reached one after the other, as G-code in the same way: `remark` is its first line. tool.
+/// Returns poses that are reached one after another as G-code, like plan_gcode. `remark`: its first line.
+/// tool.
 std::string poses_gcode(const model::Machine& machine, const model::States& states,
                         const std::string& remark);
 
-/// The same rows as a table for people.
+/// Returns the planned rows as a table for people.
 std::string plan_table(const Plan& plan);
 
 }  // namespace vernier::plan

@@ -24,7 +24,8 @@ struct PlanOptions {
   std::size_t offers = 1000;          // rows to choose from
 };
 
-/// One direction: the distance of the best refit of the alternative while `truth` is true, in units of u^2.
+/// Separation in one direction: the chi^2 of the best refit of the alternative while `truth` is true, in
+/// units of u^2.
 struct Separation {
   double now = 0, planned = 0, needed = 0;
 };
@@ -56,13 +57,14 @@ struct Knowledge {
   std::array<bool, 3> reads{true, true, true};  // x, y, z
 };
 
-/// Region of the required accuracy: a part's features, else the working ranges of the axes (`<volume>`), with
-/// all tools of the file.
+/// Region of the required accuracy: the features of a part, else the working ranges of the axes (`<volume>`),
+/// with all tools of the file.
 struct AccuracyAim {
   std::string words;  // "the volume"
   std::optional<tolerance::PlacedPart> part;
   std::vector<model::WorkRange> region;  // in place of the volume; an axis that is not named keeps its range
-  /// The machine with the one tool that counts, else that of the file and those of <tools>.
+  /// The machine with the one tool that counts; without a value, the tool of the file and those of <tools>
+  /// count.
   std::optional<model::Machine> tooled;
 };
 
@@ -86,7 +88,7 @@ struct AccuracyLimit {
   double share = 0;  // of the variance that is left
 };
 
-/// Expected result for one characteristic of a part, or for the whole.
+/// Expected result for one characteristic of a part, or for all characteristics.
 struct AccuracyOf {
   std::string name;
   double now_um = 0, after_um = 0;  // U95

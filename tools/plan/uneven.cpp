@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "tools/maths/rounding.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::plan {
@@ -54,7 +55,7 @@ std::vector<double> uneven_positions(double low, double high, const std::vector<
       // One in each stretch, anywhere in it.
       const double share = (static_cast<double>(i) + static_cast<double>(random() >> 11) * 0x1p-53) /
                            static_cast<double>(count);
-      positions[i] = std::round((low + share * span) / digit) * digit;
+      positions[i] = maths::rounded_to(low + share * span, digit);
     }
     const std::vector<Wave> more = window(positions, low, span);
     double highest = 0;
@@ -80,8 +81,8 @@ std::string uneven_sentence(const model::Machine& machine, const model::Measurem
   for (const double q : uneven_positions(*low, *high, taken, kPositions))
     text += (text.empty() ? "" : ", ") + text::number_text(q);
   const model::Axis& item = machine.axes[axis];
-  return "Measure " + item.name + " in uneven steps as well, which distinguish the " +
-         std::to_string(finding.aliases.size() + 1) + " periods apart: " + text +
+  return "Measure " + item.name + " in uneven steps as well, to distinguish the " +
+         std::to_string(finding.aliases.size() + 1) + " periods: " + text +
          (item.rotary ? " deg, both directions." : " mm, both directions.");
 }
 

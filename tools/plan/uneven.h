@@ -10,15 +10,15 @@
 
 namespace vernier::plan {
 
-/// `count` more positions of an axis between `low` and `high`, in its unit and increasing. No two cyclic
-/// errors with periods down to 1/1000 of the range look alike at these positions and at the positions `taken`
-/// together. The best of many random sets is used: its window has the smallest largest peak. The result is
-/// the same for the same input. tool.
+/// Returns `count` more positions of an axis between `low` and `high`, in its unit and increasing. At these
+/// positions together with the positions `taken`, two different cyclic errors with periods down to 1/1000 of
+/// the range are never equal. The function uses the best of many random sets: the set whose window has the
+/// smallest largest peak. The result is equal for equal input. tool.
 std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
                                      std::size_t count);
 
-/// Advice for the next measurement, as a sentence, if the positions of the axis do not distinguish the
-/// periods of `finding` from others (CandidateFinding::aliases). tool.
+/// Returns advice for the next measurement, as a sentence, if the positions of the axis do not distinguish
+/// the periods of `finding` from other periods (CandidateFinding::aliases). tool.
 std::string uneven_sentence(const model::Machine& machine, const model::Measurement& measurement,
                             const diagnose::CandidateFinding& finding);
 

@@ -325,7 +325,7 @@ void refuse_absurd(const ProbeCalibration& result, const CalibrationSetup& setup
   // Largest possible delay of a trigger; negative only by rounding.
   constexpr double kLeastDelay_ms = -1, kMostDelay_ms = 100;
   const char* const kHint =
-      "look at units and columns (--column \"name=meaning[unit]\"), at --size and --artefact";
+      "check units and columns (--column \"name=meaning[unit]\"), --size and --artefact";
   if (const Calibrated* const delay = result.find("delay");
       delay &&
       (delay->value - 3 * delay->std > kMostDelay_ms || delay->value + 3 * delay->std < kLeastDelay_ms))

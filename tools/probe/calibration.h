@@ -12,13 +12,13 @@ namespace vernier::probe {
 
 enum class Artefact { kBlock, kRing, kSphere };
 
-/// A known artefact and a nominal stylus.
+/// Sizes of a known artefact and of a nominal stylus.
 struct CalibrationSetup {
   Artefact artefact = Artefact::kSphere;
   double size_mm = 0;  // block: distance of its faces; ring, sphere: diameter
   std::optional<double> ball_radius_mm = std::nullopt;  // nominal, of the stylus ball
   double outlier_level = 0.01;
-  /// Conditions of the touches, if they are given: invalid touches are reported.
+  /// Conditions of the touches. If they are given, invalid touches are reported.
   std::optional<double> clearance_mm = std::nullopt, overtravel_mm = std::nullopt;
   TouchConditions conditions = {};
 };
@@ -29,22 +29,22 @@ struct Calibrated {
   double value = 0, std = 0;
 };
 
-/// Returns the parameter of that name; null if there is none.
+/// Returns the parameter of this name; null if no parameter has the name.
 const Calibrated* find_calibrated(const std::vector<Calibrated>& parameters, const std::string& name);
 
-/// Adds a sentence for each touch that a fit excluded, with its line and its residual.
+/// Adds a sentence for each touch that a fit excluded, with the line and the residual of the touch.
 void say_outliers(const TouchFit& fit, const TouchTable& table, std::vector<std::string>& findings);
 
 /// Properties of a probe from touches of an artefact.
 ///
-/// A touch at speed v along the approach is recorded late by v * delay - a * delay^2 / 2, and by
-/// the pretravel. The pretravel is a constant and, for a probe with three contacts, a lobe p3 cos
-/// 3(phi - phi3) of the azimuth phi of the approach. The constant cannot be distinguished from the
-/// radius of the ball. Their difference is the effective tip radius.
+/// A touch at speed v along the approach is recorded late by v * delay - a * delay^2 / 2, and by the
+/// pretravel. The pretravel is a constant. For a probe with three contacts, a lobe p3 cos 3(phi - phi3) of
+/// the azimuth phi of the approach is added. The constant cannot be distinguished from the radius of the
+/// ball. Only the difference of radius and constant is known: the effective tip radius.
 struct ProbeCalibration {
   TouchFit fit;
-  /// delay_ms first, if it can be determined, with delay_spread (its standard deviation from touch
-  /// to touch, if the scatter grows with the feed); then the parameters of the artefact
+  /// Order: delay_ms first, if the touches determine it; then delay_spread, its standard deviation from touch
+  /// to touch, if the scatter grows with the feed; then the parameters of the artefact.
   std::vector<Calibrated> parameters;
   std::optional<double> line_intercept_um, line_slope_um_per_mm_min;  // block: difference against feed
   std::optional<double> line_intercept_std_um, line_slope_std;
@@ -54,13 +54,13 @@ struct ProbeCalibration {
   const Calibrated* find(const std::string& name) const { return find_calibrated(parameters, name); }
 };
 
-/// Reads touches and determines their parameters. Columns: feed[mm/min]; block: upper, lower (mm:
-/// recorded position of the stylus at the upper and the lower face), angle[deg] (of the probe
-/// about its axis, optional); ring, sphere: x, y, z (z not for a ring; a sphere without z was
-/// touched in the plane through its centre), a[mm/s^2] along the approach (optional, negative
-/// while braking), u (optional). Throws InputError. tool. Source of the block's form: NISTIR 6415,
-/// 1999, equations 1 and 2. A result that no probe can have (a delay outside -1..100 ms, a tip
-/// larger than the artefact) is an InputError too.
+/// Reads touches and determines the parameters of the probe and the artefact. Columns: feed[mm/min]. Block:
+/// upper, lower (mm: recorded position of the stylus at the upper and the lower face), angle[deg] (of the
+/// probe about its axis, optional). Ring, sphere: x, y, z (no z for a ring; a sphere without z was touched in
+/// the plane through its centre), a[mm/s^2] along the approach (optional, negative while braking), u
+/// (optional). Throws InputError. tool. Source of the block's form: NISTIR 6415, 1999, equations 1 and 2. A
+/// result that no probe can have (a delay outside -1..100 ms, a tip larger than the artefact) also throws
+/// InputError.
 ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setup);
 
 /// Calibrations of the same touches by groups.
@@ -75,8 +75,8 @@ struct GroupComparison {
   std::string words;
 };
 
-/// Calibrates the touches of each value of a column separately and compares with a calibration of
-/// all. Throws InputError: no such column, one group only, or a group too small. tool.
+/// Calibrates the touches of each value of a column separately and compares with a calibration of all. Throws
+/// InputError: a column that does not exist, only one group, or a group that is too small. tool.
 GroupComparison compare_groups(const TouchTable& table, const CalibrationSetup& setup,
                                const std::string& column, const ProbeCalibration& all);
 

@@ -24,7 +24,7 @@ constexpr Plane kPlanes[] = {{"XY", 0, 1, "G17"}, {"YZ", 1, 2, "G19"}, {"ZX", 2,
 const Plane& plane_of(const CirclePath& path) {
   for (const Plane& plane : kPlanes)
     if (path.plane == plane.name) return plane;
-  throw text::InputError({}, path.plane, "a plane is XY, YZ or ZX");
+  throw text::InputError({}, path.plane, "the plane must be XY, YZ or ZX");
 }
 
 void check(const CirclePath& path) {

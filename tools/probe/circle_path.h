@@ -12,8 +12,8 @@ enum class CircleDialect {
   kUrscript   // movel and movec of a Universal Robots controller
 };
 
-/// A circular test (ISO 230-4): in one direction, out, a pause, in again, and the other direction.
-/// mm, deg.
+/// A circular test (ISO 230-4): the circle in one direction, out, a pause, in again, and the circle in the
+/// other direction. mm, deg.
 struct CirclePath {
   std::string plane = "XY";           // XY, YZ or ZX: angles count from the first axis to the second
   double radius_mm = 100;             // of the bar
@@ -23,8 +23,8 @@ struct CirclePath {
   double feed_in_mm = 1.5;            // radial path in and out, which starts the instrument
   double pause_s = 5;                 // between the directions
   std::array<double, 3> centre_mm{};
-  /// urscript: rotation vector of the tool during the test, rad in the program; and its
-  /// acceleration.
+  /// urscript: rotation vector of the tool during the test (rad in the program), and the acceleration of the
+  /// tool.
   std::array<double, 3> tool_deg{};
   double acceleration_mm_s2 = 1000;
 };

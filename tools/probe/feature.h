@@ -40,14 +40,14 @@ struct MeasuredFeature {
 };
 
 /// Columns: x, y, z (z not needed for line, circle and block in the plane z = 0), nx ny nz
-/// (outward normals; for a block: of the touched face), T[degC], u[mm]. Without normals, plane and
-/// line are those of the ball's centre.
+/// (outward normals; for a block: of the touched face), T[degC], u[mm]. Without normals, plane and line are
+/// those of the centre of the ball.
 ///
-/// parameters: plane: point (nearest to the centroid), normal, tilt about x and y; line: point,
-/// direction, angle (deg from X, in the plane); circle, sphere, cylinder: centre (a cylinder:
-/// nearest to the centroid; and axis), radius; block: centre, angle. A block needs two or more
-/// points on a face across X and on a face across Y. Its centre is half its size inside both
-/// faces, along their common angle. Throws InputError. tool.
+/// parameters: plane: point (nearest to the centroid), normal, tilt about x and y; line: point, direction,
+/// angle (deg from X, in the plane); circle, sphere, cylinder: centre (for a cylinder nearest to the
+/// centroid; and axis), radius; block: centre, angle. A block needs two or more points on a face across X and
+/// on a face across Y. The centre of the block is half its size inside both faces, along their common angle.
+/// Throws InputError. tool.
 MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup);
 
 /// Returns the touches as a measurement file: `d` along `nx ny nz` from the fitted feature at `px

@@ -35,12 +35,11 @@ struct ProbePath {
   bool unchecked = false;  // written even if a touch would not be valid
 };
 
-/// Returns the program. Throws InputError if the path is not possible (no step, no feed,
-/// elevations in two axes). Throws LimitNotMet if a touch would not be valid (broken_conditions),
-/// each reason on a line. tool.
-/// Turning dialect: blocks 210, 215, 225, 240, then 50 more for each point, coordinates in single
-/// precision from points of six decimals, as in the published program. Its 324 blocks are
-/// reproduced exactly (NISTIR 6415, appendices A1, B).
+/// Returns the program. Throws InputError if the path is not possible (no step, no feed, elevations in two
+/// axes). Throws LimitNotMet if a touch would not be valid (broken_conditions), each reason on a line. tool.
+/// Turning dialect: blocks 210, 215, 225, 240, then 50 more for each point. Coordinates are in single
+/// precision from points of six decimals, as in the published program. The function reproduces the 324 blocks
+/// of the published program exactly (NISTIR 6415, appendices A1, B).
 std::string probe_program(const ProbePath& path, Dialect dialect);
 
 }  // namespace vernier::probe

@@ -92,7 +92,7 @@ class TouchSolver {
     for (Index k = 0; k < pass.scale.size(); ++k)
       if (pass.scale(k) == 0)
         throw text::InputError(
-            fmt::format("the touches say nothing about {}", names_[static_cast<std::size_t>(k)]));
+            fmt::format("the touches do not determine {}", names_[static_cast<std::size_t>(k)]));
     pass.svd.compute(pass.j * pass.scale.cwiseInverse().asDiagonal(),
                      Eigen::ComputeThinU | Eigen::ComputeThinV);
     const VectorXd& s = pass.svd.singularValues();

@@ -8,7 +8,7 @@
 
 namespace vernier::probe {
 
-/// A touch that is inconsistent with the others.
+/// A touch that does not agree with the other touches.
 struct TouchOutlier {
   std::size_t touch = 0;
   double residual = 0;  // of the fit that excluded it, the observation's unit
@@ -40,18 +40,18 @@ struct TouchFitOptions {
   double outlier_level = 0.01;       // probability that a good set loses a touch; 0: none is excluded
 };
 
-/// Gauss-Newton with step halving from `start`. Then touches are excluded one by one: the touch
-/// whose deleted residual is least probable, if its probability (Student's t, Bonferroni) is below
-/// the level. Covariance: from u, times chi^2/dof if that exceeds 1; without u from the residual.
-/// Throws InputError: fewer observations than parameters plus one, or parameters that the touches
-/// do not determine (`names` of the weakest). tool. Source of the test: R. D. Cook, S. Weisberg,
-/// Residuals and Influence in Regression, 1982, 2.2.
+/// Gauss-Newton with step halving from `start`. Then touches are excluded one by one: each time the touch
+/// whose deleted residual is least probable, if its probability (Student's t, Bonferroni) is below the level.
+/// Covariance: from u, times chi^2/dof if that exceeds 1; without u from the residual. Throws InputError:
+/// fewer observations than parameters plus one, or parameters that the touches do not determine (`names` of
+/// the weakest). tool. Source of the test: R. D. Cook, S. Weisberg, Residuals and Influence in Regression,
+/// 1982, 2.2.
 TouchFit fit_touches(const TouchModel& model, const Eigen::VectorXd& start, const TouchFitOptions& options,
                      const std::vector<std::string>& names);
 
-/// Returns centre and radius of the circle or sphere that solves |m|^2 = 2 m c + k best, by normal
-/// equations: the start of a fit. points: one per row, two or three columns, about their middle.
-/// Returns centre, then radius. tool.
+/// Returns the circle or sphere that solves |m|^2 = 2 m c + k best, by normal equations: the start of a fit.
+/// points: one per row, two or three columns, about their middle. The result is the centre, then the radius.
+/// tool.
 Eigen::VectorXd algebraic_centre(const Eigen::MatrixXd& points);
 
 }  // namespace vernier::probe

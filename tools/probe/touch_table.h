@@ -17,9 +17,10 @@ class TouchTable {
   TouchTable(const std::string& text, const std::string& file, const std::vector<std::string>& renames,
              const std::vector<std::string>& where);
 
-  /// Returns the rows with this value in that column (named as in the file). Throws InputError.
+  /// Returns the rows with this value in this column (named as in the file). Throws InputError.
   TouchTable only(const std::string& column, const std::string& value) const;
-  /// Returns the values of a column, in the order of the file. Throws InputError: no such column.
+  /// Returns the values of a column, in the order of the file. Throws InputError if the column does not
+  /// exist.
   std::vector<std::string> values_of(const std::string& column) const;
 
   std::size_t rows() const { return csv_.rows.size(); }
@@ -27,12 +28,13 @@ class TouchTable {
   std::size_t line(std::size_t row) const { return csv_.line[row]; }
   const format::CsvFile& csv() const { return csv_; }
 
-  /// Returns numbers of the column that is known under one of the names, in base units (mm, deg,
-  /// mm/min stays mm/min, s, degC); nullopt if there is no such column. A cell that is not a
-  /// number is an InputError. The first name with a column is used. Of two columns that differ
-  /// only by a suffix "_printed", the printed one is used, and a note reports it.
+  /// Returns the numbers of the column with one of the names, in base units (mm, deg, mm/min stays mm/min, s,
+  /// degC); nullopt if there is no such column. A cell that is not a number is an InputError. The first name
+  /// with a column is used. Of two columns that differ only by a suffix "_printed", the printed column is
+  /// used, and a note reports this.
   std::optional<Eigen::VectorXd> find(const std::vector<std::string>& names);
-  /// The same for a required column: `what` names its purpose.
+  /// Returns the numbers of a required column; throws InputError if the column is missing. `what`: purpose of
+  /// the column.
   Eigen::VectorXd need(const std::vector<std::string>& names, const std::string& what);
   /// Returns column u, mm. A value that is not above 0 is an InputError.
   std::optional<Eigen::VectorXd> uncertainty();

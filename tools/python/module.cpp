@@ -188,7 +188,7 @@ PYBIND11_MODULE(vernier, module) {
                              })
       .def_property_readonly(
           "residuals", [](const ResultOfPython& self) { return self.residual; },
-          "Value less prediction of each reading, in the order of the files; mm or deg.")
+          "Value minus prediction of each reading, in the order of the files; mm or deg.")
       .def_property_readonly(
           "table", table_of,
           "Every reading with row, value, prediction, residual, u …; for pandas.DataFrame.")

@@ -11,18 +11,19 @@
 
 namespace vernier::python {
 
-/// A machine file: its text, which keeps remarks, and what it means.
+/// A machine file for Python: its text with the remarks, and the machine that it describes.
 struct MachineOfPython {
   std::string path, text;
   model::Machine machine;
 };
 
-/// Measurement files by their names; a machine gives their columns a meaning, so they are read with one.
+/// Measurement files by their names. A machine gives their columns a meaning, so they are read together with
+/// a machine.
 struct MeasurementsOfPython {
   std::vector<std::string> paths;
 };
 
-/// What a call found: the JSON of the command of that name, and the residuals behind it.
+/// Result of a call: the JSON of the command of the same name, and the residuals.
 struct ResultOfPython {
   nlohmann::ordered_json json;
   std::shared_ptr<const model::Measurement> measurement;
@@ -33,8 +34,8 @@ struct ResultOfPython {
 /// Throws InputError as parse_machine does. tool.
 std::shared_ptr<const MachineOfPython> machine_of_text(const std::string& path, std::string text);
 
-/// The calls of the module, each as the command of its name. Throw InputError and LimitNotMet as that does.
-/// tool.
+/// Each function of the module does what the command of the same name does. Throw InputError and LimitNotMet
+/// as the command does. tool.
 ResultOfPython fit_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements);
 ResultOfPython compare_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements);
 ResultOfPython diagnose_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements,

@@ -6,8 +6,8 @@
 
 namespace vernier::python {
 
-/// JSON as Python has it: null None, lists, numbers, text; an object is a dict whose keys are attributes too
-/// (class `Record` of the module). tool.
+/// Converts JSON to Python: null to None, lists, numbers, text; an object becomes a dict whose keys are also
+/// attributes (class `Record` of the module). tool.
 pybind11::object python_of(const nlohmann::ordered_json& json, const pybind11::object& record_class);
 
 /// Makes that class. tool.

@@ -20,7 +20,7 @@ struct OwnDrift {
   double per_day = 0, std = 0;
 };
 
-/// What one quantity does over the fleet.
+/// Change of one quantity over the fleet.
 struct Drift {
   std::string quantity, unit;
   std::size_t machines = 0, times = 0, readings = 0;
@@ -35,8 +35,8 @@ struct Drift {
   std::vector<OwnDrift> own;                           // the clearest first
 };
 
-/// Separates the common changes of the machines of a fleet from the change of one machine: reading = level of
-/// the machine + common curve of time + individual rate x time, least squares weighted by the stated
+/// Separates the common changes of the machines of a fleet from the change of one machine. Reading = level of
+/// the machine + common curve of time + individual rate x time, by least squares weighted by the stated
 /// uncertainties. Individual rates are added one by one, the clearest first, while an F test is significant
 /// at false_alarms / (2 x machines x quantities); the common curve by an F test at false_alarms / (2 x
 /// quantities). A change of most machines is therefore common. Scatter beyond the stated uncertainty

@@ -23,16 +23,16 @@ class DatabaseError : public std::runtime_error {
 class Database {
  public:
   virtual ~Database() = default;
-  /// One statement with values for $1, $2, ...; its rows. Throws DatabaseError.
+  /// Executes one statement with values for $1, $2, ... and returns its rows. Throws DatabaseError.
   virtual std::vector<Row> run(const std::string& sql, const std::vector<Cell>& values = {}) = 0;
-  /// Rows that the last statement wrote.
+  /// Returns the number of rows that the last statement wrote.
   virtual std::int64_t written() const = 0;
-  /// What begins a transaction that writes.
+  /// Returns the statement that begins a transaction that writes.
   virtual const char* begin() const = 0;
   /// Clause with which a SELECT skips rows that another caller has locked; empty if writers wait in a queue.
   virtual const char* skip_locked() const = 0;
-  /// Microseconds since 1970 by the database's clock (for a file: of this computer): one clock for all
-  /// callers. Throws DatabaseError.
+  /// Returns microseconds since 1970 by the clock of the database (for a file: of this computer): one clock
+  /// for all callers. Throws DatabaseError.
   virtual std::int64_t now_us() = 0;
   /// "PostgreSQL 15.8 at ..." for people.
   virtual std::string name() const = 0;
@@ -55,10 +55,11 @@ class Transaction {
   bool done_ = false;
 };
 
-/// Throws InputError if a database has tables, but no table `ours`: it belongs to another program.
+/// Throws InputError if a database has tables, but no table `ours`: the database belongs to another program.
 void refuse_foreign(Database& database, const std::string& ours);
 
-/// Many rows in as few statements as fit: "INSERT INTO … (…)" + rows + tail. Rows are of one width.
+/// Inserts many rows in as few statements as possible: "INSERT INTO … (…)" + rows + tail. All rows have the
+/// same number of cells.
 void insert_rows(Database& database, const std::string& head, const std::vector<Row>& rows,
                  const std::string& tail);
 

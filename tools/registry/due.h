@@ -9,14 +9,15 @@
 
 namespace vernier::registry {
 
-/// When a machine is to be checked, and why.
+/// Time at which a machine must be checked, and the reason.
 struct DueMachine {
   std::string machine, verdict, why;            // of the last check; why it is due, empty: it is not
   std::optional<std::int64_t> last_us, due_us;  // nullopt: never checked; nullopt: no checks requested
 };
 
-/// All machines, the most overdue first. A check is due in four cases: its time has come, no check was ever
-/// made, the last check was not conclusive, or the running image was loaded after it. tool.
+/// Returns all machines, the most overdue first. A check is due in four cases: its time has come, no check
+/// was ever made, the last check was not conclusive, or the running image was loaded after the last check.
+/// tool.
 std::vector<DueMachine> due_machines(Registry& registry, std::int64_t at_us);
 
 }  // namespace vernier::registry

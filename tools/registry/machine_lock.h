@@ -15,9 +15,9 @@ class LockLost : public text::LimitNotMet {
   using text::LimitNotMet::LimitNotMet;
 };
 
-/// Locks of machines in the registry: one caller at a time does something to a machine, from any computer.
-/// A lock is a lease by the database's clock. Its holder renews the lease; the lease of a caller that was
-/// killed ends by itself, and then the next caller may take the machine. tool.
+/// Locks of machines in the registry: only one caller at a time works on a machine, from any computer. A lock
+/// is a lease by the database's clock. The holder renews the lease. The lease of a caller that was killed
+/// ends by itself; then the next caller may take the machine. tool.
 class MachineLocks {
  public:
   /// Takes the locks of all machines, or of none. purpose: for people, e.g. "rollout spring". lease_s: 1 s at
@@ -29,10 +29,11 @@ class MachineLocks {
   MachineLocks(const MachineLocks&) = delete;
   MachineLocks& operator=(const MachineLocks&) = delete;
 
-  /// Renews the leases when a third of one has passed. Throws LockLost if a lease has ended or another caller
-  /// has locked the machine.
+  /// Renews the leases when a third of a lease has passed. Throws LockLost if a lease has ended or another
+  /// caller has locked the machine.
   void renew();
-  /// As renew(), but immediate: called right before a step that cannot be undone.
+  /// Renews the leases immediately; call it right before a step that cannot be undone. Throws LockLost like
+  /// renew().
   void require();
   /// The owner of the lock, for statements that are executed only while the lock is held.
   const std::string& holder() const { return holder_; }

@@ -22,20 +22,20 @@ struct FleetMachine {
   std::string board_key{};  // public half of the board's own key, 64 hexadecimal digits; empty: not entered
 };
 
-/// The image that runs on a machine and its origin.
+/// The image that runs on a machine, and the origin of the image.
 struct RecordedCalibration {
   std::string machine, model, model_hash, image, data, data_hash, signed_by, checked_against, checked_hash;
   std::int64_t at_us = 0;
 };
 
-/// What `vernier check` answered for a machine.
+/// Result of one `vernier check` of a machine.
 struct FleetCheck {
   std::string machine, label, verdict, explanation;
   double evidence = 0, alarm = 0;
   std::int64_t at_us = 0;
 };
 
-/// A quantity of a machine as one check read it.
+/// Value of one quantity of a machine in one check.
 struct FleetReading {
   std::string machine, quantity, unit;
   std::int64_t at_us = 0;
@@ -62,7 +62,7 @@ struct LiveAge {
   bool clock_off = false;
 };
 /// now_us: of the registry's clock (Database::now_us); stale_s: an older state is not accepted. The clock of
-/// a gateway has an error if its stamp is more than 2 s ahead or 10 s behind. tool.
+/// a gateway has an error if its time is more than 2 s ahead or 10 s behind. tool.
 LiveAge live_age(const LiveState& live, std::int64_t now_us, double stale_s);
 /// "online", "stale" or "away".
 const char* name_of(LiveAge::State state);
@@ -71,19 +71,20 @@ inline constexpr double kStaleAfter_s = 30;
 /// A machine that is not in the registry, and whose samples were not stored; "" stands for all machines
 /// beyond the first hundred.
 struct NotEntered {
-  std::string machine, gateway;  // the gateway that sent the last one
+  std::string machine, gateway;  // the gateway that sent the last sample
   std::int64_t samples = 0, at_us = 0;
 };
 
-/// The fleet's registry: machines, their images, their states. A server and a file have the same contents.
-/// All calls throw DatabaseError. tool.
+/// The registry of a fleet: machines, their images, their states. A registry on a server and a registry in a
+/// file have the same contents. All calls of Registry throw DatabaseError. tool.
 class Registry {
  public:
-  /// Creates the tables if they do not exist. Throws InputError for a registry of a newer program.
+  /// Opens a registry; creates the tables if they do not exist. Throws InputError for a registry of a newer
+  /// program.
   explicit Registry(std::unique_ptr<Database> database);
   Database& database() { return *database_; }
 
-  /// Adds a machine, or changes one of that name. Throws InputError for a name that is not allowed
+  /// Adds a machine, or changes the machine of that name. Throws InputError for a name that is not allowed
   /// (machine_name.h).
   void put(const FleetMachine& machine);
   std::vector<FleetMachine> machines();
@@ -92,25 +93,25 @@ class Registry {
   /// Gives a machine with all its entries another name. Throws InputError if no machine has the first name,
   /// or if the second one is taken or not allowed.
   void give_name(const std::string& from, const std::string& to);
-  /// Machines that nobody has entered, and whose samples arrived and were not stored.
+  /// Returns the machines that are not in the registry, and whose samples arrived and were not stored.
   std::vector<NotEntered> not_entered();
-  /// Enters the key of a machine's board if no key is entered. False: another machine's board has this key,
-  /// or a key was entered meanwhile.
+  /// Enters the key of a machine's board if no key is entered. False: the board of another machine
+  /// has this key, or a key was entered meanwhile.
   bool trust_board_key(const std::string& machine, const std::string& key);
 
   void put(const RecordedCalibration& calibration);
-  /// Newest first; of all machines if `machine` is empty.
+  /// Returns the calibrations, newest first; those of all machines if `machine` is empty.
   std::vector<RecordedCalibration> calibrations(const std::string& machine);
 
-  /// False: this check was there already.
+  /// Adds a check with its readings; false: the registry already has this check.
   bool put(const FleetCheck& check, const std::vector<FleetReading>& readings);
-  /// In the order of time.
+  /// Returns the checks of a machine in the order of time.
   std::vector<FleetCheck> checks(const std::string& machine);
   std::vector<FleetReading> readings(std::int64_t since_us);
 
   std::vector<LiveState> live();
-  /// Deletes samples that were taken before a time; returns their number. A sample that was stored once is
-  /// not taken again.
+  /// Deletes samples that were taken before a time; returns the number of deleted samples. A sample that was
+  /// stored once is not taken again.
   std::int64_t forget_samples(std::int64_t before_us);
 
  private:

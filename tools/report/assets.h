@@ -4,8 +4,8 @@
 
 namespace vernier::report {
 
-/// Returns the bundled plots (tools/report/web, one script) and the style sheet of the reports.
-/// tool.
+/// report_script: the bundled plots (tools/report/web, one script). report_style: the style sheet of the
+/// reports. tool.
 std::string_view report_script();
 std::string_view report_style();
 

@@ -11,14 +11,15 @@ namespace vernier::report {
 /// Base64 (RFC 4648, padded) of some bytes. tool.
 std::string base64(std::string_view bytes);
 
-/// Text for an HTML document: & < > " ' written as entities. tool.
+/// Returns the text for an HTML document: & < > " ' written as entities. tool.
 std::string escape_html(std::string_view text);
 
-/// `value` with long rows of numbers packed: {"u8": base64} for small whole numbers, else {"f32": base64} of
-/// little-endian floats, null and values that are not finite as NaN. Short rows are not changed. tool.
+/// Returns `value` with long rows of numbers packed: {"u8": base64} for small whole numbers, else {"f32":
+/// base64} of little-endian floats. null and values that are not finite become NaN. Short rows are not
+/// changed. tool.
 nlohmann::ordered_json packed(const nlohmann::ordered_json& value);
 
-/// JSON that is valid inside a <script> element: no '<' and '>' in it, ASCII only; bytes that are no UTF-8
+/// Returns JSON that is valid inside a <script> element: no '<' and '>', ASCII only; bytes that are no UTF-8
 /// are replaced. tool.
 std::string script_json(const nlohmann::ordered_json& value);
 

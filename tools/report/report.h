@@ -5,8 +5,8 @@
 
 namespace vernier::report {
 
-/// Makes one self-contained HTML page that draws the JSON result of `compare`; it computes no result. The
-/// page opens without a network, in light and dark. Every key is optional; the JSON must be an object:
+/// Makes one self-contained HTML page that draws the JSON result of `compare`; the page computes no result.
+/// The page opens without a network, in light and dark. Every key is optional; the JSON must be an object:
 ///   machine, files[], rms_um, check_rms_um, max_um, check_max_um, noise_um, n_obs, n_excluded, rms_urad,
 ///   parameters[{name, value, std, unit}], notes[],
 ///   detail: { columns[{name, unit, kind}], column_data[column][row], runs[], row_run[], row_check[],
@@ -22,11 +22,11 @@ namespace vernier::report {
 ///   field_note: reason why no field is drawn
 /// Any of these pages may have header[[key, value]…]: person, subject, date and instrument of the
 /// measurement; "company" is at the top. If a kind has more observations than kMostDrawn, only every n-th and
-/// the worst are drawn, and the page reports it. Texts are shown as they are, never read as markup. Throws
+/// the worst are drawn, and the page reports this. Texts are shown unchanged, never read as markup. Throws
 /// std::invalid_argument if `detail` contradicts itself. tool.
 std::string compare_report_html(const nlohmann::ordered_json& result);
 
-/// The same kind of page for a job of several steps:
+/// Makes a page like compare_report_html for a job of several steps:
 ///   title, machine, files[], sections[{title, prose[], numbers[{label, value, unit, hint, strong}],
 ///     ladder[{label, rms_um, check_rms_um}], tables[{caption, columns[], rows[][]}], parameters[],
 ///     field: {axes[], counts[], point_mm[][3], deviation_um[][3], max_um} (arrows over a volume),
@@ -35,19 +35,20 @@ std::string compare_report_html(const nlohmann::ordered_json& result);
 /// tool.
 std::string improvement_report_html(const nlohmann::ordered_json& result);
 
-/// The page of `diagnose`: verdict in words, stepwise model, candidates, next measurements, locations where
-/// the model fails. Draws the JSON result of FORMATS section 3 (machine, files[], verdict, explanation,
-/// rms_um, check_rms_um, noise_um, candidates[], runner_up, ladder[], next_measurement[] of texts or objects
-/// with `sentence`) and, if present, findings[] and structure{} (tools/results/structure_json.h), notes[],
-/// detail (as above). Candidates may also have score, signature, impostors[], why_not. tool.
+/// Makes the page of `diagnose`: verdict in words, stepwise model, candidates, next measurements, locations
+/// where the model fails. The page draws the JSON result of FORMATS section 3 (machine, files[], verdict,
+/// explanation, rms_um, check_rms_um, noise_um, candidates[], runner_up, ladder[], next_measurement[] of
+/// texts or objects with `sentence`) and, if present, findings[] and structure{}
+/// (tools/results/structure_json.h), notes[], detail (as above). Candidates may also have score, signature,
+/// impostors[], why_not. tool.
 std::string diagnose_report_html(const nlohmann::ordered_json& result);
 
-/// The page of `improve`: the error falling step by step. ladder[{effect, add, label, rms_um, check_rms_um}],
-/// noise_um, and whatever the page of diagnose draws; simulation{rms_before_um, rms_after_um, max_after_um,
-/// ticks}; steps[{title, prose[], findings[], explanation}]. tool.
+/// Makes the page of `improve`: the error after each step. ladder[{effect, add, label, rms_um,
+/// check_rms_um}], noise_um, and all keys of the page of diagnose; simulation{rms_before_um, rms_after_um,
+/// max_after_um, ticks}; steps[{title, prose[], findings[], explanation}]. tool.
 std::string improve_report_html(const nlohmann::ordered_json& result);
 
-/// Observations of one kind that a page draws at most.
+/// Largest number of observations of one kind that a page draws.
 inline constexpr std::size_t kMostDrawn = 20000;
 
 }  // namespace vernier::report

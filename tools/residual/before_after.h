@@ -22,14 +22,14 @@ struct ErrorFigures {
   std::optional<ConfidenceInterval> mean_interval, spread_interval, rms_interval;
 };
 
-/// Errors before and after, of all length readings or of a part of them.
+/// Errors before and after the correction, of all length readings or of a part of them.
 struct ReductionGroup {
   std::optional<model::ObservationKind>
       kind;                    // of one kind only (rotations are only in groups of their own kind)
   std::optional<double> feed;  // of one feed only, mm/min
   ErrorFigures before, after;
-  /// 1 - rms after / rms before, and its interval of 95 %; nullopt if there are too few readings,
-  /// or all are 0.
+  /// 1 - rms after / rms before, and its 95 % interval; nullopt if there are too few readings, or all
+  /// readings are 0.
   std::optional<double> reduction;
   std::optional<ConfidenceInterval> interval;
 };
@@ -51,15 +51,15 @@ struct BeforeAfterOptions {
   std::size_t resamples = 2000;  // the ends of an interval are then accurate to a few per cent of its length
 };
 
-/// Tests whether the correction reduced the errors. Error of a reading: the reading minus the
-/// prediction of the nominal chain at the commanded position, in the best set-up of each file
-/// (BaseShift, if it is free in the machine). Roles have no meaning here.
+/// Tests whether the correction reduced the errors. Error of a reading: the reading minus the prediction of
+/// the nominal chain at the commanded position, in the best set-up of each file (BaseShift, if it is free in
+/// the machine). The roles of the rows are ignored.
 ///
-/// If at least half of the rows of both are at poses (axes, approach direction, feed, point) that
-/// both have, whole poses are resampled, both sides together. Otherwise blocks of neighbouring
-/// rows of each side are resampled. The interval of the reduction is that of the logarithm of the
-/// ratio, studentised with the linearised standard uncertainty (bootstrap-t: Efron and Tibshirani,
-/// section 12.5). Throws InputError if one file has no length reading. tool.
+/// If at least half of the rows of both files are at common poses (axes, approach direction, feed, point),
+/// whole poses are resampled, both files together. Otherwise blocks of neighbouring rows of each file are
+/// resampled. The interval of the reduction is that of the logarithm of the ratio, studentised with the
+/// linearised standard uncertainty (bootstrap-t: Efron and Tibshirani, section 12.5). Throws InputError if a
+/// file has no length reading. tool.
 BeforeAfter compare_before_after(const model::Machine& machine, const model::Measurement& before,
                                  const model::Measurement& after, const BeforeAfterOptions& options = {});
 

@@ -7,7 +7,7 @@
 
 namespace vernier::residual {
 
-/// Mean residual vectors over at most 5 x 5 x 5 parts of the volume (lengths: x y z directly,
+/// Returns mean residual vectors over at most 5 x 5 x 5 parts of the volume (lengths: x y z directly,
 /// `length` along the bar, `d` along its normal). residual: mm or deg, one per observation. tool.
 std::vector<FailureCell> failure_cells(const model::Machine& machine, const model::Measurement& measurement,
                                        const Eigen::VectorXd& residual);

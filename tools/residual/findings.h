@@ -6,7 +6,7 @@
 
 namespace vernier::residual {
 
-/// Settings that are the same for all kinds in a search for findings.
+/// Settings of a search for findings that are equal for all kinds.
 struct FindingContext {
   const model::Measurement& measurement;
   const std::vector<RecordedColumn>& columns;
@@ -17,9 +17,9 @@ struct FindingContext {
 /// Returns the number of terms and frequencies that a search over this sample tries. tool.
 std::size_t count_tried(const KindSample& sample, const std::vector<RecordedColumn>& columns);
 
-/// Selects the most significant term, then the most significant one beside it, and so on. Removes
-/// terms that the others make superfluous. Sentences are filled in. Shares of every column are
-/// added to `shares`. tool.
+/// Selects the most significant term, then the most significant term beside it, and so on. Then
+/// find_structure removes terms that the others make superfluous. Sentences are filled in. Shares of every
+/// column are added to `shares`. tool.
 std::vector<Finding> find_structure(const KindSample& sample, const FindingContext& context,
                                     std::vector<ColumnShare>& shares);
 

@@ -46,16 +46,15 @@ struct BasisTerm {
 };
 inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);  // none of them
 
-/// Smooth functions of the recorded columns on some rows. The constant is first. Then each column
-/// has Legendre polynomials (directions: odd and even part; runs: one indicator less than there
-/// are runs; rotary axes: the first two harmonics too). Products of pairs follow. Every column has
-/// length 1.
+/// Smooth functions of the recorded columns on some rows. The constant is first. Then each column has
+/// Legendre polynomials (directions: odd and even part; runs: one indicator less than there are runs; rotary
+/// axes: the first two harmonics too). Products of pairs follow. Every column of the basis has length 1.
 struct Basis {
   Eigen::MatrixXd matrix;        // rows x functions
   std::vector<BasisTerm> terms;  // the tested terms, in a fixed order
 };
 
-/// At most kMostPairs pairs of columns have products. tool.
+/// Returns the basis of some rows. At most kMostPairs pairs of columns have products. tool.
 Basis make_basis(const std::vector<RecordedColumn>& columns, const std::vector<std::size_t>& rows);
 // 22 columns in pairs. More pairs than readings are not significant.
 inline constexpr std::size_t kMostPairs = 250;

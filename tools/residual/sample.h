@@ -13,7 +13,7 @@
 
 namespace vernier::residual {
 
-/// A record longer than this is tested on every n-th of its rows.
+/// Largest number of rows that are tested; of a longer record only every n-th row is tested.
 inline constexpr std::size_t kMostTestedRows = 8000;
 
 /// The residual of one kind of observation over the fit rows, prepared for the tests.
@@ -27,9 +27,9 @@ struct KindSample {
   std::shared_ptr<const Basis>
       basis;               // its matrix with weighted rows, columns of length 1; shared between kinds
   maths::Moments moments;  // of this kind alone, without a projection
-  /// After projection on the complement of the fit's Jacobian, which couples the kinds. Sum and
-  /// freedom are of all kinds together, each in units of its own standard deviation. Without a
-  /// Jacobian the same as `moments`.
+  /// The moments after projection on the complement of the fit's Jacobian, which couples the kinds. Sum and
+  /// degrees of freedom are of all kinds together, each in units of its standard deviation. Without a
+  /// Jacobian, `projected` equals `moments`.
   maths::Moments projected;
 
   const char* name() const { return format::name_of(kind); }
@@ -37,12 +37,11 @@ struct KindSample {
   Eigen::VectorXd without(const maths::FunctionSet& functions) const;
 };
 
-/// Limits values to 4 robust standard deviations and counts those beyond 5. If these are more than
-/// a tenth, they are not outliers: no value is limited and 0 is returned. tool.
+/// Limits values to 4 robust standard deviations and counts the values beyond 5. If more than a tenth of the
+/// values are beyond 5, they are not outliers: no value is limited and 0 is returned. tool.
 std::size_t hold_outliers(Eigen::VectorXd& values);
 
-/// Returns one sample for each kind with at least 8 fit rows and a residual that is not zero
-/// throughout. tool.
+/// Returns one sample for each kind with at least 8 fit rows and a residual that is not always zero. tool.
 std::vector<KindSample> kind_samples(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                      const std::vector<RecordedColumn>& columns,
                                      const StructureOptions& options);
@@ -55,9 +54,9 @@ struct Period {
   Eigen::Vector2d factor = Eigen::Vector2d::Zero();  // of sine and cosine, weighted residual per 1
 };
 
-/// Scans sines of the column from one period over its range to the shortest that its values allow.
-/// Returns nullopt for a column with few values. residual: weighted, one per row of the sample.
-/// tool.
+/// Tests sines of the column with periods from its range down to the shortest that its values allow.
+/// strongest_period returns nullopt for a column with few values. residual: weighted, one per row of the
+/// sample. tool.
 std::optional<Period> strongest_period(const KindSample& sample, const RecordedColumn& column,
                                        const Eigen::VectorXd& residual);
 
@@ -71,8 +70,8 @@ struct PairTest {
 PairTest serial_pairs(const KindSample& sample, const model::Measurement& measurement,
                       const Eigen::VectorXd& residual, std::size_t phase);
 
-/// Returns disjoint pairs of neighbouring rows in `columns` (each scaled to its range), closest
-/// first. At most 3000 rows are paired. tool.
+/// Returns separate pairs of neighbouring rows in `columns` (each scaled to its range), closest first. At
+/// most 3000 rows are paired. tool.
 std::vector<std::pair<std::size_t, std::size_t>> neighbour_pairs(
     const KindSample& sample, const std::vector<const RecordedColumn*>& columns);
 PairTest correlate(const Eigen::VectorXd& residual,

@@ -46,7 +46,7 @@ struct Finding {
   std::string sentence;  // plain English, without a full stop
 };
 
-/// Share of one kind's residual that one column explains, found or not.
+/// Share of one kind's residual that one column explains, whether it is a finding or not.
 struct ColumnShare {
   std::string observation, column;
   double share_alone = 0, share_after = 0;  // after: beyond the findings that do not name this column
@@ -61,13 +61,13 @@ struct FailureCell {
   std::size_t count = 0;
 };
 
-/// Where a model fails.
+/// Description of where a model fails.
 struct FailurePicture {
   std::vector<Finding> findings;    // strongest first
   std::vector<ColumnShare> shares;  // every kind x column that varies
-  /// Probability that a residual without any structure (independent normal errors) looks as
-  /// structured as this one. It is one number for all columns, pairs, periods, repeats and
-  /// neighbourhoods that were tested.
+  /// Probability that a residual without structure (independent normal errors) appears as structured as this
+  /// residual. omnibus_p is one number for all columns, pairs, periods, repeats and neighbourhoods that were
+  /// tested.
   double omnibus_p = 1;
   std::string omnibus_by;               // the test with the smallest p-value
   std::optional<double> chi_p;          // chi^2 against u; nullopt if u is not given for every fit row
@@ -84,7 +84,7 @@ struct FailurePicture {
 
 struct StructureOptions {
   std::size_t fitted_parameters = 0;  // rank of the fit of this residual
-  /// Jacobian of that fit, by observation. It makes the tests more sensitive if many parameters
+  /// Jacobian of that fit, by observation. The Jacobian makes the tests more sensitive if many parameters
   /// were fitted. May be null.
   const model::SparseRows* jacobian = nullptr;
 };

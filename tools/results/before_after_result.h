@@ -9,12 +9,12 @@
 
 namespace vernier::results {
 
-/// The result of `compare --before --after` for programs (FORMATS section 6): before_um, after_um (rms),
+/// Returns the result of `compare --before --after` as JSON (FORMATS section 6): before_um, after_um (rms),
 /// reduction, interval, verdict, sentence, paired, samples, rows left out and rows with a correction, and the
-/// figures of all readings and of each group.
+/// numbers of all readings and of each group.
 nlohmann::ordered_json before_after_json(const residual::BeforeAfter& result);
 
-/// The same for people: the verdict first, then the table.
+/// Prints the result of `compare --before --after` for people: the verdict first, then the table.
 void print_before_after(std::FILE* out, const residual::BeforeAfter& result);
 
 /// Data for the report (improvement_report_html).

@@ -11,7 +11,7 @@
 
 namespace vernier::results {
 
-/// One run of a circular test in a measurement: its observations and their angles.
+/// One run of a circular test in a measurement: the observations and their angles.
 struct CircleRun {
   std::string label;
   int direction = +1;
@@ -27,9 +27,9 @@ struct Circle {
   std::vector<CircleRun> runs;
 };
 
-/// Finds the circular tests (ball bar) in a measurement: runs whose lengths are measured while the nominal
-/// tool point moves on a circle about the length's centre in a coordinate plane, over at least 90 degrees.
-/// tool.
+/// Finds the circular tests (ball bar) in a measurement. In such a run, lengths are measured while the
+/// nominal tool point moves over at least 90 degrees on a circle in a coordinate plane about the length's
+/// centre. tool.
 std::vector<Circle> find_circles(const model::Machine& machine, const model::Measurement& measurement);
 
 /// ISO 230-4 analysis of a circle's fit rows (check rows are overshoot or held out). Throws

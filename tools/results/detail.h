@@ -15,19 +15,20 @@ namespace vernier::results {
 void add_detail(nlohmann::ordered_json& result, const model::Machine& machine,
                 const model::Measurement& measurement, const Eigen::VectorXd& residual);
 
-/// Calls visit(name, unit, kind, values) for everything that was set or recorded in each row: axes, motion,
-/// time, visit, inputs, candidate inputs. kind: axis, direction, motion, time, visit, input or candidate.
+/// Calls visit(name, unit, kind, values) for each quantity that was set or recorded in the rows: axes,
+/// motion, time, visit, inputs, candidate inputs. kind: axis, direction, motion, time, visit, input or
+/// candidate.
 using VisitColumn =
     std::function<void(const std::string&, const std::string&, const char*, const model::Column&)>;
 void each_column(const model::Machine& machine, const model::Measurement& measurement,
                  const VisitColumn& visit);
 
-/// The circular tests among the rows with their curves: the numbers of circular_json and, for each run,
-/// angle_deg, measured_um, model_um and check of every sample, and its row if requested.
+/// Returns the circular tests among the rows with their curves: the numbers of circular_json and, for each
+/// run, angle_deg, measured_um, model_um and check of every sample, and its row if requested.
 nlohmann::ordered_json circular_detail(const model::Machine& machine, const model::Measurement& measurement,
                                        const Eigen::VectorXd& residual, bool with_rows = false);
 
-/// ISO 230-4 numbers of every circular test among the rows (a list, empty without such tests).
+/// Returns the ISO 230-4 numbers of every circular test among the rows (a list, empty without such tests).
 nlohmann::ordered_json circular_json(const model::Machine& machine, const model::Measurement& measurement);
 
 }  // namespace vernier::results

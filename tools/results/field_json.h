@@ -8,12 +8,12 @@
 
 namespace vernier::results {
 
-/// A field as the reports draw it and programs read it: {axes[], counts[], max_um, rms_um, max_at_mm[3],
-/// point_mm[][3], deviation_um[][3]}. tool.
+/// Returns an error field as the reports draw it and programs read it: {axes[], counts[], max_um, rms_um,
+/// max_at_mm[3], point_mm[][3], deviation_um[][3]}. tool.
 nlohmann::ordered_json field_json(const model::Machine& machine, const map::ErrorField& field);
 
-/// Linear axes with a range at its middle, inputs at their reference, all else 0; then the user's `words` (as
-/// for state_at). Throws InputError with the word. tool.
+/// Returns a state with each linear axis at the middle of its range, inputs at their reference, all other
+/// values 0; then the user's `words` are applied (as for state_at). Throws InputError with the word. tool.
 model::States middle_state(const model::Machine& machine, const std::string& words);
 
 /// field_json over the linear axes, `count` nodes along each, from middle_state. `nullopt` if the machine has

@@ -11,19 +11,20 @@
 
 namespace vernier::results {
 
-/// [{"code", "value", "text"}]: findings of the last fit of a machine file; empty if it was never fitted.
+/// Returns the findings of the last fit of a machine file as [{"code", "value", "text"}]; empty if the
+/// machine was never fitted.
 nlohmann::ordered_json findings_json(const model::Machine& machine);
 
-/// Puts the findings into a word of assurance: it does not hold for a machine that was never fitted, or whose
-/// fit did not converge, was absurd or no gain; the others are things that it does not cover.
+/// Adds the findings to an assurance. The assurance fails for a machine that was never fitted, or whose fit
+/// did not converge, was absurd or gave no gain; other findings are listed as not covered.
 void add_findings(text::Assurance& word, const model::Machine& machine);
 
-/// True if a fit describes its readings: it converged, its values are plausible, it improves the check rows
-/// (if any), no reading is missing and none is disturbed.
+/// Tests whether a fit describes its readings: it converged, its values are plausible, it improves the check
+/// rows (if any), no reading is missing and no reading is disturbed.
 text::Assurance assurance_of(const fit::FitResult& result);
 
-/// Tests whether this correction may run, by the rules of the sheet. Rules that the machine file cannot
-/// answer are not covered.
+/// Tests whether the correction of the machine may run, by the rules of the sheet. Rules that the machine
+/// file cannot answer are not covered.
 text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Machine& machine,
                              text::AssuranceKind kind);
 

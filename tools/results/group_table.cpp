@@ -50,7 +50,8 @@ std::vector<std::string> values_of(const model::Measurement& m, const std::strin
     return values;
   }
   throw text::InputError({}, column,
-                         "no such column to group by; there are " + text::joined(known_columns(m), ", "));
+                         "the measurement has no such column for groups; its columns are " +
+                             text::joined(known_columns(m), ", "));
 }
 
 /// log of the probability that means of groups with the same standard deviation differ so much; 0 without

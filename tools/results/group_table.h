@@ -9,11 +9,11 @@
 
 namespace vernier::results {
 
-/// Residuals of the fit rows apart by the words of a column, or by the values of a number column that the
-/// machine does not know (at most 50): an entry a column with {column, differ_p, each: [{value, readings:
-/// [{reading, unit, n, mean, rms}]}]}; um, urad of rotations. differ_p: one-way F test of the means, the
-/// least of the kinds of readings times their number (null: too few readings). residual: mm or deg, one per
-/// observation. Throws InputError for a column that no file has. tool.
+/// Returns the residuals of the fit rows in groups: by the words of a column, or by the values of a number
+/// column that the machine does not know (at most 50). Each column has one entry {column, differ_p, each:
+/// [{value, readings: [{reading, unit, n, mean, rms}]}]}; um, urad for rotations. differ_p: one-way F test of
+/// the means, the smallest over the kinds of readings times their number (null: too few readings). residual:
+/// mm or deg, one per observation. Throws InputError for a column that no file has. tool.
 nlohmann::ordered_json group_table(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                    const std::vector<std::string>& columns);
 

@@ -66,8 +66,9 @@ nlohmann::ordered_json judge_residuals(const model::Measurement& m, const Eigen:
   const bool check = !together.empty();
   if (!check) together = together_of(m, residual, limit.rotation, false);
   if (together.empty())
-    throw text::InputError({}, limit.words,
-                           limit.rotation ? "no reading of an orientation" : "no reading of a length");
+    throw text::InputError(
+        {}, limit.words,
+        limit.rotation ? "the measurement has no orientation reading" : "no reading of a length");
   constexpr double kPrinted = 1e3;  // um, mdeg
   double shares = 0, squares = 0, worst = -1;
   std::size_t beyond = 0, worst_row = 0;

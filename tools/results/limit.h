@@ -9,7 +9,7 @@
 namespace vernier::results {
 
 /// A limit for residuals: "2u" (a multiple of the u of each row), "0.2mm", "25um", "0.025deg" (readings of
-/// orientation). "rms=1.5u" tests their rms; without rms= each row is tested.
+/// orientation). "rms=1.5u" tests the rms of the residuals; without rms= each row is tested.
 struct ResidualLimit {
   std::string words;
   bool rms = false, of_u = false, rotation = false;
@@ -19,10 +19,10 @@ struct ResidualLimit {
 /// Throws InputError for words of another form. tool.
 ResidualLimit residual_limit(const std::string& words);
 
-/// Tests the limit: {limit, of (largest or rms), role (check rows if the file has any), rows, beyond, worst:
-/// {file, line, value, limit} in um or mdeg as `unit` states, pass}. For a row the distance in space of its x
-/// y z counts (a rotation likewise), each other reading by itself. residual: mm or deg, one per observation.
-/// Throws InputError if no reading of that kind, or no u, is present. tool.
+/// Tests the residuals against the limit: {limit, of (largest or rms), role (check rows if the file has any),
+/// rows, beyond, worst: {file, line, value, limit} in um or mdeg as `unit` states, pass}. For a row with x y
+/// z, the distance in space counts (for a rotation likewise); each other reading is tested alone. residual:
+/// mm or deg, one per observation. Throws InputError if no reading of that kind, or no u, is present. tool.
 nlohmann::ordered_json judge_residuals(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                        const ResidualLimit& limit);
 

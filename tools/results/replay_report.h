@@ -15,9 +15,9 @@ struct ReplayStep {
   simulate::ReplayResult result;
 };
 
-/// The page from a measurement to a running correction: the measured errors; the residuals of a simpler model
-/// (`before`, may be absent), of the image's model and of the 1 kHz loop, on fit and on check rows
-/// (improvement_report_html).
+/// Returns the page from a measurement to a running correction: the measured errors, and the residuals on fit
+/// and on check rows (improvement_report_html). Residuals are of a simpler model (`before`, may be absent),
+/// of the image's model and of the 1 kHz loop.
 nlohmann::ordered_json replay_report(const std::optional<model::Machine>& before,
                                      const compile::LoadedImage& image, const model::Measurement& measurement,
                                      const std::vector<ReplayStep>& steps);

@@ -15,14 +15,14 @@ nlohmann::ordered_json fit_json(const fit::FitResult& result, const model::Measu
 nlohmann::ordered_json compare_json(const model::Machine& machine, const model::Measurement& measurement,
                                     const Eigen::VectorXd& residual);
 
-/// Stretches of rows of one role within each run, in the order of the file: {run, role, first_line,
-/// last_line, n_obs, rms_um}. Shows in which part of a run a model is valid (an overshoot arc, a warm-up, a
-/// late row).
+/// Returns the groups of successive rows of one role within each run, in the order of the file: {run, role,
+/// first_line, last_line, n_obs, rms_um}. Shows in which part of a run a model is valid (an overshoot arc, a
+/// warm-up, a late row).
 nlohmann::ordered_json stretches_json(const model::Measurement& measurement, const Eigen::VectorXd& residual);
 
-/// Rows inside and outside the domains of validity of learned terms: {domain, quantity, low, high (trained;
-/// null while open), least, most (of the rows), rows_outside, rows_without_effect}; and as lines for people,
-/// if rows are outside.
+/// domains_json: rows inside and outside the domains of validity of learned terms: {domain, quantity, low,
+/// high (trained; null while open), least, most (of the rows), rows_outside, rows_without_effect}.
+/// print_domains: the same for people, one line each, if rows are outside.
 nlohmann::ordered_json domains_json(const model::Machine& machine, const model::Measurement& measurement);
 void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
 

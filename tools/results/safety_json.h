@@ -7,8 +7,8 @@
 
 namespace vernier::results {
 
-/// [{"rule":…, "value":…, "limit":…, "unit":…, "ok":…, "accepted":…, "culprit":…, "reason":…}…]; value null
-/// if the file does not give it.
+/// Returns the safety sheet as JSON: [{"rule":…, "value":…, "limit":…, "unit":…, "ok":…, "accepted":…,
+/// "culprit":…, "reason":…}…]; value is null if the file does not give it.
 nlohmann::ordered_json safety_json(const safety::SafetySheet& sheet);
 
 /// The sheet for people, a line a rule.

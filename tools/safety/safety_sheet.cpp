@@ -31,8 +31,8 @@ struct RuleText {
 const RuleText& text_of(SafetyRule rule) {
   static const std::array<RuleText, kSafetyRuleCount> kTexts = {{
       {"correction", "of the working volume",
-       "a machine with errors above 1 % of its volume is not the machine of this file", 0.01},
-      {"max-correction", "of maxcorrection", "beyond it the correction would be cut off", 1},
+       "errors above 1 % of the volume show that the file describes another machine", 0.01},
+      {"max-correction", "of maxcorrection", "a larger correction is cut off at this limit", 1},
       {"cancellation", "times the correction",
        "terms ten times larger than their sum are valid only where they were measured together", 10},
       {"uncertainty", "of the correction",
@@ -48,7 +48,7 @@ const RuleText& text_of(SafetyRule rule) {
       {"outlier", "times the residual's spread", "one reading is an outlier that distorts the fit", 20},
       {"check-rows", "times the nominal machine's",
        "held-out rows must show a gain compared with no correction (95 %)", 1},
-      {"disturbed", "of what the machine shows",
+      {"disturbed", "of the errors that the machine shows",
        "an effect that is not in the model, as large as the errors of the machine, has distorted the fit",
        0.75},
       {"bound", "of the correction", "the error of an image must not exceed its correction", 1},
@@ -287,7 +287,7 @@ std::vector<SafetyRule> rules_named(const std::vector<std::string>& names) {
       std::string all;
       for (std::size_t i = 0; i < kSafetyRuleCount; ++i)
         all += (i > 0 ? ", " : "") + std::string(rule_name(static_cast<SafetyRule>(i)));
-      throw text::InputError("--accept \"" + name + "\": no such rule; there are " + all);
+      throw text::InputError("--accept \"" + name + "\": the sheet has no such rule; its rules are " + all);
     }
     rules.push_back(*rule);
   }

@@ -9,7 +9,8 @@
 
 namespace vernier::safety {
 
-/// What must hold of a machine file before its correction may run. The numbers travel in images: they stay.
+/// Rules that a machine file must meet before its correction may run. Images contain these numbers: a number
+/// never changes.
 enum class SafetyRule : std::uint8_t {
   kCorrection = 0,     // how far an axis would be moved
   kMaxCorrection = 1,  // against the axis' own limit, which would cut it off
@@ -40,26 +41,29 @@ struct SafetyFinding {
   std::string reason;     // why there is a limit
 };
 
-/// One sheet, for `compile`, `export`, `upload` and the workbench.
+/// The safety sheet of one machine, for `compile`, `export`, `upload` and the workbench.
 struct SafetySheet {
   std::vector<SafetyFinding> findings;  // one per rule, in the order of their numbers
-  /// Parameters that were added or set by hand since the fit: uncertain by as much as they were moved.
+  /// Parameters that were added or set by hand since the fit. The uncertainty of such a parameter is the size
+  /// of its change.
   std::vector<std::string> stale;
   /// Adds a rule's finding. Throws std::logic_error for a value that is not finite.
   void judge(SafetyRule rule, std::optional<double> value, std::string culprit,
              const std::vector<SafetyRule>& accepted);
   bool ok() const;
   std::uint32_t accepted_mask() const;  // bit n: rule n
-  /// One line: the rule with the largest excess, its value, limit and culprit. Empty if all rules hold.
+  /// Returns one line: the rule with the largest excess, its value, limit and culprit. The line is empty if
+  /// all rules are met.
   std::string refusal() const;
 };
 
 /// Evaluates a machine over its <volume> (else the ranges of its axes) and with its <tools>, at the
-/// references of its inputs; the uncertainty also at both ends of the measured range of each input.
-/// `accepted`: rules that the user overrides. Throws InputError for an axis without a range. tool.
+/// references of its inputs. The uncertainty is also evaluated at both ends of the measured range of each
+/// input. `accepted`: rules that the user overrides. Throws InputError for an axis without a range. tool.
 SafetySheet safety_sheet(const model::Machine& machine, const std::vector<SafetyRule>& accepted = {});
 
-/// Rules by their names. Throws InputError for one that does not exist, naming those that do.
+/// Converts names of rules to rules. Throws InputError for a rule that does not exist; the error lists the
+/// rules that exist.
 std::vector<SafetyRule> rules_named(const std::vector<std::string>& names);
 
 }  // namespace vernier::safety

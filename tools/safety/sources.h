@@ -18,7 +18,8 @@ struct Source {
   double rms_mm = 0, varying_rms_mm = 0;  // with and without the mean
 };
 
-/// Effect of each source alone, the others at nominal. Sources without effect are not listed. tool.
+/// Returns the effect of each source alone, with the other sources at nominal. Sources without effect are not
+/// listed. tool.
 std::vector<Source> error_sources(const model::Machine& machine, const model::States& states);
 
 /// True if the symbol is used anywhere in the chain (tables of an axis count).

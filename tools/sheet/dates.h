@@ -9,11 +9,12 @@ namespace vernier::sheet {
 /// written, "dd.mm.yyyy"; quoted or escaped text and text in brackets is ignored, except [h] [m] [s].
 bool is_date_format(std::string_view code);
 
-/// True if a built-in format of this number shows dates or times (section 18.8.30, all languages).
+/// True if a built-in format with this number shows dates or times (section 18.8.30, all languages).
 bool is_date_format(unsigned id);
 
-/// A serial number of days as "2026-03-04", "2026-03-04T12:30:00", below one day "12:30:00". from_1904: of a
-/// workbook whose day 0 is 1904-01-01, else 1899-12-30. Returns the number as text outside the years 1 to
+/// Converts a serial number of days to "2026-03-04", "2026-03-04T12:30:00", below one day "12:30:00".
+/// from_1904: day 0 of the workbook is 1904-01-01, else 1899-12-30. Returns the number as text outside the
+/// years 1 to
 /// 9999. tool.
 std::string date_text(double serial, bool from_1904);
 

@@ -5,14 +5,14 @@
 
 namespace vernier::sheet {
 
-/// How the bytes of a file are letters.
+/// Encoding of the letters in the bytes of a file.
 enum class Encoding { kUtf8, kUtf8Bom, kUtf16Le, kUtf16Be, kWindows1252 };
 
-/// "UTF-8", "UTF-16 (little endian)" and so on.
+/// Returns the name of an encoding: "UTF-8", "UTF-16 (little endian)" and so on.
 const char* encoding_name(Encoding encoding);
 
-/// Detects the encoding by the byte order mark. Without a mark: UTF-16 by the zero bytes beside ASCII, UTF-8
-/// if all bytes are valid UTF-8, else the code page of Western spreadsheets.
+/// Detects the encoding by the byte order mark. Without a mark the encoding is UTF-16 if there are zero bytes
+/// beside ASCII, UTF-8 if all bytes are valid UTF-8, else the code page of Western spreadsheets.
 Encoding encoding_of(std::string_view bytes);
 
 /// The text as UTF-8 without a mark. Invalid bytes become U+FFFD. tool.

@@ -216,7 +216,7 @@ SheetTable parts_of_sheet(const Sheet& sheet) {
   std::size_t first = 0;
   while (first < sheet.rows.size() && !is_data(sheet, first)) ++first;
   if (first == sheet.rows.size())
-    throw text::InputError({sheet.file, sheet.line.front()}, "", "no row of this table holds numbers");
+    throw text::InputError({sheet.file, sheet.line.front()}, "", "no row of this table contains numbers");
   table.first_data = first;
   std::size_t heading = first;
   if (heading > 0 && is_units(sheet.rows[heading - 1])) table.units_row = --heading;

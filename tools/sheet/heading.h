@@ -9,11 +9,11 @@
 
 namespace vernier::sheet {
 
-/// The unit (of the formats) of a word in any usual spelling: "µm", "micron", "(°C)", "Grad", "inch",
-/// "mm/Min.", "U/min"; brackets around it are ignored. `nullopt` if it is not a unit. tool.
+/// Converts a word in any usual spelling to a unit of the formats: "µm", "micron", "(°C)", "Grad", "inch",
+/// "mm/Min.", "U/min"; brackets around the word are ignored. `nullopt` if the word is not a unit. tool.
 std::optional<std::string> unit_meant(std::string_view word);
 
-/// A heading: its words without the unit, and the unit in it: "X [mm]", "X(mm)", "X / mm", "Temp. in °C".
+/// A heading: its words without the unit, and its unit: "X [mm]", "X(mm)", "X / mm", "Temp. in °C".
 struct Heading {
   std::string text;          // as written
   std::string name;          // without unit
@@ -22,7 +22,7 @@ struct Heading {
 };
 Heading parse_heading(std::string_view cell);
 
-/// A sheet by its parts: title lines, headings (one line or two, a line of units below), data.
+/// The parts of a sheet: title lines, headings (one line or two, a line of units below), data.
 struct SheetTable {
   std::vector<Heading> headings;  // one per column; named "1", "2" … without a heading
   bool has_headings = false;

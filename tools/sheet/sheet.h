@@ -9,7 +9,7 @@
 
 namespace vernier::sheet {
 
-/// Given properties of a table; the others are detected.
+/// Properties of a table that the user gives; other properties are detected.
 struct SheetFormat {
   char separator = 0;                 // ',' ';' '\t'; ' ' any run of blanks; 0: guessed
   std::optional<bool> decimal_comma;  // guessed where absent
@@ -18,7 +18,7 @@ struct SheetFormat {
   std::string sheet;                  // of a workbook, by name or number; empty: the first with rows
 };
 
-/// A table as its cells, with how it was read.
+/// The cells of a table, and the settings with which the table was read.
 struct Sheet {
   std::string file;
   bool workbook = false;  // xlsx
@@ -31,11 +31,11 @@ struct Sheet {
   std::vector<std::size_t> line;               // 1-based, of each row
 };
 
-/// True for a workbook (a zip with a sheet in it), by its first bytes.
+/// True if the first bytes are those of a workbook (a zip with a sheet).
 bool is_workbook(std::string_view bytes);
 
-/// Reads text or workbook. Throws InputError with file, line and word: an open quote, no rows, no such sheet,
-/// a workbook of another kind (.xls), decimal signs of both kinds. tool.
+/// Reads text or workbook. Throws InputError with file, line and word: an open quote, no rows, a sheet that
+/// does not exist, a workbook of another kind (.xls), decimal signs of both kinds. tool.
 Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetFormat& format = {});
 
 /// The separator that most lines of a text agree on. tool.

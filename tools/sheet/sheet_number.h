@@ -6,11 +6,13 @@
 
 namespace vernier::sheet {
 
-/// A cell as number text with a decimal point only ("-1234.5"): thousands ("1.234,5", "1'234.5", "1 234,5")
-/// and the long minus sign are understood. `nullopt` if it is not a number with this decimal sign. tool.
+/// Converts a cell to number text with a decimal point only ("-1234.5"). Thousands ("1.234,5", "1'234.5", "1
+/// 234,5") and the long minus sign are accepted. `nullopt` if the cell is not a number with this decimal
+/// sign. tool.
 std::optional<std::string> plain_number(std::string_view cell, bool decimal_comma);
 
-/// How a cell's signs speak: for a comma or for a point as the decimal sign. "1,234" may be either.
+/// Decimal sign that a cell shows: a comma, a point, neither, or either. The cell "1,234" may have either
+/// decimal sign.
 enum class DecimalSign { kNeither, kPoint, kComma, kEither };
 DecimalSign decimal_sign_in(std::string_view cell);
 

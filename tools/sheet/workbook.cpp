@@ -108,8 +108,9 @@ class Reader {
       WorkbookSheet sheet = cells_of(entry);
       if (!wanted.empty() || !sheet.rows.empty()) return sheet;
     }
-    if (wanted.empty()) throw text::InputError({file_, 0}, "", "no sheet of this workbook holds a cell");
-    throw text::InputError({file_, 0}, wanted, "no sheet of this name; there are " + names);
+    if (wanted.empty()) throw text::InputError({file_, 0}, "", "no sheet of this workbook contains a cell");
+    throw text::InputError({file_, 0}, wanted,
+                           "the workbook has no sheet of this name; its sheets are " + names);
   }
 
  private:
@@ -120,7 +121,7 @@ class Reader {
   }
   void read_part(const std::string& name, pugi::xml_document& document) const {
     const auto text = package_.part(name);
-    if (!text) throw text::InputError({file_, 0}, name, "this zip is no workbook: a part is missing");
+    if (!text) throw text::InputError({file_, 0}, name, "this zip file is not a workbook: a part is missing");
     load(document, *text, name);
   }
 
@@ -180,7 +181,7 @@ class Reader {
           empty += column - cells.size();
           if (empty > kMostEmpty + kMostEmptyForOne * filled)
             throw text::InputError({file_, row_number}, cell.attribute("r").value(),
-                                   "nearly all cells up to here are empty: no table");
+                                   "nearly all cells up to here are empty: the sheet contains no table");
           cells.resize(column + 1);
         }
         ++filled;

@@ -13,8 +13,9 @@ struct WorkbookSheet {
   std::vector<std::size_t> line;               // row number in the sheet
 };
 
-/// Reads the sheet of that name or number from 1 (empty: the first that holds cells). Throws InputError: no
-/// workbook, no such sheet (the others are named), a part of more than 256 MB. tool.
+/// Reads the sheet with this name or number (from 1). Empty: the first sheet that contains cells. Throws
+/// InputError: not a workbook, a sheet that does not exist (the error lists the sheets), a part of more than
+/// 256 MB. tool.
 WorkbookSheet read_workbook(const std::string& bytes, const std::string& file, const std::string& sheet);
 
 }  // namespace vernier::sheet

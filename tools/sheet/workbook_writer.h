@@ -5,14 +5,14 @@
 
 namespace vernier::sheet {
 
-/// A sheet to be written: its first row are headings that stay in sight.
+/// A sheet to be written: its first row contains headings that stay visible.
 struct SheetToWrite {
   std::string name;
   std::vector<std::vector<std::string>> rows;  // a cell that reads as a number becomes one
 };
 
-/// The bytes of a workbook (.xlsx). The same sheets give the same bytes. Throws std::runtime_error if it
-/// cannot be written. tool.
+/// The bytes of a workbook (.xlsx). The same sheets give the same bytes. Throws std::runtime_error if the
+/// workbook cannot be written. tool.
 std::string workbook_of(const std::vector<SheetToWrite>& sheets);
 
 }  // namespace vernier::sheet

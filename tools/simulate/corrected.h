@@ -8,17 +8,16 @@
 
 namespace vernier::simulate {
 
-/// Computes the correction that a board added to rows that state only the active image (column
-/// `corrected`). It uses the compiled directories in `directory` and below it (`vernier compile
-/// -o`). It evaluates the image's own fixed-point equation at the row's commanded position: full
-/// weight, its magnitude limits, no slew limit. Lags follow the rows of a run from its first one
-/// on (they need the column t). An empty directory: returns an empty function, so that
-/// read_measurement refuses such rows. The result throws InputError with file, line and word: no
-/// such image, an axis that the machine lacks, an input of the image that is empty in the row.
-/// tool.
+/// Computes the correction that a board added to rows that state only the active image (column `corrected`).
+/// The images are in the compiled directories in `directory` and below it (`vernier compile -o`). The
+/// function evaluates the fixed-point equation of the image at the commanded position of the row: full
+/// weight, the magnitude limits of the image, no slew limit. Lags follow the rows of a run from its first row
+/// on (they need the column t). If `directory` is empty, the returned function is empty, and read_measurement
+/// refuses such rows. The returned function throws InputError with file, line and word: an image that does
+/// not exist, an axis that the machine lacks, an input of the image that is empty in the row. tool.
 model::ImageCorrection corrections_of_images(const std::string& directory);
 
-/// Help text of the option `--images` that gives the directory.
+/// Help text of the option `--images`, which gives the directory of the images.
 inline constexpr const char* kImagesHelp =
     "directory with compiled images: what they added to rows that name one in `corrected`";
 

@@ -103,7 +103,8 @@ class Loop {
     for (bool asked = false; cycle_.mode() != Mode::kActive; ++result_.pre_roll) {
       if (result_.pre_roll == kMostPreRoll)
         throw text::LimitNotMet(std::string("the firmware did not become active, it is in mode ") +
-                                name_of(cycle_.mode()) + "; is maxslew too low to bring the correction in?");
+                                name_of(cycle_.mode()) +
+                                "; possible cause: maxslew is too low for the correction");
       plant_.advance();
       runner_.set_time(path_.time(0));
       const bool ask = cycle_.mode() == Mode::kReady && !asked;

@@ -28,7 +28,7 @@ class TickPath {
   virtual std::size_t count() const noexcept = 0;
   virtual void at(std::size_t tick, PlantState& state) const noexcept = 0;
   virtual TimeUs time(std::size_t tick) const noexcept = 0;
-  /// Is the correction of this tick stored in LoopResult::correction?
+  /// True if the correction of this tick is stored in LoopResult::correction.
   virtual bool kept(std::size_t tick) const noexcept = 0;
 };
 
@@ -38,7 +38,7 @@ void tell_state(const model::Machine& machine, const model::States& states, Eige
 
 /// Results of the firmware along a path.
 struct LoopResult {
-  /// Correction as the machine moves by it; per axis of the image, mm or deg, of each stored tick.
+  /// Correction that acts on the machine at each stored tick; one column per axis of the image, mm or deg.
   std::vector<model::Column> correction;
   std::size_t pre_roll = 0;     // ticks during which the machine was at rest until the firmware was Active
   std::uint64_t saturated = 0;  // ticks of the path with a correction at a limit, or beyond the converter
@@ -49,15 +49,15 @@ struct LoopResult {
   Histogram execution;  // of a tick of the path on this host
 };
 
-/// Runs the firmware cycle on the simulated machine, without sleeping. The machine is at rest at
-/// the path's first point until the firmware is Active. Then it follows `states` tick by tick
-/// (machine: the machine of these states, the image's own). At rest, its motion state is that of
-/// the first tick, as if it had arrived on the path. A path from the middle of a longer motion
-/// therefore starts without a transient. Plausibility limits of readings are off, because the path
-/// is recorded motion. Throws LimitNotMet if the firmware never becomes Active. tool.
+/// Runs the firmware cycle on the simulated machine, without sleeping. The machine is at rest at the path's
+/// first point until the firmware is Active. Then the machine follows `states` tick by tick (machine: the
+/// machine of these states, which is that of the image). At rest, the motion state of the machine is that of
+/// the first tick, as if it had arrived on the path. A path from the middle of a longer motion therefore
+/// starts without a transient. Plausibility limits of readings are off, because the path is recorded motion.
+/// Throws LimitNotMet if the firmware never becomes Active. tool.
 LoopResult run_loop(const ImageView& image, const model::Machine& machine, const model::States& states,
                     const LoopOptions& options);
-/// The same along a path that is computed during the run.
+/// Runs the firmware cycle like run_loop() with states, along a path that is computed during the run.
 LoopResult run_loop(const ImageView& image, const model::Machine& machine, const TickPath& path,
                     const LoopOptions& options);
 

@@ -75,7 +75,7 @@ model::Column of_segment(const model::Column& values, const Ticks& ticks) {
 void fill_axis(const Path& path, const model::Axis& axis, const Ticks& ticks, std::size_t i,
                model::States& states) {
   if (!path.has(axis.name))
-    throw text::InputError({path.file(), 0}, axis.name, "the path has no column of this axis");
+    throw text::InputError({path.file(), 0}, axis.name, "the path file has no column for this axis");
   using format::AxisQuantity;
   const auto name = [&](AxisQuantity quantity) { return format::axis_column(quantity, axis.name); };
   const auto numbers = [&](AxisQuantity quantity) {

@@ -6,14 +6,15 @@
 
 namespace vernier::simulate {
 
-/// Motion state of a machine at every tick. Positions and inputs are interpolated linearly. Recorded
-/// motion is interpolated too (a direction is held from its row). The rest is derived:
+/// Returns the motion state of a machine at every tick. Positions and inputs are interpolated linearly.
+/// Recorded motion is interpolated too (a direction keeps the value of its row). All other quantities are
+/// derived:
 ///   v      slope of the path's segment
 ///   a      change of segment speed at each row, over the time between the segments' middles; linear between
 ///          the rows, the first and last row as their neighbours
 ///   dir    sign of the last motion, held at rest; 0 before the first
 ///   since  travel since the last reversal; a long way before the first
-///   feed   speed over the linear axes; curv  |v x a| / |v|^3 over them
+///   feed   speed over the linear axes; curv  |v x a| / |v|^3 over the linear axes
 /// Throws InputError if an axis is missing. tool.
 model::States path_states(const Path& path, const model::Machine& machine, const Ticks& ticks);
 

@@ -53,8 +53,8 @@ model::Column Path::numbers(const std::string& name, format::Dimension dimension
     throw text::InputError(
         {csv_.file, csv_.header_line}, name + (written.empty() ? "" : "[" + written + "]"),
         dimension == format::Dimension::kNone
-            ? std::string("this column is a pure number, it has no unit")
-            : std::string("this column needs a unit like ") + format::base_unit(dimension));
+            ? std::string("this column is a pure number and must not have a unit")
+            : std::string("this column needs a unit, for example ") + format::base_unit(dimension));
   return unit.factor * read(*column) + unit.offset;
 }
 

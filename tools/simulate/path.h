@@ -21,13 +21,13 @@ class Path {
   Path(const std::string& text, const std::string& file);
 
   std::size_t rows() const { return csv_.rows.size(); }
-  /// s, strictly increasing.
+  /// Returns the times, s, strictly increasing.
   const model::Column& time() const { return time_; }
   bool has(const std::string& name) const { return index_of(name).has_value(); }
-  /// Returns a column in the base unit of its dimension. Throws InputError if it is absent, has
+  /// Returns a column in the base unit of its dimension. Throws InputError if the column is absent, has
   /// another dimension, or a cell is empty or not a number.
   model::Column numbers(const std::string& name, format::Dimension dimension) const;
-  /// Returns the column of an input in the unit that the machine declares for it.
+  /// Returns the column of an input in the unit that the machine declares for the input.
   model::Column input(const model::Input& input) const;
   /// Returns the column's cells without conversion.
   std::vector<std::string> words(const std::string& name) const;

@@ -14,16 +14,17 @@ struct ReplayResult {
   /// Reading minus the prediction of the nominal machine (with the image machine's BaseShift), per
   /// observation; mm or deg.
   Eigen::VectorXd before;
-  /// The same with the machine moved by the correction that the firmware applied at that moment.
+  /// Residual after the correction: the machine is moved by the correction that the firmware applied at that
+  /// moment.
   Eigen::VectorXd after;
   std::uint64_t ticks = 0, saturated = 0, slewing = 0, not_active = 0;
 };
 
-/// Runs the firmware along every run of a measurement, tick by tick between its rows (positions,
-/// motion and inputs linear between them, a direction held). It changes the readings by the effect
-/// of the correction on the nominal machine: reading' = reading + nominal(q + correction) -
-/// nominal(q). Column t must increase within each run. Without it every row is a pose at rest, if
-/// no term of the image depends on time. Throws InputError otherwise. tool.
+/// Runs the firmware along every run of a measurement, tick by tick between its rows (positions, motion and
+/// inputs linear between rows, a direction keeps its value). replay() changes the readings by the effect of
+/// the correction on the nominal machine: reading' = reading + nominal(q + correction) - nominal(q). Column t
+/// must increase within each run. Without column t every row is a pose at rest, if no term of the image
+/// depends on time. Throws InputError if column t is missing and a term depends on time. tool.
 ReplayResult replay(const compile::LoadedImage& image, const model::Measurement& measurement,
                     const LoopOptions& options);
 

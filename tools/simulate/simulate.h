@@ -18,9 +18,8 @@ struct SimulateResult {
   Eigen::Matrix3Xd error_before, error_after;
   double rms_before_um = 0, rms_after_um = 0;  // over ticks and x, y, z
   double max_before_um = 0, max_after_um = 0;  // largest norm
-  /// Angle between the true and the nominal direction of the tool, deg per tick. It is not
-  /// aligned, because the rotation of a rigid motion is hardly determined by the points of a short
-  /// path.
+  /// Angle between the true and the nominal direction of the tool, deg per tick. The angle is not aligned,
+  /// because the points of a short path hardly determine the rotation of a rigid motion.
   model::Column tilt_before, tilt_after;
   /// Ticks in poses where the image's correction of direction is damped (compile.h).
   std::size_t damped = 0;
@@ -33,7 +32,7 @@ struct SimulateResult {
 SimulateResult simulate(const model::Machine& truth, const compile::LoadedImage& image, const Path& path,
                         const LoopOptions& options);
 
-/// Returns the result with the keys of FORMATS and additional ones.
+/// Returns the result with the keys of FORMATS and additional keys.
 nlohmann::ordered_json simulate_json(const SimulateResult& result, const model::Machine& machine,
                                      const LoopOptions& options);
 /// Returns every tick as CSV of the project's dialect: t, axes, corrections and errors.

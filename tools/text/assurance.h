@@ -8,12 +8,12 @@
 
 namespace vernier::text {
 
-/// Returns the value if it is finite. Every comparison for a verdict reads its numbers through this function.
+/// Returns the value if it is finite. Every comparison for a verdict reads its numbers through decisive().
 /// what: name of the number, for the message. Throws std::logic_error for NaN and infinity (exit status 70:
-/// no verdict is better than a wrong one). tool.
+/// no verdict is better than a wrong verdict). tool.
 double decisive(double value, std::string_view what);
 
-/// The assurance of a result; the names are those of tools/docs/assurances.md.
+/// Kind of an assurance; the names are those of tools/docs/assurances.md.
 enum class AssuranceKind : std::uint8_t {
   kFit,
   kDiagnose,
@@ -29,8 +29,8 @@ enum class AssuranceKind : std::uint8_t {
 };
 const char* assurance_name(AssuranceKind kind);
 
-/// One rule that was tested. `value` and `limit` are finite; a yes-or-no question counts the failures (limit
-/// 0).
+/// One rule that was tested. `value` and `limit` are finite; for a yes-or-no question, value counts the
+/// failures (limit 0).
 struct AssuranceRule {
   std::string rule;  // short name with hyphens
   double value = 0, limit = 0;
@@ -38,16 +38,17 @@ struct AssuranceRule {
   bool ok = true;
 };
 
-/// The assurance of a result: it holds if every tested rule is met. Without a rule it does not hold. tool.
+/// The assurance of a result: the result is assured if every tested rule is met. An assurance without a rule
+/// does not hold. tool.
 class Assurance {
  public:
   explicit Assurance(AssuranceKind kind) : kind_(kind) {}
 
-  /// The rule is met if value <= limit. Throws std::logic_error if either is not finite.
+  /// The rule is met if value <= limit. Throws std::logic_error if value or limit is not finite.
   void at_most(std::string rule, double value, double limit, std::string text);
   /// The rule is met if value >= limit. Throws as `at_most`.
   void at_least(std::string rule, double value, double limit, std::string text);
-  /// The rule is met if `ok` is true: value is 0 then, else 1; the limit is 0.
+  /// The rule is met if `ok` is true: then value is 0, else 1; the limit is 0.
   void require(std::string rule, bool ok, std::string text);
   /// Something that the result does not cover, as a sentence.
   void not_covered(std::string text);
@@ -58,7 +59,7 @@ class Assurance {
   std::vector<AssuranceRule> because() const;
   const std::vector<std::string>& uncovered() const { return uncovered_; }
 
-  /// {"kind", "holds", "because": [{"rule", "value", "limit", "text"}], "not_covered": []}
+  /// Returns {"kind", "holds", "because": [{"rule", "value", "limit", "text"}], "not_covered": []}
   nlohmann::ordered_json json() const;
 
  private:

@@ -12,11 +12,11 @@ struct FieldRules {
   bool quotes_inside = false;  // a quote within a field that does not begin with one is a letter (5")
 };
 
-/// The fields of one line, without blanks around them. A field may be in double quotes, in which a doubled
-/// quote is one quote. Throws InputError. tool.
+/// Returns the fields of one line, without blanks around them. A field may be in double quotes; a doubled
+/// quote in it is one quote. Throws InputError. tool.
 std::vector<std::string> fields_of(const std::string& line, const FieldRules& rules, const Place& place);
 
-/// A field as it is written: in quotes if it contains a character with a meaning in CSV. tool.
+/// Returns a field as CSV: in quotes if the text contains a character with a meaning in CSV. tool.
 std::string csv_cell(const std::string& text);
 
 }  // namespace vernier::text

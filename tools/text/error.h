@@ -12,8 +12,8 @@ struct Place {
   std::size_t line = 0;
 };
 
-/// Invalid input of the user: file, line and the offending word, in one message. Commands convert
-/// it into exit status 1. Message form: `machine.xml:12: "alhpa": unknown name`. tool.
+/// Invalid input of the user: file, line and the offending word, in one message. Commands convert an
+/// InputError into exit status 1. Message form: `machine.xml:12: "alhpa": unknown name`. tool.
 class InputError : public std::runtime_error {
  public:
   InputError(const Place& place, const std::string& word, const std::string& what);

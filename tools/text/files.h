@@ -4,20 +4,20 @@
 
 namespace vernier::text {
 
-/// Writes `text` to `path` as write_output (hal/support/output_file.h) does: an ordinary file as a whole or
-/// not at all, a device or pipe by writing to it, links followed. Throws InputError with the path if that
+/// Writes `text` to `path` like write_output (hal/support/output_file.h): an ordinary file as a whole or not
+/// at all; a device or pipe by writing to it; links are followed. Throws InputError with the path if that
 /// fails. tool.
 void write_file(const std::string& path, const std::string& text);
 
-/// Makes the folder `path` for outputs, with those above it; an existing folder is accepted. Throws
+/// Makes the folder `path` for outputs and the folders above it; an existing folder is accepted. Throws
 /// InputError with the path if that fails. tool.
 void make_folder(const std::string& path);
 
-/// Tests before a long job whether write_file(path) can write: no output is then incomplete at its end.
-/// Throws InputError as write_file does. tool.
+/// Tests before a long job whether write_file(path) can write. A job then does not fail at its end because
+/// its output cannot be written. Throws InputError as write_file does. tool.
 void require_place(const std::string& path);
 
-/// The whole of a file. Throws InputError if it cannot be read. tool.
+/// The whole of a file. Throws InputError if the file cannot be read. tool.
 std::string read_file(const std::string& path);
 
 }  // namespace vernier::text

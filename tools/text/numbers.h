@@ -13,8 +13,8 @@ namespace vernier::text {
 /// the locale.
 std::optional<double> parse_number(std::string_view text);
 
-/// A count ("0", "12") that fills the whole of `text`; `nullopt` for any other text and for counts that are
-/// too large.
+/// Reads a count ("0", "12") that fills the whole of `text`; `nullopt` for any other text and for counts that
+/// are too large.
 std::optional<std::size_t> parse_count(std::string_view text);
 
 /// True for a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII).
@@ -23,7 +23,7 @@ bool is_name(std::string_view text);
 /// Sixteen hexadecimal digits, as fingerprints of images are shown.
 std::string fingerprint_text(std::uint64_t fingerprint);
 
-/// The shortest decimal that reads back to the same double.
+/// Returns the shortest decimal text that reads back to the same double.
 std::string number_text(double value);
 
 }  // namespace vernier::text

@@ -10,33 +10,35 @@
 
 namespace vernier::text {
 
-/// End of a program, and its output.
+/// Exit status of a program, and its output.
 struct ProcessResult {
   int exit = -1;  // its exit status; 128 + signal if a signal ended it
   std::string out, err;
 };
 
-/// A program while it runs, so that another thread can end it.
+/// A running program, so that another thread can end it.
 struct RunningProcess {
   std::atomic<pid_t> group{0};  // its process group; 0 before and after
   std::atomic<bool> cancelled{false};
-  /// Ends it immediately, or as soon as it starts.
+  /// Ends the program immediately, or as soon as it starts.
   void cancel();
 };
 
-/// Runs `program` with `arguments` in `directory` and waits for its end. It has no standard input, a separate
-/// process group, and ends together with this program. `on_line`: called with each line of its standard
-/// error. Output beyond `most_bytes` ends it with exit 70. Throws InputError if it cannot be started. tool.
+/// Runs `program` with `arguments` in `directory` and waits for its end. The program has no standard input
+/// and a separate process group, and ends together with this program. `on_line`: called with each line of the
+/// program's standard error. Output beyond `most_bytes` ends the program with exit 70. Throws InputError if
+/// the program cannot be started. tool.
 ProcessResult run_process(const std::string& program, const std::vector<std::string>& arguments,
                           const std::string& directory, std::size_t most_bytes,
                           const std::function<void(std::string_view)>& on_line, RunningProcess& running);
 
-/// What becomes a program's standard input, output and error.
+/// Files that become a program's standard input, output and error.
 struct StandardStreams {
   int in, out, error;
 };
-/// Starts a program in a separate process group; it ends together with the thread that started it. Returns
-/// its process number; -1 with errno set. All files except `streams` are closed in it. tool.
+/// Starts a program in a separate process group; the program ends together with the thread that started it.
+/// Returns the process number of the program; -1 with errno set. All files except `streams` are closed in the
+/// program. tool.
 pid_t start_process(const std::string& program, const std::vector<std::string>& arguments,
                     const std::string& directory, const StandardStreams& streams);
 

@@ -7,11 +7,12 @@
 
 namespace vernier::text {
 
-/// How many letters must be changed, put in, taken out or swapped with a neighbour to make one word the other
-/// (Damerau and Levenshtein, each letter touched once); capitals count as their small letters. tool.
+/// Returns the distance of two words (Damerau and Levenshtein): how many letters must be changed, inserted,
+/// removed or swapped with a neighbour, each letter once. Capitals count as small letters. tool.
 std::size_t letters_apart(std::string_view a, std::string_view b);
 
-/// The word that was probably meant: the nearest of `known`, if it is near enough for its length. tool.
+/// Returns the word of `known` that was probably meant: the nearest word, if it is near enough for its
+/// length. tool.
 std::optional<std::string> word_meant(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace vernier::text

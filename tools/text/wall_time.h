@@ -6,7 +6,7 @@
 
 namespace vernier::text {
 
-/// Microseconds and milliseconds since 1970 UTC, by this computer's clock.
+/// now_us: microseconds since 1970 UTC by the clock of this computer; now_ms: milliseconds.
 std::int64_t now_us();
 std::int64_t now_ms();
 
@@ -14,8 +14,8 @@ inline constexpr double kUsADay = 86'400e6;
 
 /// "2026-11-23T13:05:53Z" of a time in us since 1970.
 std::string utc_text(std::int64_t time_us);
-/// The reverse conversion, to us; "2026-11-23" is midnight, the Z may be missing. `nullopt` if it is not a
-/// time, or if the calendar has no such day (2026-02-30).
+/// parse_utc converts such a text to us; "2026-11-23" is midnight, the Z may be missing. `nullopt` if the
+/// text is not a time, or if the calendar has no such day (2026-02-30).
 std::optional<std::int64_t> parse_utc(const std::string& text);
 
 }  // namespace vernier::text

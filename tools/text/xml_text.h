@@ -15,8 +15,8 @@ struct AttributeSpan {
   std::size_t value_size = 0;
 };
 
-/// The attributes of the start tag whose element name begins at `offset`. The text must be well-formed there
-/// (a parser has accepted it). tool.
+/// Returns the attributes of the start tag whose element name begins at `offset`. The text must be
+/// well-formed at `offset` (a parser has accepted it). tool.
 std::vector<AttributeSpan> attribute_spans(std::string_view text, std::size_t offset);
 
 /// Offset just after the last attribute (or the name) of that start tag: place for another attribute.
@@ -25,7 +25,7 @@ std::size_t end_of_attributes(std::string_view text, std::size_t offset);
 /// 1-based line of an offset.
 std::size_t line_of(std::string_view text, std::size_t offset);
 
-/// True for the same letters, ignoring case (ASCII).
+/// True if both texts have the same letters, ignoring case (ASCII).
 bool equal_no_case(std::string_view a, std::string_view b);
 
 /// One replacement in a text: `size` characters at `at` become `text`.
@@ -33,7 +33,7 @@ struct TextEdit {
   std::size_t at = 0, size = 0;
   std::string text;
 };
-/// Applies edits that do not overlap, given in any order (those at one place in the order given).
+/// Applies edits that do not overlap, given in any order (edits at one place in the order given).
 std::string apply_edits(const std::string& text, std::vector<TextEdit> edits);
 
 /// A number or text, escaped for use between double quotes in an attribute.

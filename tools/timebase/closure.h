@@ -15,10 +15,10 @@ struct Closure {
       1;  // probability that the end of a correct record is so similar to its start, for some number of rows
 };
 
-/// Do the last rows of a run repeat its first rows? `points`: the path, which must close (the pose
-/// after the last row is the first); `series`: rows x channels of one unit, without gaps. Returns
-/// nullopt if the path does not close. If the start is also similar to other parts of the run (a
-/// periodic error), there is no finding. tool.
+/// Tests whether the last rows of a run repeat its first rows. `points`: the path, which must close (the pose
+/// after the last row is the first pose); `series`: rows x channels of one unit, without gaps. Returns
+/// nullopt if the path does not close. If the start is also similar to other parts of the run (a periodic
+/// error), examine_closure reports no finding. tool.
 std::optional<Closure> examine_closure(const Eigen::MatrixXd& points, const Eigen::MatrixXd& series);
 
 }  // namespace vernier::timebase

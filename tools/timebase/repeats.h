@@ -36,7 +36,7 @@ struct RepeatOptions {
 std::vector<RepeatBlock> compare_repeats(const Eigen::MatrixXd& series, const Eigen::VectorXd& implied_lag,
                                          const RepeatOptions& options = {});
 
-/// Returns blocks with a reliable lag, shifted or not: each agrees with a neighbour within the
+/// Returns the blocks with a reliable lag, shifted or not: each agrees with a neighbouring block within the
 /// tolerance (the lag of an isolated block may be due to chance). tool.
 std::vector<std::size_t> trusted_blocks(const std::vector<RepeatBlock>& blocks,
                                         const RepeatOptions& options = {});
@@ -51,32 +51,31 @@ struct RepeatLevel {
   double p_value = 1;  // the same, and so much better than at the implied lag
 };
 
-/// Returns levels in order of their rows. Their probability combines those of the blocks
+/// Returns the levels in order of their rows. The probability of a level combines those of its blocks
 /// (Stouffer), multiplied by the number of lags and blocks that were available. tool.
 std::vector<RepeatLevel> repeat_levels(const std::vector<RepeatBlock>& blocks,
                                        const RepeatOptions& options = {});
 
-/// A jump of the best lag between two reliable blocks: rows are missing from one of the two passes
-/// there.
+/// A jump of the best lag between two reliable blocks: rows are missing from one of the two passes at the
+/// jump.
 struct LagJump {
   std::size_t row = 0;           // of the earlier pass: the first without the old lag
   double row_uncertainty = 0;    // rows, half of the range within which both lags fit nearly as well
   double before = 0, after = 0;  // lags
   double uncertainty = 0;        // rows, standard, of after - before
 
-  /// Number of missing rows: from the later pass if the lag decreases, from the earlier pass if it
-  /// increases.
+  /// Returns the number of missing rows: from the later pass if the lag decreases, from the earlier pass if
+  /// it increases.
   double missing() const { return after < before ? before - after : after - before; }
   bool in_later_pass() const { return after < before; }
-  /// Row of the series before which they are missing.
+  /// Returns the row of the series before which rows are missing.
   std::size_t missing_before() const {
     return in_later_pass() ? row + static_cast<std::size_t>(std::lround(before)) : row;
   }
 };
 
-/// Returns jumps larger than the tolerance. Each is at the row that minimises the sum of squares
-/// on both sides. Rows of the earlier pass whose repetition is missing count on neither side.
-/// tool.
+/// Returns jumps larger than the tolerance. Each jump is at the row that minimises the sum of squares on both
+/// sides. Rows of the earlier pass whose repetition is missing count on neither side. tool.
 std::vector<LagJump> lag_jumps(const Eigen::MatrixXd& series, const std::vector<RepeatBlock>& blocks,
                                const RepeatOptions& options = {});
 

@@ -9,14 +9,14 @@
 
 namespace vernier::timebase {
 
-/// Returns commanded axis positions of some rows as points: rows x axes, each axis in shares of
-/// its range over those rows. An axis without motion is excluded. tool.
+/// Returns the commanded axis positions of some rows as points: rows x axes, each axis in shares of its range
+/// over those rows. An axis without motion is excluded. tool.
 Eigen::MatrixXd path_points(const model::Measurement& m, const std::vector<std::size_t>& rows);
 
-/// Returns for each point the number of rows after which the path passes it again in the same
-/// direction, interpolated between two rows by projection. NaN if it does not return. A pause at a
-/// point is not a return. Poses that were set one by one (steps of a tenth of the extent) are not
-/// a path. `points`: from path_points, in time order. tool.
+/// Returns for each point the number of rows after which the path passes the point again in the same
+/// direction, interpolated between two rows by projection. The result is NaN if the path does not return to
+/// the point. A pause at a point is not a return. Poses that were set one by one (steps of a tenth of the
+/// extent) are not a path. `points`: from path_points, in time order. tool.
 Eigen::VectorXd revisit_lags(const Eigen::MatrixXd& points);
 
 /// Two paths over the same points: position on the second = offset + rate * row of the first
@@ -26,8 +26,8 @@ struct PathMap {
   double share = 0;             // of the first path's rows that lie on this line within two rows
 };
 
-/// Returns the map from one path to another by their positions; nullopt if less than 70 % of the
-/// first is on one line. Both: points of the same axes, in the same unit. tool.
+/// Returns the map from one path to another by their positions; nullopt if less than 70 % of the first path
+/// is on one line. first, second: points of the same axes, in the same unit. tool.
 std::optional<PathMap> map_paths(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second);
 
 }  // namespace vernier::timebase

@@ -10,24 +10,24 @@ namespace vernier::timebase {
 /// cell is NaN. tool.
 std::optional<Eigen::MatrixXd> stretch(const Eigen::MatrixXd& series, Eigen::Index first, Eigen::Index rows);
 
-/// Concordance of two blocks of one size, -1..1; 1 only if they are equal. Source: Lin, Biometrics
-/// 45 (1989). tool.
+/// Returns the concordance of two blocks of one size, -1..1; 1 only if the blocks are equal. Source: Lin,
+/// Biometrics 45 (1989). tool.
 double concordance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Effective number of independent rows if a and b are correlated (Bartlett). It is conservative:
-/// it uses absolute products, so that an oscillation does not increase it. tool.
+/// Effective number of independent rows if a and b are correlated (Bartlett). The number is conservative: it
+/// uses absolute products, so that an oscillation does not increase it. tool.
 double effective_rows(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Probability that unrelated blocks with this number of independent rows agree so well (Fisher's
+/// Returns the probability that unrelated blocks with this number of independent rows agree so well (Fisher's
 /// z). tool.
 double chance_of_agreement(double correlation, double rows);
 
-/// Probability that noise alone makes one rms so much larger than the other (Fisher's z of a ratio
-/// of variances). tool.
+/// Returns the probability that noise alone makes one rms so much larger than the other (Fisher's z of a
+/// ratio of variances). tool.
 double chance_of_ratio(double larger, double smaller, double rows);
 
-/// Probability that a standard normal number exceeds z, and the z that it exceeds with probability
-/// p < 0.5. tool.
+/// upper_tail: probability that a standard normal number exceeds z. The function after it: the z that a
+/// standard normal number exceeds with probability p < 0.5. tool.
 double upper_tail(double z);
 double upper_quantile(double p);
 

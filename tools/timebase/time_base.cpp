@@ -214,10 +214,9 @@ void conclude(const model::Measurement& m, const TimeBaseOptions& options, TimeB
   finding.found = finding.p_value < options.significance;
   if (finding.found) return tell(m, finding);
   finding.gaps.clear();
-  finding.why =
-      finding.blocks.empty() && finding.matches.empty() && finding.closures.empty()
-          ? "No pose comes a second time on a path that can be compared: the time base cannot be tested."
-          : "Nothing repeats elsewhere than the positions say.";
+  finding.why = finding.blocks.empty() && finding.matches.empty() && finding.closures.empty()
+                    ? "No path passes a pose twice in a comparable way: the time base cannot be tested."
+                    : "All repetitions agree with the positions.";
 }
 
 }  // namespace

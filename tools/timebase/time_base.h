@@ -12,7 +12,7 @@
 
 namespace vernier::timebase {
 
-/// A block of a run and its repetition in the same run. Rows are those of the measurement.
+/// A block of a run and its repetition in the same run. Row numbers are those of the measurement.
 struct TimeBlock {
   std::size_t run = 0;  // index into States::run_names
   std::size_t first_row = 0, last_row = 0;
@@ -42,7 +42,7 @@ struct TimeClosure {
   Closure closure;
 };
 
-/// Do positions and readings of a measurement belong to the same times?
+/// Result of the test whether positions and readings of a measurement belong to the same times.
 struct TimeBaseFinding {
   bool found = false;
   std::vector<TimeBlock> blocks;      // all blocks that could be compared
@@ -55,22 +55,22 @@ struct TimeBaseFinding {
 
 struct TimeBaseOptions {
   double significance = 1e-3;
-  /// Check rows are included. Nothing is fitted or selected with them, and the clock belongs to
-  /// the whole record.
+  /// If true, check rows are included. Nothing is fitted or selected with them, and the clock belongs to the
+  /// whole record.
   bool with_check_rows = true;
   std::size_t most_pairs = 12;  // largest number of compared pairs of runs
 };
 
-/// Compares repetitions. Within a run: the residual of a later pass over the same poses with that
-/// of the earlier one, block by block, over the lag in rows. Between runs over the same path: the
-/// residuals along it. Of a closed path: its end with its start. A time base error is found if the
-/// residuals agree at another lag, significantly better than by chance and than at the lag of the
-/// positions. This must occur in two neighbouring blocks at least, or row by row between runs
-/// whose positions give another rate, or before the path closes. The probabilities of the last two
-/// are combined (the last is no proof alone). A residual that is zero, white, smooth, periodic or
-/// that really repeats (hysteresis, cyclic errors, drift) gives no finding. Poses that occur only
-/// once, or a second pass at another speed, give no information. `residual`: measured - model per
-/// observation, mm. Lengths only, rotations are not tested. tool.
+/// Compares repetitions. Examines repetitions within a run: the residual of a later pass over the same poses
+/// with that of the earlier pass, block by block, over the lag in rows. Examines repetitions between runs
+/// over the same path: their residuals along the path. Examines closed paths: the end of the path with its
+/// start. A time base error is found if the residuals agree at another lag, significantly better than by
+/// chance and than at the lag of the positions. This agreement must occur in two neighbouring blocks at
+/// least, or row by row between runs whose positions give another rate, or before the path closes. The
+/// probabilities of the last two cases are combined (the last case alone is no proof). A residual that is
+/// zero, white, smooth, periodic or that really repeats (hysteresis, cyclic errors, drift) gives no finding.
+/// Poses that occur only once, or a second pass at another speed, give no information. `residual`: measured -
+/// model per observation, mm. Lengths only, rotations are not tested. tool.
 TimeBaseFinding examine_time_base(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                   const TimeBaseOptions& options = {});
 

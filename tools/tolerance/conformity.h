@@ -15,15 +15,16 @@ namespace vernier::tolerance {
 struct ConformityOptions {
   PartFrame frame = PartFrame::kPart;
   std::uint64_t seed = 1;
-  /// Trials go on, ten thousand at a time, until twice the standard deviation of their averages of an
-  /// interval's ends is below this share of its standard uncertainty: one digit of two (JCGM 101:2008, 7.9).
+  /// Trials continue, ten thousand at a time, until their result is stable. Stable: twice the standard
+  /// deviation of the averaged interval ends is below this share of the standard uncertainty (one digit of
+  /// two: JCGM 101:2008, 7.9).
   double tolerance = 0.05;
   std::size_t most_trials = 500000;
   /// Probability from which a tolerance counts as kept, or as not kept: the default conformance probability
   /// limit of ISO 14253-1:2017.
   double confidence = 0.95;
   /// Standard deviation of the independent error of each point, mm: repeatability, tool, cutting. The machine
-  /// file does not contain it.
+  /// file does not contain process_mm.
   double process_mm = 0;
   bool with_rotary = false;              // the correction moves all axes
   std::function<void(double)> progress;  // share done
@@ -36,8 +37,8 @@ const char* verdict_words(PartVerdict verdict);
 struct Expectation {
   double value = 0;          // of the machine as it was fitted
   double mean = 0, std = 0;  // over the trials
-  /// 95 % of the trials are within the interval, as many below as above. If the model has a discrepancy: each
-  /// end is that of the wavelength with the widest interval.
+  /// 95 % of the trials are within the interval, as many below as above. If the model has a discrepancy, each
+  /// end of the interval is that of the wavelength with the widest interval.
   double low = 0, high = 0;
   double u95 = 0;  // half of that interval
   /// Probability of conformity; with a discrepancy, that of the wavelength that is least favourable to the
@@ -49,11 +50,11 @@ struct Expectation {
 /// Contribution of a source to a characteristic.
 struct SourceShare {
   std::string name, effect;
-  /// By how much the uncorrected value falls when the source is switched off, mm; and the probability that no
-  /// other source's fall is larger.
+  /// fall_mm: decrease of the uncorrected value when the source is switched off, mm. largest: probability
+  /// that the decrease by no other source is larger.
   double fall_mm = 0, largest = 0;
-  /// Part of the variance: covariance of the source's contribution with the whole. Below 0 if the source and
-  /// others are correlated.
+  /// Part of the variance: covariance of the source's contribution with the whole. A value below 0 means that
+  /// the source and other sources are correlated.
   double variance = 0;
   double open = 0;  // part of the variance that is this source's and that no reading bears on
 };
@@ -86,9 +87,9 @@ struct PartConformity {
   std::vector<std::string> outside;        // "Z -350..-300": ranges of the part that were not measured
 };
 
-/// Monte Carlo over the covariance that the last fit left in the machine file (JCGM 101:2008): distribution
-/// of every characteristic of the part, with and without the machine's correction. Throws InputError if the
-/// machine was never fitted. tool.
+/// Computes the distribution of every characteristic of the part, with and without the machine's correction.
+/// Method: Monte Carlo over the covariance of the last fit in the machine file (JCGM 101:2008). Throws
+/// InputError if the machine was never fitted. tool.
 PartConformity part_conformity(const model::Machine& machine, const PlacedPart& part, const std::string& file,
                                const std::vector<effects::Effect>& catalogue,
                                const ConformityOptions& options = {});

@@ -15,7 +15,7 @@ enum class PartFrame : std::uint8_t {
   kMachine,  // the machine's own coordinates
 };
 
-/// How a characteristic follows from numbers that are linear in the deviations of the part's points.
+/// Computes a characteristic from numbers that are linear in the deviations of the part's points.
 struct CharacteristicValue {
   std::size_t feature = 0;
   PartCharacteristic what = PartCharacteristic::kPosition;
@@ -27,7 +27,7 @@ struct CharacteristicValue {
   double of(const Eigen::Ref<const Eigen::VectorXd>& rows) const;
 };
 
-/// All characteristics of a part as numbers of its points' deviations.
+/// All characteristics of a part as functions of the deviations of its points.
 struct PartValues {
   std::vector<CharacteristicValue> values;
   Eigen::MatrixXd map;  // rows x 3 N: of deviations of the tool point, workpiece coordinates, mm

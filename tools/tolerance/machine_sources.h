@@ -22,9 +22,9 @@ struct MachineSource {
   std::vector<std::size_t> scales;                           // axes with a scale factor
 };
 
-/// Returns the free or non-nominal errors of a machine. A static gets the name of its term. The
-/// forms of the catalogue are searched in order for its quantities, its functions and the degree
-/// of freedom on which it acts. tool.
+/// Returns the free or non-nominal errors of a machine. A static gets the name of its term. machine_sources
+/// searches the forms of the catalogue in order for the term's quantities, its functions and the degree of
+/// freedom on which it acts. tool.
 std::vector<MachineSource> machine_sources(const model::Machine& machine,
                                            const model::ParameterSet& parameters,
                                            const std::vector<effects::Effect>& catalogue);

@@ -74,7 +74,7 @@ class PartSheet {
       values[static_cast<Eigen::Index>(i)] = one.value_or(0);
     }
     if (given == 0) return std::nullopt;
-    if (given < 3) throw text::InputError(place(row), names[0], "all three of them, or none");
+    if (given < 3) throw text::InputError(place(row), names[0], "give all three of these columns, or none");
     return values;
   }
 
@@ -168,7 +168,7 @@ PartDrawing parse_part(const std::string& text, const std::string& file) {
   for (std::size_t row = 0; row < sheet.rows(); ++row) {
     part.features.push_back(read_feature(sheet, row));
     if (!names.insert(part.features.back().name).second)
-      throw text::InputError(sheet.place(row), part.features.back().name, "two features of one name");
+      throw text::InputError(sheet.place(row), part.features.back().name, "two features have this name");
   }
   return part;
 }

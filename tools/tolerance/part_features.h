@@ -17,7 +17,7 @@ enum class PartFeatureKind : std::uint8_t {
 };
 const char* kind_name(PartFeatureKind kind);
 
-/// What of a feature may be out of tolerance.
+/// Property of a feature that may be out of tolerance.
 enum class PartCharacteristic : std::uint8_t {
   kPosition,  // width or diameter of the zone about its true place that it takes up, ISO 1101
   kSize,      // actual - nominal diameter
@@ -40,7 +40,7 @@ struct PartFeature {
   std::size_t line = 0;
 };
 
-/// A part as its drawing has it.
+/// A part with its features, as on its drawing.
 struct PartDrawing {
   std::string file;
   std::vector<PartFeature> features;
@@ -48,11 +48,11 @@ struct PartDrawing {
 
 /// Reads a part from CSV. Columns: feature, kind (point plane cylinder), x y z, and if needed nx ny nz, i j k
 /// (direction of the tool), diameter, length, width, position, size (plus and minus) or size_low and
-/// size_high, form, datum (yes). A unit is in the header; mm without one. Throws InputError with file, line
-/// and word. tool.
+/// size_high, form, datum (yes). The header gives the unit of a column; without a unit it is mm. Throws
+/// InputError with file, line and word. tool.
 PartDrawing parse_part(const std::string& text, const std::string& file);
 
-/// The part moved: turned about the workpiece's z by `turn_deg`, then shifted, mm. tool.
+/// Returns the part after a motion: turned about the workpiece's z by `turn_deg`, then shifted, mm. tool.
 PartDrawing placed_at(const PartDrawing& part, const Eigen::Vector3d& shift_mm, double turn_deg);
 
 }  // namespace vernier::tolerance

@@ -9,12 +9,12 @@
 
 namespace vernier::tolerance {
 
-/// A feature as the machine cuts or touches it.
+/// A feature at the positions where the machine cuts or touches it.
 struct PlacedFeature {
   PartFeature feature;
   std::size_t first = 0, count = 0;  // its states
-  /// The evaluated direction at each point: surface normals; for a path its tangent, along which it is not
-  /// evaluated; 0: every direction.
+  /// The evaluated direction at each point: surface normals; for a path its tangent, along which the path is
+  /// not evaluated; 0: every direction.
   Eigen::Matrix3Xd direction;
 };
 
@@ -25,10 +25,10 @@ struct PlacedPart {
   Eigen::Matrix3Xd point;  // nominal, workpiece coordinates, mm
 };
 
-/// Points spread over every feature (a cylinder's 12 on each of three circles, a plane's 5 x 5) and the axis
-/// positions at which the nominal chain has its tool there. Directions of motion are as the points follow one
-/// another, a circle counter-clockwise about its axis. `at`: inputs, and the positions of axes that are not
-/// needed. Throws LimitNotMet if a point is out of reach, naming the line. tool.
+/// Distributes points over every feature (a cylinder: 12 on each of three circles, a plane: 5 x 5) and
+/// computes the axis positions at which the nominal chain has its tool at each point. Directions of motion
+/// are those from point to point, a circle counter-clockwise about its axis. `at`: inputs, and the positions
+/// of axes that are not needed. Throws LimitNotMet if a point is out of reach, naming the line. tool.
 PlacedPart place_part(const model::Machine& machine, const PartDrawing& part, const model::States& at);
 
 }  // namespace vernier::tolerance

@@ -11,14 +11,14 @@ namespace vernier::tolerance {
 
 struct ProgramOptions {
   std::vector<double> zero;  // machine position of the program's zero, by axis
-  /// For every feature that the program cuts.
+  /// Tolerances for every feature that the program cuts.
   std::optional<double> position_mm, form_mm;
   std::optional<std::array<double, 2>> size_mm;
 };
 
-/// Features that a part program cuts (RS-274, as tools/offline reads it): whole circles as circles, other
-/// moves between two rapid moves as a path, which is not evaluated along its direction. `at`, `known`:
-/// positions of the axes before the first block. Throws InputError with file, line and word. tool.
+/// Returns the features that a part program cuts (RS-274, as tools/offline reads it). Whole circles are
+/// circles; other moves between two rapid moves are a path, which is not evaluated along its direction. `at`,
+/// `known`: positions of the axes before the first block. Throws InputError with file, line and word. tool.
 PlacedPart program_part(const model::Machine& machine, const std::string& text, const std::string& file,
                         const model::States& at, const std::vector<char>& known,
                         const ProgramOptions& options);

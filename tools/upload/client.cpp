@@ -115,12 +115,12 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
       case LinkStatus::kNotAllowed:
         throw text::LimitNotMet("the board refuses: not over this link (access in its board file)");
       case LinkStatus::kUnsigned:
-        throw text::LimitNotMet("the board refuses: it wants this signed (--key, or VERNIER_KEY)");
+        throw text::LimitNotMet("the board refuses: the request must be signed (--key, or VERNIER_KEY)");
       case LinkStatus::kBadSignature:
-        throw text::LimitNotMet("the board refuses: it does not trust this key with that");
+        throw text::LimitNotMet("the board refuses: the key has no right for this request");
       case LinkStatus::kBadLength:
       case LinkStatus::kBadValue:
-        throw text::InputError("the board finds the request senseless");
+        throw text::InputError("the board refuses the request: it has a wrong form");
     }
     throw text::InputError("the board's reply has an unknown status");
   }
@@ -204,11 +204,11 @@ void Client::read_hello() {
   const auto version = get<std::uint16_t>(hello, 0);
   if (version != kLinkVersion)
     throw text::InputError(
-        fmt::format("the board speaks version {} of the link, this tool {}", version, kLinkVersion));
+        fmt::format("the board uses version {} of the link, this tool version {}", version, kLinkVersion));
   info_.hello = get<HelloReply>(hello, 0);
   info_.board = shown_name(info_.hello.board, sizeof(info_.hello.board));
   if (info_.hello.axes > kMaxAxes || info_.hello.inputs > kMaxInputs)
-    throw text::InputError("the board claims more axes or inputs than there can be");
+    throw text::InputError("the board reports more axes or inputs than possible");
 }
 
 std::size_t Client::tick_bytes() const {
@@ -316,7 +316,8 @@ HealthRecord Client::health() {
   for (std::size_t have = 0; have < kCounters;) {
     const auto reply = ask(LinkOp::kHealth, {static_cast<std::uint8_t>(have)});
     if (get<std::uint8_t>(reply, 0) != kCounters || reply.size() < 9)
-      throw text::InputError("the board counts other things than this tool knows");
+      throw text::InputError(
+          "the board has other counters than this tool knows; update the tool or the board");
     for (std::size_t at = 1; at + 8 <= reply.size() && have < kCounters; at += 8)
       words[have++] = get<std::uint64_t>(reply, at);
   }
@@ -353,7 +354,7 @@ std::vector<BoardShare> Client::shares() {
          at += sizeof(LinkShare)) {
       const auto share = get<LinkShare>(reply, at);
       if (share.axis >= info_.axes.size())
-        throw text::InputError("the board names an axis that it does not have");
+        throw text::InputError("the board reports a value for an axis that it does not have");
       const double counts = info_.axes[share.axis].rotary ? kCountsPerDeg : kNmPerMm;
       shares.push_back({share.axis, share_names_[shares.size()], share.correction / counts});
     }
@@ -451,7 +452,7 @@ void Client::workpiece(const std::array<double, 3>& origin_mm, double angle_deg)
       throw text::InputError("the position of the workpiece is beyond 100 km");
     frame.origin[i] = PositionNm(std::llround(origin_mm[i] * kNmPerMm));
   }
-  if (!std::isfinite(angle_deg)) throw text::InputError("the angle of the workpiece is no number");
+  if (!std::isfinite(angle_deg)) throw text::InputError("the angle of the workpiece is not a number");
   frame.cosine =
       static_cast<std::int32_t>(std::lround(std::cos(angle_deg * maths::kRadPerDeg) * WorkpieceFrame::kOne));
   frame.sine =

@@ -18,7 +18,7 @@
 
 namespace vernier::upload {
 
-/// An axis or input as the board names it.
+/// An axis or input with the name that the board gives.
 struct BoardSignal {
   std::string name;
   bool rotary = false, rollover = false;
@@ -45,7 +45,7 @@ struct BoardTick {
   std::vector<int> sense;
 };
 
-/// Ticks that were asked for, and how many before them had been overwritten.
+/// The requested ticks, and the number of earlier ticks that were overwritten.
 struct BoardHistory {
   std::vector<BoardTick> ticks;
   std::uint64_t next = 0;
@@ -64,11 +64,13 @@ struct BoardState {
   };
   std::vector<Axis> axes;
 };
-/// "confirmed", "on trial", "lost" or "none"; "at the image's limit, on its way" or empty.
+/// Returns "confirmed", "on trial", "lost" or "none". For limits of an axis: "at the image's limit, on its
+/// way" or empty.
 const char* name_of(ImageState image);
 std::string limits_text(std::uint8_t limits);
 
-/// What one effect or table adds to the correction of an axis just now, before limits and ramps; mm or deg.
+/// Present contribution of one effect or table to the correction of an axis, before limits and ramps; mm or
+/// deg.
 struct BoardShare {
   std::size_t axis = 0;
   std::string name;
@@ -92,7 +94,7 @@ struct BoardTouch {
   std::optional<std::array<double, 3>> workpiece;          // X, Y, Z, mm
 };
 
-/// Touches that were asked for, and how many before them had been overwritten.
+/// The requested touches, and the number of earlier touches that were overwritten.
 struct BoardTouches {
   std::vector<BoardTouch> touches;
   std::uint64_t next = 0;
@@ -106,20 +108,22 @@ struct BoardClaim {
   bool empty() const { return name.empty() && !key; }
 };
 
-/// Communicates with a board. Every call throws InputError without a valid reply, and LimitNotMet with the
-/// board's reason if the board refuses. tool.
+/// Communicates with a board. Every call of Client throws InputError without a valid reply, and LimitNotMet
+/// with the board's reason if the board refuses. tool.
 class Client {
  public:
   explicit Client(std::unique_ptr<Transport> transport);
-  /// Requests that must be signed are signed with this key from now on; without a key no request is signed.
+  /// From now on, requests that must be signed are signed with this key; without a key no request is signed.
   void sign_with(const std::optional<SigningKey>& key) { key_ = key; }
 
-  /// Requests the identity of the board. With a key in the claim the board must sign a fresh nonce and its
-  /// name with that key. From then on every signed request is for the start of the board that proved it; a
-  /// board that was restarted meanwhile must prove it again first. Without a key only the name is compared.
-  /// Throws LimitNotMet if the board is another one or cannot prove its identity.
+  /// Requests the identity of the board. If the claim has a key, the board must sign a fresh nonce and its
+  /// name with that key. From then on every signed request is for the start of the board that gave this
+  /// proof. A board that was restarted meanwhile must prove its identity again first. If the claim has no
+  /// key, only the name is compared. Throws LimitNotMet if the board is another board or cannot prove its
+  /// identity.
   void require_board(const BoardClaim& claim);
-  /// The board's key, after it signed a fresh nonce with it; `nullopt` if the board has no key.
+  /// Returns the key of the board after the board signed a fresh nonce with it; `nullopt` if the board has no
+  /// key.
   std::optional<BoardPublicKey> proved_key();
 
   const BoardInfo& info() const { return info_; }
@@ -128,20 +132,22 @@ class Client {
   /// Ticks from number `first`, each `every`th.
   BoardHistory history(std::uint64_t first, std::uint16_t every);
   HealthRecord health();
-  /// Of the running program; empty without a program, or if it has just been exchanged.
+  /// Returns the shares of the running program; empty without a program, or if the program has just been
+  /// exchanged.
   std::vector<BoardShare> shares();
   SlotsReply slots();
-  /// Sends an upload (tables/upload_format.h) and has it checked; it is on trial when this returns. progress:
-  /// 0..1.
+  /// Sends an upload (tables/upload_format.h); the board checks it. The upload is on trial when the call
+  /// returns. progress: 0..1.
   void upload(const std::vector<std::uint8_t>& bytes, const std::function<void(double)>& progress);
   void confirm();
   void revert();
   /// The confirmed upload, header and image; empty without a confirmed image.
   std::optional<std::vector<std::uint8_t>> confirmed(const std::function<void(double)>& progress);
-  /// The next tick takes it; whether it fitted shows in the mode and in `refused_commands`.
+  /// Gives a command, which the next tick takes. The mode and `refused_commands` show whether the board
+  /// accepted the command.
   void command(Command command);
   void weight(std::uint8_t axis, double share);
-  /// Touches from number `first`, as many as one reply holds; empty if no touch occurred since.
+  /// Returns touches from number `first`, as many as one reply contains; empty if no touch occurred since.
   BoardTouches touches(std::uint64_t first);
   /// Sets the location of the workpiece: origin in machine coordinates, mm; angle about Z, deg. Applies to
   /// later touches.

@@ -11,14 +11,16 @@ namespace vernier::upload {
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
                                  const SlotsReply& slots, const std::vector<BoardShare>& shares,
                                  const BoardState& state);
-/// True if a board has a confirmed image: of its store, or given to it at its start (vernier-hal --image).
+/// True if a board has a confirmed image: in its store, or given to it at its start (vernier-hal --image).
 /// tool.
 bool has_confirmed(const SlotsReply& slots);
-/// "0123456789abcdef is confirmed", with its state in the store; or that no image is confirmed. tool.
+/// Returns the text "0123456789abcdef is confirmed" with the state of the image in the store, or that no
+/// image is confirmed. tool.
 std::string confirmed_text(const SlotsReply& slots);
-/// Its fingerprint, of 16 hexadecimal digits; null if no image is confirmed. tool.
+/// Returns the fingerprint of the confirmed image (16 hexadecimal digits); null if no image is confirmed.
+/// tool.
 nlohmann::ordered_json confirmed_json(const SlotsReply& slots);
-/// The same for people, several lines, each ended. tool.
+/// Returns the live state for people, several lines, each with its line end. tool.
 std::string live_text(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
                       const SlotsReply& slots, const std::vector<BoardShare>& shares,
                       const BoardState& state);

@@ -19,10 +19,10 @@ struct SigningKey {
 
 /// Public half of a board's own key (vernierd keeps the pair in its store).
 using BoardPublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
-/// 64 hexadecimal digits, as `vernierd` and `vernier board identify` print them. tool.
+/// Returns a key as 64 hexadecimal digits, as `vernierd` and `vernier board identify` print it. tool.
 std::string board_key_text(const BoardPublicKey& key);
 /// The key in a text: 64 hexadecimal digits, or the name of a file `identity.pub` of a board's store. Throws
-/// InputError if the text is neither. tool.
+/// InputError if the text is neither a key nor such a file. tool.
 BoardPublicKey parse_board_key(const std::string& text);
 /// 32 bytes from the system's random numbers. tool.
 std::array<std::uint8_t, 32> fresh_nonce();
@@ -32,10 +32,10 @@ SigningKey new_key();
 /// The texts of the key files. tool.
 std::string secret_key_text(const SigningKey& key);
 std::string public_key_text(const SigningKey& key);
-/// Reads a secret key file; throws InputError if it is not a key, or if other users may read it. tool.
+/// Reads a secret key file; throws InputError if the file is not a key, or if other users may read it. tool.
 SigningKey read_secret_key(const std::string& path);
 
-/// The key of a file, else that of VERNIER_KEY, else no key. tool.
+/// Returns the key of a file, else that of VERNIER_KEY, else nullopt. tool.
 std::optional<SigningKey> given_key(const std::string& path);
 
 /// The upload of an image: header and image, signed. issued: microseconds since 1970; security, board: see
@@ -44,7 +44,8 @@ std::vector<std::uint8_t> make_upload(const std::vector<std::uint8_t>& image, co
                                       std::uint64_t issued, std::uint32_t security,
                                       const std::string& board = {});
 
-/// The image in an upload as a board stores it, of this version or the one before. Throws InputError. tool.
+/// Returns the image in an upload as a board stores it, of this version or the previous version. Throws
+/// InputError. tool.
 std::vector<std::uint8_t> image_in(const std::vector<std::uint8_t>& upload);
 
 /// Signs a request (op, then payload) over the board's nonce. tool.

@@ -13,7 +13,7 @@ class Transport {
   virtual ~Transport() = default;
   /// request: at most kMaxRequestBytes. Throws InputError without a reply; the transport can be used again.
   virtual std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) = 0;
-  /// Waits before a board that was busy is asked again.
+  /// Waits before a busy board is asked again.
   virtual void pause(std::chrono::milliseconds time) { std::this_thread::sleep_for(time); }
 };
 

@@ -14,11 +14,12 @@ struct BoardUrl {
   int port = 1502;
   std::map<std::string, std::string> options;
 
-  /// An option as a number (0x for hexadecimal); `otherwise` if it is absent. Throws InputError.
+  /// Returns an option as a number (0x for hexadecimal); `otherwise` if the option is absent. Throws
+  /// InputError.
   std::uint32_t number(const std::string& name, std::uint32_t otherwise) const;
 };
 
-/// Throws InputError naming the word. `HOST:PORT` alone is TCP. tool.
+/// Throws InputError naming the word. `HOST:PORT` without a scheme is TCP. tool.
 BoardUrl parse_url(const std::string& text);
 
 }  // namespace vernier::upload

@@ -15,7 +15,7 @@ namespace {
 
 void check(const Series& series) {
   if (series.t_s.size() < 16 || series.value.size() != series.t_s.size())
-    throw text::InputError("a record of less than 16 samples cannot be aligned");
+    throw text::InputError("the record has fewer than 16 samples and cannot be aligned");
   if (std::adjacent_find(series.t_s.begin(), series.t_s.end(), std::greater_equal<>()) != series.t_s.end())
     throw text::InputError("a record whose times do not increase cannot be aligned");
 }

@@ -26,8 +26,8 @@ struct DisplacementChoice {
   double resolution = 1e-5;     // of a sample in its signal's unit (kCorner), as on the board
 };
 
-/// Displacement of one signal at each of its samples, um. NaN where the board's filter has not
-/// reached its final value (three periods of the corner), or in the tapered ends of the record (a
+/// Displacement of one signal at each of its samples, um. The displacement is NaN where the board's filter
+/// has not reached its final value (three periods of the corner), or in the tapered ends of the record (a
 /// tenth at either end; kPower).
 struct DisplacementSeries {
   std::string name;
@@ -37,7 +37,7 @@ struct DisplacementSeries {
   std::uint32_t held = 0;  // samples beyond the range of the board's filter (kCorner)
 };
 
-/// Is the signal an acceleration (unit g, m/s^2, mm/s^2)? tool.
+/// True if the signal is an acceleration (unit g, m/s^2, mm/s^2). tool.
 bool is_acceleration(const Signal& signal);
 
 /// Returns the displacement of an acceleration. Throws InputError for a signal of another unit,
@@ -51,11 +51,11 @@ struct KnownDisplacement {
   std::vector<double> at_row_um;
 };
 
-/// Finds the value of the cut at which displacements and measurements agree best: least rms of
-/// their difference over all signals together, after removal of the mean difference of each
-/// signal. kCorner: 60 corners, even in their logarithm, from the lowest for the length of the
-/// record (six periods) to rate/64. kPower: numbers of kept lines by 200 even steps of their
-/// logarithm. Throws InputError if fewer than three rows of a signal have both. tool.
+/// Finds the value of the cut at which displacements and measurements agree best: least rms of their
+/// difference over all signals together, after removal of the mean difference of each signal. kCorner: 60
+/// corners, even in their logarithm, from the lowest for the length of the record (six periods) to rate/64.
+/// kPower: numbers of kept lines by 200 even steps of their logarithm. Throws InputError if fewer than three
+/// rows of a signal have both displacement and measurement. tool.
 struct AgreedCut {
   double value = 0, rms_um = 0;  // of the cut; of the remaining difference
   double measured_rms_um =

@@ -41,7 +41,7 @@ double rate_of(const format::CsvFile& file, const std::vector<double>& t_s) {
   for (std::size_t i = 0; i < t_s.size(); ++i)
     if (!(step > 0) || std::fabs(t_s[i] - t_s.front() - step * static_cast<double>(i)) > 0.01 * step)
       throw text::InputError({file.file, file.line[i]}, text::number_text(t_s[i]),
-                             "t is not even to 1 % of a sample period");
+                             "the times t are not even to 1 % of a sample period");
   return 1 / step;
 }
 
@@ -61,7 +61,8 @@ std::string header_of(const Signal& signal, std::size_t feature) {
 
 std::vector<double> numeric_column(const format::CsvFile& file, const std::string& name) {
   const auto column = column_named(file, name);
-  if (!column) throw text::InputError({file.file, file.header_line}, name, "the file has no such column");
+  if (!column)
+    throw text::InputError({file.file, file.header_line}, name, "the file has no column of this name");
   std::vector<double> values = column_values(file, *column);
   if (const auto unit = format::find_unit(file.columns[*column].unit))
     for (double& value : values) value = unit->factor * value + unit->offset;
@@ -70,10 +71,11 @@ std::vector<double> numeric_column(const format::CsvFile& file, const std::strin
 
 std::vector<double> measured_lengths_um(const format::CsvFile& file, const std::string& name) {
   const auto column = column_named(file, name);
-  if (!column) throw text::InputError({file.file, file.header_line}, name, "the file has no such column");
+  if (!column)
+    throw text::InputError({file.file, file.header_line}, name, "the file has no column of this name");
   const auto unit = format::find_unit(file.columns[*column].unit);
   if (!unit || unit->dimension != format::Dimension::kLength)
-    throw text::InputError({file.file, file.header_line}, name, "is no length (unit mm, um, m or in)");
+    throw text::InputError({file.file, file.header_line}, name, "is not a length (unit mm, um, m or in)");
   std::vector<double> lengths_um;
   for (std::size_t row = 0; row < file.rows.size(); ++row) {
     const std::string& cell = file.rows[row][*column];
@@ -98,7 +100,7 @@ VibrationRecord read_vibration(const format::CsvFile& file, std::optional<double
     record.rate_Hz = *rate_Hz;
   } else {
     throw text::InputError({file.file, file.header_line}, format::columns::kTime,
-                           "no column t; --rate gives the samples per second");
+                           "the record has no column t; give the samples per second with --rate");
   }
   for (const std::string& name : positions)
     record.positions.push_back({name, "", numeric_column(file, name)});

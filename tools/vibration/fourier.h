@@ -7,8 +7,8 @@
 
 namespace vernier::vibration {
 
-/// Fourier transform of real series of one length n >= 1 (FFTW). Plans are made once. Use one
-/// object per thread. tool.
+/// Fourier transform of real series of one length n >= 1 (FFTW). Plans are made once. Use a separate Fourier
+/// for each thread. tool.
 class Fourier {
  public:
   explicit Fourier(std::size_t n);

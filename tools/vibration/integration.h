@@ -31,15 +31,15 @@ std::vector<double> integrate_twice(std::span<const double> x, double rate_Hz, C
 /// Returns |F|^2/N of the lines above the mean value, lowest frequency first. tool.
 std::vector<double> line_powers(std::span<const double> x);
 
-/// Returns displacement from the lines above `cutoff`, each divided by -(2 pi f)^2. The trapezoids
-/// of integrate_twice with Constants::kCentred approach it, but have a loss towards half the rate
-/// (25 % at 200 Hz of 1 kHz). Both assume a record that repeats itself. x in unit/s^2; result in
-/// that unit. tool.
+/// Returns displacement from the lines above `cutoff`, each divided by -(2 pi f)^2. The trapezoids of
+/// integrate_twice with Constants::kCentred are an approximation of integrate_lines, with a loss towards half
+/// the rate (25 % at 200 Hz of 1 kHz). Both functions assume a periodic record. x in unit/s^2; result in that
+/// unit. tool.
 std::vector<double> integrate_lines(std::span<const double> x, double rate_Hz, double cutoff,
                                     SpectralCut* cut = nullptr);
 
-/// Returns cut-offs between lines of these powers, at most `steps`. They keep 1, ..., all but one
-/// of the lines, even in the logarithm of their number. tool.
+/// Returns cut-offs between lines of these powers, at most `steps`. The cut-offs keep 1, ..., all but one of
+/// the lines, even in the logarithm of their number. tool.
 std::vector<double> cuts_between_lines(std::vector<double> powers, std::size_t steps);
 
 /// Returns the cut-off that lines of white noise alone exceed once in `records` records. The floor

@@ -9,19 +9,20 @@
 
 namespace vernier::vibration {
 
-/// The features of comp/vibration/feature_window.h in double, by their definitions. They are the
-/// reference for the fixed-point code, and the output of `vernier features`. Same order.
+/// Names of the features of comp/vibration/feature_window.h, which this file computes in double by their
+/// definitions. The values in double are the reference for the fixed-point code, and the output of `vernier
+/// features`. The order of the names is that of the enumeration Feature.
 inline constexpr std::array<const char*, 13> kFeatureNames = {
     "MAV",      "VAR",       "RMS",       "SHAPE", "IMPACT",     "CREST",    "KURTOSIS",
     "SKEWNESS", "FREQUENCY", "BANDPOWER", "PEAK",  "PEAKIMPACT", "PEAKCREST"};
 using SignalFeatures = std::array<double, kFeatureNames.size()>;
 
-/// Is this feature in the signal's own unit (MAV, RMS, PEAK)? VAR and BANDPOWER are in its square,
-/// FREQUENCY in Hz, the others are pure numbers.
+/// True if a feature is in the unit of the signal (MAV, RMS, PEAK). VAR and BANDPOWER are in the square of
+/// that unit, FREQUENCY in Hz, other features are pure numbers.
 bool in_signal_unit(std::size_t feature);
 
-/// Returns features of the samples x (n of them, the length of `fourier`) at a rate in Hz. Not
-/// finite if a feature is 0/0. Two passes for the central moments. tool.
+/// Returns the features of the samples x (n samples, the length of `fourier`) at a rate in Hz. A feature is
+/// not finite if it is 0/0. The central moments need two passes over the samples. tool.
 SignalFeatures signal_features(std::span<const double> x, double rate_Hz, Fourier& fourier);
 
 }  // namespace vernier::vibration

@@ -92,7 +92,7 @@ ApiReply Api::put_file(const ApiRequest& request) {
   const std::string name = request.word("name");
   project_.writable(name);
   if (!request.words("new").empty() && std::filesystem::exists(project_.writable(name)))
-    throw text::InputError("\"" + name + "\": there is such a file already");
+    throw text::InputError("\"" + name + "\": a file of this name already exists");
   if (ApiReply checked = reader_.reply(request); checked.status != 200) return checked;
   project_.save(name, request.body);
   return json_reply({{"name", name}, {"bytes", request.body.size()}});

@@ -22,7 +22,8 @@ class Api {
   Api(const std::string& directory, const std::string& program, std::string version,
       const nlohmann::ordered_json& commands);
 
-  /// Never throws: bad input is 422 with {"message"}, an unknown path 404, our own fault 500.
+  /// Answers a request and never throws: bad input is 422 with {"message"}, an unknown path 404, an internal
+  /// error 500.
   ApiReply reply(const ApiRequest& request);
 
  private:

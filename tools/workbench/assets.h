@@ -4,8 +4,8 @@
 
 namespace vernier::workbench {
 
-/// Returns the page of the workbench, its script (tools/workbench/web, one bundle) and its style
-/// sheet. tool.
+/// workbench_page: the page of the workbench. The functions after it: its script (tools/workbench/web, one
+/// bundle) and its style sheet. tool.
 std::string_view workbench_page();
 std::string_view workbench_script();
 std::string_view workbench_style();

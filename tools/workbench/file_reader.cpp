@@ -46,7 +46,7 @@ ApiReply FileReader::reply(const ApiRequest& request) {
     if (reader_->ask(message_of(request), patience_s_, answer) && read_reply(answer, reply)) return reply;
     const std::string how = reader_->end();
     reader_.reset();
-    throw text::InputError("what reads files ended over this request (" + how +
+    throw text::InputError("the reading process ended during this request (" + how +
                            "): one of its files cannot be read; nothing was changed");
   });
 }

@@ -10,16 +10,16 @@
 
 namespace vernier::workbench {
 
-/// The server's side of a FileDesk in a separate process (`vernier workbench DIR --reader`). It starts the
-/// process when needed, sends requests one by one, and starts a new process if one has ended. May be called
-/// from several threads. tool.
+/// The server's side of a FileDesk in a separate process (`vernier workbench DIR --reader`). FileReader
+/// starts the process when needed, sends requests one by one, and starts a new process if one has ended. May
+/// be called from several threads. tool.
 class FileReader {
  public:
-  /// patience_s: without an answer for so long it is ended.
+  /// patience_s: the process is ended if it gives no answer for this time.
   FileReader(std::string program, const Project& project, double patience_s = 300)
       : program_(std::move(program)), project_(project), patience_s_(patience_s) {}
 
-  /// As FileDesk::reply; 422 if the reading process ended because of it.
+  /// Answers like FileDesk::reply; 422 if the reading process ended because of the request.
   ApiReply reply(const ApiRequest& request);
 
  private:
@@ -30,7 +30,7 @@ class FileReader {
   std::unique_ptr<Conversation> reader_;
 };
 
-/// The other side: answers on `stream` until it ends. tool.
+/// The reading process: answers requests on `stream` until the stream ends. tool.
 void serve_files(const Project& project, int stream);
 
 }  // namespace vernier::workbench

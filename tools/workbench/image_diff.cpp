@@ -59,7 +59,7 @@ Json summary(const ImageView& image) {
 /// Reason why the two cannot be run side by side; empty if they can.
 std::string why_not(const ImageView& a, const ImageView& b) {
   if (a.axes().size != b.axes().size || a.inputs().size != b.inputs().size)
-    return "they are for machines with other axes or inputs";
+    return "the images are for machines with other axes or inputs";
   for (std::uint32_t i = 0; i < a.axes().size; ++i)
     if (std::strcmp(a.axes()[i].name, b.axes()[i].name) != 0 || a.axes()[i].flags != b.axes()[i].flags)
       return fmt::format("axis {} is another one", a.axes()[i].name);

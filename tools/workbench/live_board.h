@@ -9,7 +9,7 @@
 
 namespace vernier::workbench {
 
-/// Watches one board at a time, as `vernier watch` does. A thread asks the board kLiveRateHz times a second,
+/// Watches one board at a time, like `vernier watch`. A thread asks the board kLiveRateHz times a second,
 /// keeps the last pictures, and disconnects after kLetGoS without a request. tool.
 class LiveBoard {
  public:
@@ -20,9 +20,9 @@ class LiveBoard {
   LiveBoard(const LiveBoard&) = delete;
   LiveBoard& operator=(const LiveBoard&) = delete;
 
-  /// Pictures (live_json) with a number above `after`, each with `seq` and `at_s`, as soon as one is
-  /// available, at most after half a second: {"pictures": [...], "error": text or null}. A new url
-  /// disconnects the previous board. Throws InputError if the url is not an address of a board.
+  /// Returns pictures (live_json) with a number above `after`, each with `seq` and `at_s`: {"pictures":
+  /// [...], "error": text or null}. Returns when a picture is available, at most after half a second. A new
+  /// url disconnects the previous board. Throws InputError if the url is not an address of a board.
   nlohmann::ordered_json pictures(const std::string& url, std::uint64_t after);
 
  private:

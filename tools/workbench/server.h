@@ -14,9 +14,9 @@ inline constexpr std::size_t kMostBodyBytes = std::size_t{64} << 20;
 /// Returns 32 random bytes as hexadecimal digits, from the system's random numbers. tool.
 std::string new_token();
 
-/// The page and its API on 127.0.0.1. A request is answered only under three conditions. It names this host
-/// and port (no other name for it: DNS rebinding), it comes from no other origin, and it carries the
-/// session's token as a cookie. The printed address sets the cookie once. A request that writes must also
+/// Serves the page and its API on 127.0.0.1. A request is answered only under three conditions. The request
+/// names this host and port (no other name for it: DNS rebinding), comes from no other origin, and carries
+/// the session's token as a cookie. The printed address sets the cookie once. A request that writes must also
 /// carry the header X-Vernier. tool.
 class WorkbenchServer {
  public:

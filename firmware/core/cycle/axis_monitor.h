@@ -10,7 +10,7 @@
 
 namespace vernier {
 
-/// When a reading is a fault. All in ticks or axis counts.
+/// Limits beyond which a reading of an axis is a fault. All fields are in ticks or axis counts.
 struct AxisLimits {
   std::uint32_t missing_ticks = 3;       // tolerated silence
   std::int64_t step = 2'000'000;         // most travel in a tick: 2 mm (2 m/s at 1 kHz)
@@ -19,16 +19,17 @@ struct AxisLimits {
   bool rollover = false;                 // whole turns are no travel
 };
 
-/// Watches the readings of one axis. Derives its motion if the controller gives positions only.
+/// Checks the readings of one axis for faults. If the controller gives positions only, AxisMonitor computes
+/// speed and acceleration from them.
 class AxisMonitor {
  public:
   AxisMonitor() = default;
   /// tick: time between two readings; gives_motion: the readings carry the motion state. setup.
   AxisMonitor(const AxisLimits& limits, TimeUs tick, bool gives_motion) noexcept;
 
-  /// Takes one reading, or a missing one (present false); counts into health. A reading that jumps is a fault
-  /// once and the reference of the next ones. elapsed: since the previous call; with it a late tick gives no
-  /// jump and no wrong speed. realtime.
+  /// Takes one reading of the axis; present = false: the reading is missing. Counts faults into health. A
+  /// reading that jumps is a fault once; the next readings are compared with it. elapsed: time since the
+  /// previous call; a late tick therefore gives no jump and no wrong speed. realtime.
   Fault take(bool present, const AxisReading& reading, Health& health, TicksQ8 elapsed = kOneTick) noexcept;
 
   bool known() const noexcept { return known_; }

@@ -10,15 +10,16 @@
 
 namespace vernier {
 
-/// The axes and inputs of an image, in its order: the wiring of a board made for it.
+/// Returns the axes and inputs of an image, in the order of the image: the wiring of a board made for this
+/// image.
 Wiring wiring_of(const ImageView& view);
 
-/// A program with the state of its execution and the board's devices that it works on. Made outside the tick,
-/// taken over by Cycle::use in one. Refers to the image's bytes.
+/// A program, the state of its execution, and the devices of the board that the program uses. A BoundProgram
+/// is made outside the tick; Cycle::use takes it over in one tick. Refers to the image's bytes.
 struct BoundProgram {
   /// A program without work: no image.
   BoundProgram() noexcept : compensator(Program{}) {}
-  /// Axis i and input i of the image are those of the board. setup.
+  /// Binds axis i and input i of the image to axis i and input i of the board. setup.
   explicit BoundProgram(const ImageView& view) noexcept;
 
   bool empty() const noexcept { return program.axis_count == 0; }
@@ -33,8 +34,8 @@ struct BoundProgram {
   InputMicro reference[kMaxInputs];      // per input of the image: its value before the first reading
 };
 
-/// Finds the image's axes and inputs among the board's by name. bound: made from the same view. offender: the
-/// name that does not fit. setup.
+/// Finds the image's axes and inputs among those of the board, by name. bound: made from the same view.
+/// offender: receives the name that does not fit. setup.
 BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundProgram& bound, Name& offender);
 
 }  // namespace vernier

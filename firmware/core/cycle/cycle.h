@@ -13,7 +13,7 @@
 
 namespace vernier {
 
-/// Limits of an axis of the board that differ from the rule for its kind.
+/// Limits of one axis of the board, if they differ from the rule for the kind of axis.
 struct AxisSetting {
   bool own = false;  // `limits` count instead of those of the kind
   AxisLimits limits;
@@ -21,13 +21,14 @@ struct AxisSetting {
   std::int64_t largest = INT32_MAX;  // largest correction that is ever written, for every image; counts
 };
 
-/// When a reading of a sensor is a fault; 1e-6 of its unit.
+/// Limits beyond which a reading of a sensor is a fault; 1e-6 of the sensor's unit.
 struct InputLimits {
   std::int64_t low = INT64_MIN, high = INT64_MAX;
   std::int64_t step = INT64_MAX;  // between two readings
 };
 
-/// Limits of the cycle; of the axes, those that are not in the image. Indices are the board's.
+/// Limits of the cycle, and those limits of the axes that are not in the image. Indices of axes and inputs
+/// are those of the board.
 struct CycleLimits {
   AxisLimits linear;
   AxisLimits rotary{.step = kTurnCounts / 100, .frozen_travel = kTurnCounts / 3600, .sense_travel = 12000};
@@ -36,21 +37,22 @@ struct CycleLimits {
   std::uint32_t missing_input_ticks = 100;  // tolerated silence of a sensor
 };
 
-/// What came out of a tick.
+/// Results of one tick.
 struct TickReport {
   CycleOutput output;  // result of the compensator, by axis of the image
   Mode mode;
   Fault latched;
 };
 
-/// One tick of the firmware: reads the devices, steps the compensator, writes the corrections. Never waits.
-/// The value at a drive changes by at most the slew limit of its axis from one successful write to the next,
-/// for all readings, commands and faults; the speed of the change is limited by the acceleration of
-/// AxisSetting. While a fault is ramped out the compensator keeps the last good input: the correction can
+/// One tick of the firmware: reads the devices, steps the compensator, writes the corrections. A Cycle never
+/// waits. From one successful write to the next, the value at a drive changes by at most the slew limit of
+/// its axis. This holds for all readings, commands and faults. AxisSetting limits the acceleration of the
+/// change. During the ramp-out after a fault the compensator keeps the last good input: the correction can
 /// only decrease. The images and the board must outlive the cycle.
 class Cycle {
  public:
-  /// A board whose devices are those of the image, in its order. view: opened without fault. setup.
+  /// Constructs a cycle for a board whose devices are those of the image, in the order of the image. view:
+  /// opened without fault. setup.
   Cycle(const ImageView& view, const Board& board, const CycleLimits& limits = {}) noexcept;
   /// A board with wiring but without a program. setup.
   Cycle(const Wiring& wiring, TimeUs tick, const Board& board, const CycleLimits& limits = {}) noexcept;
@@ -61,7 +63,7 @@ class Cycle {
                   TicksQ8 elapsed = kOneTick) noexcept;
 
   /// Continues with another program from the next tick, without a step. Corrections move from their present
-  /// values, within the limits of their axes; axes that the new program does not correct go to zero. next:
+  /// values, within the limits of their axes. Axes that the new program does not correct go to zero. next:
   /// bound to this board's wiring (bind), lives until the next use() returns. Returns the previous program.
   /// realtime.
   BoundProgram* use(BoundProgram& next) noexcept;
@@ -73,22 +75,23 @@ class Cycle {
   Mode mode() const noexcept { return mode_.mode(); }
   bool holding() const noexcept { return mode_.holding(); }
   Fault latched() const noexcept { return mode_.latched(); }
-  /// Fault of the last tick, latched or not; while checking, the condition that is not met yet.
+  /// Returns the fault of the last tick, latched or not; while checking, the condition that is not met yet.
   Fault found() const noexcept { return found_; }
-  /// Share of the correction that is in.
+  /// Returns the share of the correction that is applied now.
   WeightQ16 weight() const noexcept { return mode_.weight(); }
   Health& health() noexcept { return health_; }
   const Health& health() const noexcept { return health_; }
-  /// The correction that the equation requires of a board's axis at full weight, the part that its output
-  /// gives, and the active limits (AxisLimitFlag).
+  /// Returns the correction that the equation requires of an axis of the board at full weight, the part that
+  /// its output gives, and the active limits (AxisLimitFlag).
   AxisTravel wanted(std::uint32_t axis) const noexcept { return AxisTravel(drive_[axis].whole); }
   AxisTravel achieved(std::uint32_t axis) const noexcept { return drive_[axis].achieved; }
   std::uint8_t limits(std::uint32_t axis) const noexcept { return drive_[axis].limits; }
-  /// Largest change of the correction of a board's axis in a tick, counts; 0 before the first change.
+  /// Returns the largest change of the correction of a board's axis in a tick, counts; 0 before the first
+  /// change.
   std::int64_t slew(std::uint32_t axis) const noexcept { return drive_[axis].slew; }
   /// The correction that a board's axis was given last.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
-  /// Newest good state of a board's axis, and value of a board's input.
+  /// Returns the newest good state of a board's axis, and value of a board's input.
   const AxisInput& axis_state(std::uint32_t axis) const noexcept { return axes_[axis].state(); }
   InputMicro input_value(std::uint32_t input) const noexcept { return inputs_[input]; }
   const PathReading& path() const noexcept { return path_; }
@@ -110,7 +113,7 @@ class Cycle {
   void judge_limits(std::uint32_t axis) noexcept;
   void count(const CycleOutput& output) noexcept;
 
-  /// The value for a drive, by board's axis.
+  /// The value for the drive of one axis of the board.
   struct Drive {
     std::int64_t wanted = 0;  // counts, within the board's limit
     std::int64_t whole = 0;   // the same at full weight, before that limit

@@ -8,13 +8,14 @@
 
 namespace vernier {
 
-/// Time between two readings, in 1/256 of a tick: 256 if both came on time. Less than a tick counts as one
-/// tick: the tick after a late one takes readings that a controller sends at its rate.
+/// Time between two readings, in 1/256 of a tick; 256 if both readings came on time. A time of less than one
+/// tick counts as one tick: the tick after a late tick takes readings that a controller sends at its rate.
 struct TicksQ8 {
   std::int32_t count = 256;
 };
 constexpr TicksQ8 kOneTick{256};
-/// Far beyond every stop that is no fault (a clock that steps by a second is one); sums of it fit 32 bits.
+/// Largest elapsed time that is used. A longer time is a fault, for example a clock that steps by a second.
+/// Sums of elapsed times fit 32 bits.
 constexpr TicksQ8 kMostElapsed{1 << 20};
 
 /// Turns times into ticks without a division in the tick.
@@ -26,7 +27,7 @@ class ElapsedTicks {
       : per_ns_(static_cast<std::int64_t>(
             quotient_of((std::uint64_t{256} << kShift) + 500 * static_cast<std::uint64_t>(tick.count),
                         1000 * static_cast<std::uint64_t>(tick.count)))) {}
-  /// Rounded to the nearest; at least one tick, at most kMostElapsed. realtime.
+  /// Converts a time to ticks, rounded to the nearest; at least one tick, at most kMostElapsed. realtime.
   TicksQ8 of(InstantNs time) const noexcept {
     // Beyond 2^30 ns the limit holds anyway for ticks below a millisecond; above, a second is few ticks.
     const std::int64_t ns = clamp<std::int64_t>(time.count, 0, std::int64_t{1} << 30);
@@ -39,8 +40,8 @@ class ElapsedTicks {
   std::int64_t per_ns_ = 0;  // 256 / tick in ns, Q24: below 2^23, as a tick is 1 us at least
 };
 
-/// 2^24 / elapsed, rounded down: the factor that converts a travel to the travel of one tick, Q16. Bit by
-/// bit, for targets without a divider. elapsed: 1 .. kMostElapsed. realtime.
+/// Returns 2^24 / elapsed, rounded down: the factor (Q16) that converts a travel to the travel per tick. Bit
+/// by bit, for targets without a divider. elapsed: 1 .. kMostElapsed. realtime.
 constexpr std::int64_t per_tick_q16(TicksQ8 elapsed) noexcept {
   std::uint32_t rest = 0, quotient = 0;
   for (int bit = 24; bit >= 0; --bit) {

@@ -15,7 +15,7 @@
 
 namespace vernier {
 
-/// A value that one thread writes and others copy, word by word, without a lock. realtime.
+/// A value that one thread writes and other threads copy, word by word, without a lock. realtime.
 template <class T>
 class AtomicWords {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::uint32_t) == 0);
@@ -37,12 +37,12 @@ class AtomicWords {
   std::array<std::atomic<std::uint32_t>, kWords> words_{};
 };
 
-/// A number that one thread counts up and others read, without an atomic of 64 bits, which small targets do
-/// not have. Its high half is stored before and after the low one. A reader that sees two different halves
-/// reads again, at most once in 2^32 counts.
+/// A number that one thread counts up and other threads read. Needs no atomic of 64 bits, which small targets
+/// do not have. The writer stores the high half of the count before and after the low half. A reader that
+/// sees two different halves reads again, at most once in 2^32 counts.
 class SharedCount {
  public:
-  /// One writer. A reader that sees the count also sees all earlier writes. realtime.
+  /// Only one thread may call store(). A reader that sees the count also sees all earlier writes. realtime.
   void store(std::uint64_t count) noexcept {
     const auto high = static_cast<std::uint32_t>(count >> 32);
     after_.store(high, std::memory_order_release);
@@ -61,11 +61,12 @@ class SharedCount {
   std::atomic<std::uint32_t> before_{0}, low_{0}, after_{0};
 };
 
-/// The newest value of one writer, whole: a reader that was overtaken reads again. The writer never waits.
+/// The newest value of one writer. A reader always gets a complete value: if the writer wrote in between, the
+/// reader reads again. The writer never waits.
 template <class T>
 class Published {
  public:
-  /// One writer. realtime.
+  /// Only one thread may call publish(). realtime.
   void publish(const T& value) noexcept {
     const std::uint32_t turn = turn_.load(std::memory_order_relaxed);
     turn_.store(turn + 1, std::memory_order_relaxed);
@@ -73,7 +74,7 @@ class Published {
     value_.put(value);
     turn_.store(turn + 2, std::memory_order_release);
   }
-  /// False if the writer was faster so many times in a row. setup.
+  /// Reads the newest value; false if the writer was faster in each of `tries` attempts. setup.
   bool read(T& value, int tries = 1000) const noexcept {
     for (int i = 0; i < tries; ++i) {
       const std::uint32_t before = turn_.load(std::memory_order_acquire);
@@ -92,16 +93,16 @@ class Published {
   AtomicWords<T> value_;
 };
 
-/// The last values of one writer. A reader names the value that it needs and gets it, or the answer that it
-/// is overwritten. The writer never waits and never fails: values that were not read in time are overwritten,
-/// and readers detect this.
+/// Keeps the last values of one writer. A reader asks for a value by number and gets the value, or the answer
+/// that a newer value has overwritten it. The writer of a History never waits and never fails: values that
+/// were not read in time are overwritten, and readers detect this.
 template <class T>
 class History {
  public:
   /// size: values that are kept, a power of two. setup.
   explicit History(std::uint32_t size) : size_(size), values_(new AtomicWords<T>[size]) {}
 
-  /// One writer. realtime.
+  /// Only one thread may call add(). realtime.
   void add(const T& value) noexcept {
     const std::uint64_t next = count_.load();
     begun_.store(next + 1);
@@ -109,15 +110,15 @@ class History {
     values_[static_cast<std::uint32_t>(next) & (size_ - 1)].put(value);
     count_.store(next + 1);
   }
-  /// Values added so far; value i can be read while i < count() <= i + size().
+  /// Returns the number of values added; value i can be read while i < count() <= i + size().
   std::uint64_t count() const noexcept { return count_.load(); }
   std::uint32_t size() const noexcept { return size_; }
-  /// Oldest value that is still there.
+  /// Returns the number of the oldest value that can still be read.
   std::uint64_t oldest() const noexcept {
     const std::uint64_t count = begun_.load();
     return count > size_ ? count - size_ : 0;
   }
-  /// False if value `index` is not there yet, or not any more. setup.
+  /// Reads value `index`; false if the value is not written yet, or is already overwritten. setup.
   bool read(std::uint64_t index, T& value) const noexcept {
     if (index >= count()) return false;
     const T copy = values_[static_cast<std::uint32_t>(index) & (size_ - 1)].get();
@@ -139,7 +140,8 @@ struct EquationRecord {
   EquationState state;
 };
 
-/// All that passes between the tick and the rest of the daemon. No locks: the tick never waits for anybody.
+/// All data that the tick exchanges with the rest of the daemon. Exchange has no locks: the tick never waits
+/// for another thread.
 struct Exchange {
   static constexpr std::uint32_t kHistory = 4096;  // ticks, about four seconds
   static constexpr std::uint32_t kTouches = 256;
@@ -155,7 +157,8 @@ struct Exchange {
   std::atomic<BoundProgram*> offered{nullptr};  // to be taken over by the next tick
   std::atomic<BoundProgram*> retired{nullptr};  // was taken out; the owner may free it
 
-  /// How many ticks and touches it remembers, powers of two; memory is taken here and never again. setup.
+  /// ticks_kept, touches_kept: how many ticks and touches the Exchange keeps, powers of two. The constructor
+  /// takes all memory. setup.
   explicit Exchange(std::uint32_t ticks_kept = kHistory, std::uint32_t touches_kept = kTouches)
       : ticks(ticks_kept), touches(touches_kept) {
     for (auto& weight : axis_weight) weight.store(kFullWeight.count);

@@ -16,7 +16,7 @@ namespace vernier {
 
 constexpr std::uint32_t kNoInput = UINT32_MAX;
 
-/// An input of the board that is a feature of another one's signal.
+/// Request for a board input that is a feature of the signal of another input.
 struct FeatureRequest {
   std::uint32_t input = 0;         // the board's input that it becomes
   std::uint32_t of = 0;            // the board's input whose samples are taken
@@ -26,49 +26,51 @@ struct FeatureRequest {
   std::uint32_t every = 1;      // ticks from sample to sample
   InputMicro lsb{10};           // resolution of a sample, 1e-6 of the unit of `of`; 1..2^30
   std::uint32_t bridged = 3;    // missing samples in a row for which the last one is used
-  /// Not 0: the input is no feature of a window but the displacement (um) of an accelerometer, cut off below
-  /// this corner, mHz: rate/2^17 .. rate/64. A sample's lsb is then lsb_nm_s2 too, nm/s^2.
+  /// Not 0: the input is the displacement (um) of an accelerometer instead of a feature of a window. Lower
+  /// cut-off frequency of the displacement, mHz: rate/2^17 .. rate/64. The lsb of a sample is then lsb_nm_s2
+  /// too, nm/s^2.
   std::int64_t corner_mHz = 0;
   std::int64_t lsb_nm_s2 = 98067;
 };
 
-/// The feature of a name as `vernier features` writes it ("RMS"); false if the name is not known. setup.
+/// Converts the name of a feature as `vernier features` writes it ("RMS") to a Feature; false if the name is
+/// not known. setup.
 bool feature_of(std::string_view name, Feature& feature) noexcept;
 
-/// The board's inputs, some of which are features and displacements. In each tick the other inputs are read
+/// The board's inputs, some of which are features and displacements. In each tick every other input is read
 /// once. On a sampling tick each window takes its sample and computes its features. Features of the same
 /// signal, window and resolution share one window. A tick needs, for each window, one FeatureWindow::push and
 /// one features(): 5500 instructions of x86-64 at 800 samples, 8900 at 2048 (tools/docs/vibration.md).
 /// Samples: round(signal / lsb), ties away from zero, exact; limited to +-524287 lsb and counted. A feature
-/// gives no reading (kNoReading) in three cases: its window is not full; it is 0/0
-/// (FeatureValues::undefined); more samples than bridged are missing and not as many have come again. No
-/// window has a gap in it.
-/// A displacement has a filter (comp/vibration/displacement.h, exact at 0.18 of the rate) instead of a
-/// window. The filter starts from rest, gives no reading for three periods of its corner and starts again
-/// after a gap. Its value is of the latest sample, to 1 nm. Its tick needs 200 instructions of x86-64.
+/// gives no reading (kNoReading) in three cases: the window of the feature is not full; the feature is 0/0
+/// (FeatureValues::undefined); more samples than `bridged` are missing and fewer new samples have come since.
+/// No window contains a gap. A displacement has a filter (comp/vibration/displacement.h, exact at 0.18 of the
+/// rate) instead of a window. The filter of a displacement starts from rest, gives no reading for three
+/// periods of its corner, and starts again after a gap. The displacement is that of the latest sample, to 1
+/// nm. A tick of the displacement filter needs 200 instructions of x86-64.
 class FeatureInputs : public InputReader {
  public:
-  /// source: of all inputs that are not features, outlives this. inputs: of the board, at most kMaxInputs.
-  /// tick: of the firmware. A request without a possible window (length, resolution, an `of` that is a
-  /// feature) is refused: `refused()` then names it. setup.
+  /// source: reads all inputs that are not features, and outlives this object. inputs: number of inputs of
+  /// the board, at most kMaxInputs. tick: of the firmware. A request with an impossible window (length,
+  /// resolution, an `of` that is a feature) is refused: `refused()` then names the request. setup.
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::span<const FeatureRequest> requests,
                 TimeUs tick);
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::initializer_list<FeatureRequest> requests,
                 TimeUs tick)
       : FeatureInputs(source, inputs, std::span(requests.begin(), requests.size()), tick) {}
 
-  /// Index of the first request that cannot be served, or kNoInput. setup.
+  /// Returns the index of the first request that cannot be served, or kNoInput. setup.
   std::uint32_t refused() const noexcept { return refused_; }
   std::size_t windows() const noexcept { return window_count_; }
-  /// Samples so far that were beyond the range of a window or filter, and displacements beyond +-2.1 m.
-  /// realtime.
+  /// Returns the number of samples so far that were beyond the range of a window or filter, and of
+  /// displacements beyond +-2.1 m. realtime.
   std::uint64_t held() const noexcept;
 
   void begin_tick() noexcept override;
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
 
  private:
-  /// A signal's window with the sources of its samples.
+  /// The window of a signal and the sources of its samples.
   struct Signal {
     FeatureRequest from;
     std::uint64_t inverse = 0;  // 2^63 / lsb, cut

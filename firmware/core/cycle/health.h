@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// Counters of the firmware. They never decrease and are kept when a fault is cleared.
+/// Counters of the firmware. The counters never decrease; clearing a fault does not change them.
 struct Health {
   std::uint64_t ticks = 0;
   std::uint64_t active_ticks = 0;

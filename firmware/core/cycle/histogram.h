@@ -5,7 +5,7 @@
 
 namespace vernier {
 
-/// Counts of durations in a fixed memory: exact below 2^(kOctaveBits + 1) ns, then 2^kOctaveBits bins an
+/// Histogram of durations in a fixed memory: exact below 2^(kOctaveBits + 1) ns, then 2^kOctaveBits bins per
 /// octave, to 2^40 ns. A bin that is full stays full.
 template <unsigned kOctaveBits>
 class HistogramOf {
@@ -23,8 +23,8 @@ class HistogramOf {
   std::int64_t max_ns() const noexcept { return max_; }
   std::int64_t last_ns() const noexcept { return last_; }
 
-  /// Upper edge of the bin that holds the given share of all, at most the largest value seen; 0 when empty.
-  /// per_million: 990000 for p99. realtime, one pass over the bins.
+  /// Returns the upper edge of the bin that contains the given share of all durations, at most the largest
+  /// duration; 0 if the histogram is empty. per_million: 990000 for p99. realtime, one pass over the bins.
   std::int64_t percentile_ns(std::uint64_t per_million) const noexcept {
     // Rounded up: the percentile of few values is one of them and not below all. No division, because it is
     // called in ticks. Counts stay below 2^44.
@@ -45,7 +45,7 @@ class HistogramOf {
     const std::uint32_t shift = width > kOctaveBits + 1 ? width - kOctaveBits - 1 : 0;
     return (shift << kOctaveBits) + static_cast<std::uint32_t>(value >> shift);
   }
-  /// Largest value of a bin.
+  /// Returns the largest value of a bin.
   static constexpr std::uint64_t upper_edge(std::uint32_t bin) noexcept {
     const std::uint32_t shift = bin < (2u << kOctaveBits) ? 0 : (bin >> kOctaveBits) - 1;
     return ((std::uint64_t{bin} - (std::uint64_t{shift} << kOctaveBits) + 1) << shift) - 1;
@@ -60,7 +60,8 @@ class HistogramOf {
   std::int64_t max_ = 0, last_ = 0;
 };
 
-/// Bins an octave as a power of two: 6 are 64 (1.6 %) and 9 KB each; a small target sets it to less.
+/// Bins per octave, as a power of two. 6 gives 64 bins (1.6 %) and 9 KB per histogram; a small target sets a
+/// smaller number.
 #ifndef VERNIER_HISTOGRAM_OCTAVE_BITS
 #define VERNIER_HISTOGRAM_OCTAVE_BITS 6
 #endif

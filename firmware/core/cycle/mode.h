@@ -10,23 +10,23 @@ namespace vernier {
 
 /// Ticks without fault before Checking becomes Ready.
 constexpr std::uint32_t kCheckTicks = 100;
-/// Ticks in which the weight goes from zero to full; the slew limits may make it longer.
+/// Number of ticks in which the weight goes from zero to full; the slew limits may make this time longer.
 constexpr std::int32_t kRampTicks = 256;
 static_assert(kFullWeight.count % kRampTicks == 0);
 
-/// The state machine of the modes. Each tick: before() with the faults of reading, the weight for the
-/// compensator, after() with the result.
+/// The state machine of the modes. In each tick the cycle calls before() with the faults of reading, takes
+/// the weight for the compensator, and calls after() with the result.
 class ModeControl {
  public:
   /// complete: every device has answered at least once and now. realtime.
   void before(Command command, Fault fault, bool complete, Health& health) noexcept;
-  /// at_zero: every correction in the drives is zero; settled: every correction has reached its target.
-  /// realtime.
+  /// Ends the tick. at_zero: every correction in the drives is zero; settled: every correction has reached
+  /// its target. realtime.
   void after(Fault fault, bool at_zero, bool settled, Health& health) noexcept;
 
   Mode mode() const noexcept { return mode_; }
   WeightQ16 weight() const noexcept { return weight_; }
-  /// True if the corrections are held at their values. Only in Active.
+  /// True if the corrections keep their present values. Only the mode Active can hold corrections.
   bool holding() const noexcept { return holding_ && mode_ == Mode::kActive; }
   /// The first fault since the last clearing.
   Fault latched() const noexcept { return latched_; }

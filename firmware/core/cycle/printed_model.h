@@ -6,9 +6,9 @@
 
 namespace vernier {
 
-/// The machine that this firmware was built with (CMake: -DVERNIER_MODEL=DIR of `vernier compile -o DIR`). An
-/// image of the same equation runs its compiled form, any other image is interpreted. equation: null if the
-/// firmware was built without a machine.
+/// The machine model that is built into this firmware (CMake: -DVERNIER_MODEL=DIR of `vernier compile -o
+/// DIR`). An image with the same equation as the built-in machine runs the compiled form; any other image is
+/// interpreted. equation: null if the firmware was built without a machine.
 struct PrintedModel {
   std::uint64_t fingerprint = 0;
   PrintedEquation equation = nullptr;

@@ -10,8 +10,8 @@
 
 namespace vernier {
 
-/// A place for one upload: its header, its image, and its bound program. The bytes are in memory that is
-/// taken when the board is made.
+/// Memory for one upload: header, image, and bound program. The bytes are in memory that is taken when the
+/// board is made.
 struct LoadedProgram {
   UploadHeader header{};
   std::unique_ptr<std::uint64_t[]> words;
@@ -23,7 +23,7 @@ struct LoadedProgram {
   std::atomic<bool> taken{false};
 
   std::uint8_t* image() noexcept { return reinterpret_cast<std::uint8_t*>(words.get()); }
-  /// Bound again from its image, as if it had never run. setup.
+  /// Binds the program again from its image; all state of its execution is new. setup.
   void start_anew() noexcept;
 };
 struct GiveBack {
@@ -31,10 +31,11 @@ struct GiveBack {
     program->taken.store(false, std::memory_order_release);
   }
 };
-/// A place in use; it is free again when this object is destroyed.
+/// A LoadedProgram in use; its memory becomes free when this object is destroyed.
 using ProgramRef = std::unique_ptr<LoadedProgram, GiveBack>;
 
-/// State of the trial of an image. The comment of each state names the part that may leave it.
+/// State of the trial of an image. The comment of each state names the part of the firmware that may end the
+/// state.
 enum class Trial : std::uint8_t {
   kNone,        // the store, by run_trial()
   kRunning,     // the guardian when its time is over; the store when it is to be kept
@@ -43,17 +44,19 @@ enum class Trial : std::uint8_t {
   kOver,        // the store, when the record says that the image was reverted
 };
 
-/// The programs of a board: the running one, and the one to which the board returns. Three parties use it;
-/// none of them waits for another:
+/// The programs of a board: the running program, and the program to which the board returns. Three parts of
+/// the firmware use Programs; none of them waits for another:
 ///   the store checks images and starts them or their trial;
-///   the guardian hands them to the tick and ends trials on time, from memory alone;
-///   the links read the running one.
+///   the guardian hands programs to the tick and ends trials on time, from memory alone;
+///   the links read the running program.
 class Programs {
  public:
-  /// One that runs, one that the board goes back to, one that comes in.
+  /// Three places: the running program, the program to which the board returns, and a program that is being
+  /// received.
   static constexpr std::uint32_t kFewest = 3;
 
-  /// exchange: outlives this; image_bytes: the largest image. Takes memory for all places. setup.
+  /// exchange: outlives this object; image_bytes: size of the largest image. Takes memory for all places.
+  /// setup.
   Programs(Exchange& exchange, std::uint32_t places, std::uint32_t image_bytes);
 
   // ---- the store
@@ -62,11 +65,13 @@ class Programs {
   std::uint32_t image_bytes() const noexcept { return image_bytes_; }
   /// The confirmed image, when the board starts.
   void run_confirmed(ProgramRef program) noexcept;
-  /// An image to be tried, for trial_time from when the guardian gets it. Only in Trial::kNone.
+  /// Starts the trial of an image. The trial ends trial_time after the guardian takes the program. Call
+  /// run_trial() only in Trial::kNone.
   void run_trial(ProgramRef program, TimeUs trial_time) noexcept;
-  /// Confirms the image on trial: its time stops. False if no image is on trial any more.
+  /// Begins to confirm the image on trial: the trial time stops. False if no image is on trial any more.
   bool begin_to_keep() noexcept { return change(Trial::kRunning, Trial::kConfirming); }
-  /// It is written down that it is kept, or that could not be done. Only after begin_to_keep().
+  /// Ends a confirmation. written: true if the medium has the record that the image is confirmed, false if it
+  /// could not be written. Call kept() only after begin_to_keep().
   void kept(bool written) noexcept { trial_.store(written ? Trial::kKept : Trial::kRunning); }
   /// The image on trial is reverted with the guardian's next round.
   bool give_up() noexcept;
@@ -76,17 +81,18 @@ class Programs {
   void given_up() noexcept { trial_.store(Trial::kNone); }
 
   // ---- the guardian
-  /// Hands over the next program and ends a trial whose time is over. now: of the clock of run_trial(). Never
-  /// waits.
+  /// Hands the next program to the tick and ends a trial whose time is over. now: of the clock of
+  /// run_trial(). guard() never waits.
   void guard(TimeUs now) noexcept;
 
   // ---- the links
-  /// The program that runs, null before there is one; it stays until look_away(). One at a time.
+  /// Returns the running program, null before the first program. The program is not removed until
+  /// look_away(). Only one caller at a time may use look().
   const LoadedProgram* look() noexcept;
   void look_away() noexcept { looked_at_.store(nullptr); }
 
   Trial trial() const noexcept { return trial_.load(); }
-  /// Remaining time of the trial; `whole` if it has not begun.
+  /// Returns the remaining time of the trial; `whole` if the trial has not begun.
   TimeUs trial_left(TimeUs now, TimeUs whole) const noexcept;
 
  private:

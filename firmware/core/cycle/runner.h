@@ -9,43 +9,44 @@
 
 namespace vernier {
 
-/// When overruns are a fault. Now and then one is late on every system; a tick that is left out as a rule is
-/// no tick, however the late ones are spread.
+/// Limits beyond which overruns are a fault. Every system has a late tick now and then. If ticks are left out
+/// regularly, the cycle time is wrong, for any distribution of the late ticks.
 struct OverrunLimits {
   std::uint32_t in_a_row = 10;
   std::uint32_t lost_share_q16 = 65536 / 20;  // of the ticks, that may be left out for ever
   std::uint32_t lost_at_once = 200;           // limit: a stop of 0.2 s is accepted, two in a second are not
 };
 
-/// How the ticks of a runner went, ns.
+/// Times of the ticks of a runner, ns.
 struct TickTimes {
   Histogram latency;    // of wake-ups, behind the moment that was asked for
   Histogram execution;  // of a tick: read, step, write
 };
 
-/// Runs a cycle tick by tick on a clock: sleeps until the tick is due, measures how late it woke and how long
-/// it computed. A tick that ends after the next was due is an overrun; the ticks that it covered are left
-/// out.
+/// Runs a cycle tick by tick on a clock. Sleeps until the tick is due, measures how late it woke and how long
+/// it computed. A tick that ends after the next tick was due is an overrun; the ticks that it covered are
+/// left out.
 class Runner {
  public:
-  /// The first tick is due one period from now. setup.
+  /// Constructs a runner whose first tick is due one period from now. setup.
   Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept;
-  /// Each tick starts with a signal of `sync`. A signal earlier than half a period is ignored. If no signal
-  /// comes for `patience` after the tick was due, the clock starts the ticks until the next signal. setup.
+  /// Constructs a runner that starts each tick with a signal of `sync`. A signal earlier than half a period
+  /// is ignored. If no signal comes for `patience` after the tick was due, the clock starts the ticks until
+  /// the next signal. setup.
   Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience,
          const OverrunLimits& overruns = {}) noexcept;
 
-  /// From now on step() is called in the cycle of the controller. It does not wait. Each call is one tick of
-  /// the controller's time, for any delay of its thread, and no tick is skipped. setup.
+  /// From now on the controller calls step() in its own cycle. step() then does not wait. Each call of step()
+  /// is then one tick of the controller's time, for any delay of its thread; no tick is skipped. setup.
   void follow_caller() noexcept { follows_ = true; }
-  /// Sleeps, then one tick; found: a fault from outside of the tick. Its time is counted from the
-  /// construction or set_time(). realtime.
+  /// Sleeps, then runs one tick. found: a fault that was found outside the tick. The time of a tick is
+  /// counted from the construction or set_time(). realtime.
   TickReport step(Command command, Fault found = Fault::kNone) noexcept;
   /// The machine file's t of the next tick; for a run that starts in the middle of a machine's day. setup.
   void set_time(TimeUs time) noexcept { time_ = time; }
   /// The machine file's t of the next tick.
   TimeUs time() const noexcept { return time_; }
-  /// The moment at which the last tick read its axes.
+  /// Returns the moment at which the last tick read its axes.
   InstantNs woke() const noexcept { return last_; }
   /// True if the ticks follow the controller's sync.
   bool in_step() const noexcept { return in_step_; }

@@ -40,7 +40,8 @@ class Name {
   std::uint32_t size_ = 0;
 };
 
-/// At most kMost values in a row, in place. Values without room are dropped: the caller checks before.
+/// A list of at most kMost values, stored in place. Values beyond kMost are dropped: the caller checks the
+/// number before.
 template <class T, std::uint32_t kMost>
 class FixedList {
  public:
@@ -62,8 +63,8 @@ class FixedList {
   std::uint32_t size_ = 0;
 };
 
-/// Wiring of a board, in the order of its devices. Images use the names of axes and inputs; the wiring finds
-/// them.
+/// Names of the devices of a board, in the order of the devices. Images refer to axes and inputs by name; the
+/// wiring finds the device of a name.
 struct Wiring {
   struct Axis {
     Name name;

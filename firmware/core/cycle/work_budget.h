@@ -11,24 +11,25 @@
 namespace vernier {
 
 constexpr std::uint64_t kAnyWork = UINT64_MAX;
-/// Shares are computed outside the tick, for a display. They may need this many times the work of a tick.
+/// Shares are computed outside the tick, for a display. Shares may need this many times the work of a tick.
 constexpr std::uint64_t kShareWorkFactor = 20;
 
-/// Work of a board in its share of a tick.
+/// Work that a board can do in the part of a tick that is reserved for the equation.
 struct WorkBudget {
   std::uint64_t work = kAnyWork;  // comp/verify.h, work_of
   std::uint64_t of_line = 0;      // work that a line of memory costs which no cache holds (lines_of)
 
-  /// Whether an image does not ask for more: its tick, and with its shares kShareWorkFactor times as much.
-  /// setup.
+  /// True if the board can execute an image: the tick within the budget, the tick with its shares within
+  /// kShareWorkFactor times the budget. setup.
   bool covers(const Program& program, const ShareProgram& shares) const noexcept;
 };
 
-/// Work that this board does in a quarter of a tick; the rest is for devices, the link and the other tasks of
-/// its processor. Measured for some milliseconds on sums of products, and on jumps through `memory` (its
-/// words are overwritten), which must be larger than the caches. Without memory, cache lines have no cost, as
-/// on a processor without caches. The best of several tries counts, because the others were interrupted.
-/// kAnyWork if the clock does not move. Call before the first tick. setup.
+/// Measures the work that this board does in a quarter of a tick. The other three quarters are for devices,
+/// the link and the other tasks of the processor. The measurement takes some milliseconds: sums of products,
+/// and jumps through `memory` (its words are overwritten). `memory` must be larger than the caches. Without
+/// `memory`, reading a cache line has no cost, as on a processor without caches. The best of several
+/// measurements counts, because other tasks interrupted the slower ones. Returns kAnyWork if the clock does
+/// not move. Call before the first tick. setup.
 WorkBudget measured_work_budget(Clock& clock, TimeUs tick, std::span<std::uint32_t> memory = {}) noexcept;
 
 /// Words of `memory` that exceed the caches of boards: 16 MB.

@@ -22,14 +22,14 @@ struct Caller {
   friend bool operator==(const Caller&, const Caller&) = default;
 };
 
-/// Decides which requests of a link are executed: by the rights of the link and, if the board has keys, only
-/// requests signed with one of them. A signed request is accepted once: it names the nonce of this start of
-/// the board and a challenge of 128 random bits that its own connection got in the last seconds. A request
-/// that was delayed on its way, or repeated over another connection, is therefore not valid.
+/// Decides which requests of a link are executed. The rights of the link count. If the board has keys, only
+/// requests signed with one of them are executed. A signed request is accepted once: the request contains the
+/// nonce of this start of the board and a challenge of 128 random bits that its own connection got in the
+/// last seconds. A request that was delayed on its way, or repeated over another connection, is not valid.
 class Gate {
  public:
-  /// identity, own_key: outlive this; own_key null: the board has no key; nonce, seed: new with each start,
-  /// from a source of random numbers; the seed must stay secret. setup.
+  /// identity, own_key: outlive this object; own_key null: the board has no key; nonce, seed: new
+  /// with each start, from a source of random numbers; the seed must stay secret. setup.
   Gate(const BoardIdentity& identity, const Nonce& nonce, const ChallengeSeed& seed,
        IdentityKey* own_key = nullptr) noexcept
       : identity_(identity), nonce_(nonce), seed_(seed), own_key_(own_key) {}
@@ -41,21 +41,22 @@ class Gate {
     std::uint32_t size;
     bool is_signed = false;  // with a valid signature
   };
-  /// from: of the request; now: of any clock, the same as challenge()'s. setup.
+  /// Checks a request. from: the caller of the request; now: of the clock that challenge() uses. setup.
   Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, const Caller& from,
               TimeUs now) noexcept;
-  /// True for a request for a challenge.
+  /// True for a request for a challenge. A challenge can be used once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// The challenge of one connection, which replaces its previous one. If the table is full, the oldest
-  /// challenge of the same link is removed, and only if the link has none, the oldest of all. setup.
+  /// Gives the challenge of one connection. The challenge replaces the previous one of the connection. If the
+  /// table is full, the oldest challenge of the same link is removed. If the link has no challenge, the
+  /// oldest of all links is removed. setup.
   ChallengeReply challenge(LinkAccess access, const Caller& from, TimeUs now) noexcept;
-  /// The connection has ended: its challenge is removed. setup.
+  /// Removes the challenge of a connection that has ended. setup.
   void forget(const Caller& from) noexcept;
-  /// True for the request to prove the identity of the board. Every caller may send it.
+  /// True for the request to prove the identity of the board. Every caller may send an identify request.
   static bool is_identify(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// Signs the asker's nonce, the nonce of this start and the board's name with the key of the board.
   /// kUnknownOp: the board has no key; kBadLength: the request has no nonce; kNotReady: the library failed.
-  /// `reply` is filled in with kDone only. setup.
+  /// `reply` is filled only with kDone. setup.
   LinkStatus identify(const std::uint8_t* request, std::uint32_t size, IdentifyReply& reply) noexcept;
   /// True if a master that uses registers only may give commands over this link.
   bool lets_plain_commands(LinkAccess access, bool trusted_line) const noexcept {
@@ -86,7 +87,7 @@ class Gate {
   std::uint8_t inner_[kMaxRequestBytes] = {};
 };
 
-/// Requirements of a request: access of its link, and a signature or not.
+/// Requirements of a request: the access that its link must have, and whether it must be signed.
 LinkAccess access_needed(LinkOp op) noexcept;
 bool signature_needed(LinkOp op) noexcept;
 

@@ -5,7 +5,7 @@
 
 namespace vernier {
 
-/// A public key and its rights.
+/// A public key and the rights of its owner.
 struct TrustedKey {
   PublicKey key{};
   Name name;  // for people: whose it is
@@ -13,17 +13,17 @@ struct TrustedKey {
   bool retired = false;  // images confirmed with it still run; no new image is accepted
 };
 
-/// Identity of a board, and the keys that it trusts.
+/// Identity of a board, and the keys that the board trusts.
 struct BoardIdentity {
   static constexpr std::uint32_t kMostKeys = 8;
   Name board, board_class;  // what an image may be signed for
   FixedList<TrustedKey, kMostKeys> keys;
 
   BoardIdentity() = default;
-  /// A board without a name that trusts one key with everything.
+  /// Constructs a board without a name that trusts one key with all rights.
   BoardIdentity(const PublicKey& key) { keys.push_back(TrustedKey{key, {}}); }  // NOLINT: one is the other
 
-  /// The key whose first bytes these are; null: no such key.
+  /// Returns the key that begins with these bytes; null: no such key.
   const TrustedKey* find(const std::uint8_t* first_bytes, std::uint32_t size) const noexcept;
 };
 

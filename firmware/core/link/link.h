@@ -8,22 +8,23 @@
 
 namespace vernier {
 
-/// Answers the requests of tables/link_format.h on any medium. Runs outside the tick; every byte of a request
-/// counts as hostile until it is checked.
+/// Answers the requests of tables/link_format.h on any medium. A link runs outside the tick; each byte of a
+/// request is untrusted until it is checked.
 class Link {
  public:
-  /// All outlive the link. identity: reported by HelloReply. setup.
+  /// All arguments outlive the link. identity: reported by HelloReply. setup.
   Link(Exchange& exchange, Uploader& uploader, const Wiring& wiring, TimeUs tick,
        const BoardIdentity& identity);
 
-  /// Answers one request. request: any bytes; reply: room for kMaxReplyBytes. Returns the bytes of the reply,
-  /// 0 if the request is too short for an answer. now: as the uploader's. setup.
+  /// Answers one request. request: any bytes; reply: room for kMaxReplyBytes. answer() returns the bytes of
+  /// the reply, 0 if the request is too short for an answer. now: of the clock of the uploader. setup.
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
 
-  /// True if the request needs the medium. The store then answers it and may wait for the medium. setup.
+  /// True if the request needs the medium. The store then answers the request and may wait for the medium.
+  /// setup.
   static bool needs_store(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// True if it is, or may contain (signed), a request for the store or a step of an upload. Always false
-  /// while the store works on a request. setup.
+  /// True if the request is, or may contain (signed), a request for the store or a step of an upload.
+  /// may_need_store() is always false while the store works on a request. setup.
   static bool may_need_store(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// "Ask again": the reply to a request that comes while the store is at work. setup.
   static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept {
@@ -35,8 +36,8 @@ class Link {
 
   /// The live registers for plain Modbus masters; values: kLiveRegisters. setup.
   void fill_registers(std::uint16_t* values);
-  /// A command from a plain master; refused if it is not a command or if the previous one has not been taken.
-  /// setup.
+  /// Gives a command from a plain master. Refused if the number is not a command or if the previous command
+  /// has not been taken. setup.
   LinkStatus give(std::uint8_t command);
 
  private:

@@ -10,7 +10,7 @@ class Sha512 {
   static constexpr std::uint32_t kBytes = 64;
 
   void add(const std::uint8_t* bytes, std::uint32_t size) noexcept;
-  /// Ends it. digest: kBytes.
+  /// Ends the computation and writes the digest. digest: kBytes.
   void finish(std::uint8_t* digest) noexcept;
 
  private:

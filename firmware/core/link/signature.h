@@ -10,8 +10,9 @@ namespace vernier {
 
 using PublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
 
-/// Verifies a signature of 64 bytes of a head, of the bytes after it, and of this key. Ed25519ph, RFC 8032. A
-/// port defines it with its library; a port without a library uses firmware/core/link/signature.cpp. setup.
+/// Verifies a signature (64 bytes) of the bytes `head` followed by `rest`, made with this key. Ed25519ph, RFC
+/// 8032. A port with a cryptographic library defines this function; a port without a library uses
+/// firmware/core/link/signature.cpp. setup.
 bool signature_fits(std::span<const std::uint8_t> head, std::span<const std::uint8_t> rest,
                     const std::uint8_t* signature, const PublicKey& key);
 

@@ -9,13 +9,13 @@
 
 namespace vernier {
 
-/// A request that needs the medium, on its way from the links, which never wait, to the store, which may wait
-/// for its medium without limit. One at a time.
+/// Passes a request that needs the medium from a link to the store. A link never waits; the store may wait
+/// for its medium without limit. StoreDesk takes one request at a time.
 class StoreDesk {
  public:
   // ---- the links
   /// True if a request may be left here. A request whose reply is not collected is removed after a while: its
-  /// peer is not connected any more.
+  /// sender is no longer connected.
   bool free() noexcept {
     const State state = state_.load(std::memory_order_acquire);
     return state == State::kFree || (state == State::kDone && ++asked_while_done_ > kPatience);
@@ -31,8 +31,8 @@ class StoreDesk {
     state_.store(State::kAsked, std::memory_order_release);
     return ticket_;
   }
-  /// Bytes of the reply; CommandHandler::kLater while the request is executed, 0 if it was replaced by
-  /// another.
+  /// Returns the bytes of the reply; CommandHandler::kLater while the request is executed, 0 if another
+  /// request replaced it.
   std::uint32_t collect(std::uint32_t ticket, std::uint8_t* reply) noexcept {
     if (ticket != ticket_) return 0;
     const State state = state_.load(std::memory_order_acquire);

@@ -15,7 +15,8 @@
 
 namespace vernier {
 
-/// A refusal with its details; `fault` is kNone if there was no error.
+/// Result of a step of an upload: the reason and details of a refusal; `fault` is kNone if there was no
+/// error.
 struct UploadResult {
   UploadFault fault = UploadFault::kNone;
   ImageFault image = ImageFault::kNone;
@@ -28,10 +29,10 @@ struct Line {
   const char* c_str() const noexcept { return text; }
   operator const char*() const noexcept { return text; }
 };
-/// One line for people: "of another machine: the board has no such axis: W".
+/// Returns one line of text for people: "of another machine: the board has no such axis: W".
 Line describe(const UploadResult& result) noexcept;
 
-/// Which images the store holds, as others see it.
+/// The images in the store, as the links report them.
 struct SlotsRecord {
   std::uint64_t confirmed_fingerprint = 0, trial_fingerprint = 0;  // 0: no image
   std::uint64_t issued = 0, newest_issued = 0;  // of the confirmed image, and of all that were ever tried
@@ -42,7 +43,7 @@ static_assert(sizeof(SlotsRecord) % 8 == 0);
 
 /// Receives, checks, tries, confirms and reverts images. Functions that access the medium may take time and
 /// run in a separate context; the next program is passed to Programs. After a power failure at any time, the
-/// next boot() finds the image that was confirmed before or, once confirm() has returned, the new one.
+/// next boot() finds the image that was confirmed before or, if confirm() had returned, the new image.
 class Uploader {
  public:
   struct Options {
@@ -56,29 +57,31 @@ class Uploader {
   Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, const Options& options);
 
   // ---- the store
-  /// Call after power-on. Reverts an image that was on trial, checks the confirmed one, and starts it. The
-  /// result is the reason if no image runs: kNone also if no image was ever confirmed; kStore if no record of
-  /// the store can be read and the state is therefore not known. setup.
+  /// Call boot() once after power-on. boot() reverts an image that was on trial, checks the confirmed image,
+  /// and starts it. The result gives the reason if no image runs. kNone: also if no image was ever confirmed;
+  /// kStore: no record of the store can be read, so the state is not known. setup.
   UploadResult boot();
-  /// As boot(), but runs an image given by the operator who starts the board: it is not signed, and the
-  /// medium is not changed. setup.
+  /// Starts like boot(), but runs an image that the operator gives at the start of the board. This image is
+  /// not signed; the medium is not changed. setup.
   UploadResult boot_with(std::span<const std::uint8_t> image);
-  /// Writes received data to the medium, checks it and starts its trial. setup.
+  /// Ends an upload: writes the received data to the medium, checks the image and starts its trial. setup.
   UploadResult finish();
   /// Keeps the image on trial. setup.
   UploadResult confirm();
-  /// Gives the image on trial up; the guardian takes it out with its next round. setup.
+  /// Ends the trial of an image; the guardian stops the image in its next round. setup.
   UploadResult revert();
-  /// Records that a trial is over; true if the record is written. If it cannot be written, the next call
-  /// tries again: the present medium gives the same result after a reset. setup.
+  /// Records that a trial is over; true if the record is written. If the record cannot be written, the next
+  /// call tries again. Until then a reset gives the same result as the present medium. setup.
   bool look_after_store();
-  /// Bytes of the confirmed upload (header and image), from the medium. kNoReading beyond it. setup.
+  /// Reads bytes of the confirmed upload (header and image) from the medium. kNoReading: the offset is beyond
+  /// the upload. setup.
   HalFault read_confirmed(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept;
 
   // ---- the links, while the store is not at work for one of them
-  /// A new upload of `bytes` bytes begins; an unfinished one is dropped. setup.
+  /// Begins a new upload of `bytes` bytes; an unfinished upload is dropped. setup.
   UploadResult begin(std::uint32_t bytes);
-  /// The next piece. offset: bytes before it. A repeated last piece is accepted. setup.
+  /// Adds the next piece of the upload. offset: number of bytes before the piece. A repeated last piece is
+  /// accepted. setup.
   UploadResult add(std::uint32_t offset, const std::uint8_t* bytes, std::uint32_t size);
 
   // ---- anybody
@@ -87,17 +90,17 @@ class Uploader {
   SlotsRecord record() const noexcept;
   /// True if a confirmed image could not be loaded and no other runs instead.
   bool image_lost() const noexcept { return image_lost_.load(); }
-  /// Remaining time of the trial; 0 without a trial.
+  /// Returns the remaining time of the trial; 0 without a trial.
   TimeUs trial_left(TimeUs now) const noexcept;
   std::uint32_t capacity() const noexcept { return store_.capacity(); }
-  /// Which program runs.
+  /// Access to the running program and to the trial.
   Programs& programs() noexcept { return programs_; }
   const Programs& programs() const noexcept { return programs_; }
   /// The state of the medium; for the store, and for tests.
   const Slots& slots() const noexcept { return slots_; }
 
  private:
-  /// Checks an upload; an upload that was confirmed has passed the checks of its history already.
+  /// Origin of an upload. A stored upload has passed the checks of its history when it was confirmed.
   enum class Origin : std::uint8_t { kStored, kNew };
   UploadResult load(std::uint8_t slot, LoadedProgram& loaded, Origin origin);
   UploadResult load_v1(std::uint8_t slot, LoadedProgram& loaded);

@@ -187,7 +187,7 @@ void require_limits(Table& settings, const SignalSource& output, bool rotary) {
 
 void read_axis(BoardFile& board, const std::string& name, const toml::table& table) {
   Table settings(table, board.path, "axis." + name);
-  if (board.axes.size() == kMaxAxes) settings.fail("more axes than the firmware has room for");
+  if (board.axes.size() == kMaxAxes) settings.fail("the file has more axes than the firmware supports");
   if (name.size() >= kImageNameBytes) settings.fail("the name is too long");
   AxisEntry axis;
   axis.wiring.name = Name(std::string_view(name));
@@ -213,7 +213,7 @@ void read_axis(BoardFile& board, const std::string& name, const toml::table& tab
 
 void read_input(BoardFile& board, const std::string& name, const toml::table& table) {
   Table settings(table, board.path, "input." + name);
-  if (board.inputs.size() == kMaxInputs) settings.fail("more inputs than the firmware has room for");
+  if (board.inputs.size() == kMaxInputs) settings.fail("the file has more inputs than the firmware supports");
   if (name.size() >= kImageNameBytes) settings.fail("the name is too long");
   InputEntry input;
   input.name = name;
@@ -274,7 +274,7 @@ void read_key(BoardFile& board, const toml::table& table) {
   TrustedKey key;
   const std::string name = settings.text("name", ""), role = settings.text("role", "all");
   const std::string file = settings.text("file", "");
-  if (name.empty()) settings.fail("name is missing: whose key it is");
+  if (name.empty()) settings.fail("name is missing: give the name of the owner of the key");
   if (file.empty()) settings.fail("file is missing: the public key of `vernier keys`");
   if (role != "all" && role != "command" && role != "upload" && role != "retired")
     settings.fail("role: '" + role + "' is not one of all, command, upload, retired");

@@ -11,8 +11,8 @@
 
 namespace vernier {
 
-/// How a signal of the board reaches a device: a kind that open_devices.cpp knows, and its settings as
-/// written.
+/// Connection of a signal of the board to a device: a kind that open_devices.cpp knows, and the settings as
+/// written in the board file.
 struct SignalSource {
   std::string kind;                          // "can", "iio", "pwm", "sim" ...; empty: not wired
   std::map<std::string, std::string> texts;  // every setting that is a text
@@ -25,14 +25,15 @@ struct SignalSource {
   const std::string& text(const std::string& name) const;  // throws BoardError where absent
   double number(const std::string& name) const;            // the same
   double number(const std::string& name, double otherwise) const;
-  /// A whole number from low to high; throws BoardError if it is absent or not valid.
+  /// Returns the setting `name` as a whole number from low to high; throws BoardError if the setting is
+  /// absent or not valid.
   std::int64_t whole(const std::string& name, std::int64_t low, std::int64_t high) const;
   std::int64_t whole(const std::string& name, std::int64_t otherwise, std::int64_t low,
                      std::int64_t high) const;
   std::string text(const std::string& name, const std::string& otherwise) const;
 };
 
-/// One axis or input of the board file.
+/// Entry of one axis or one input of the board file.
 struct AxisEntry {
   Wiring::Axis wiring;
   double low = 0, high = 0;  // mm or deg; range of a simulated axis
@@ -44,13 +45,13 @@ struct InputEntry {
   double reference = 0;  // reading of a simulated one
 };
 
-/// A link, and its rights.
+/// Entry of a link of the board file, with the rights of the link.
 struct LinkEntry {
   SignalSource source;
   LinkRights rights;
 };
 
-/// A board file (TOML), read and checked: tools/docs/board.md describes it.
+/// Contents of a board file (TOML) after reading and checking; tools/docs/board.md describes the file.
 struct BoardFile {
   std::string path;
   std::string store;  // directory of the slots
@@ -67,7 +68,7 @@ struct BoardFile {
   std::vector<std::string> key_files;  // public keys, read already
 };
 
-/// Reads and checks a board file; key files are read too. Throws BoardError. setup.
+/// Reads and checks a board file and the key files that it names. Throws BoardError. setup.
 BoardFile read_board_file(const std::string& path);
 
 }  // namespace vernier

@@ -8,13 +8,13 @@
 
 namespace vernier {
 
-/// The board's own key in two files of the store: `identity.key` (64 bytes, for its owner alone) and
+/// The board's own key in two files of the store: `identity.key` (64 bytes, readable by its owner only) and
 /// `identity.pub` (for people and for `vernier fleet add --board-key`).
 class BoardKey final : public IdentityKey {
  public:
-  /// Reads the key of a store, or makes one if the store has no key yet: the secret half is on the medium
-  /// before this returns. store: directory that can be written. Throws BoardError if the key cannot be read
-  /// or made, is not a key, or if other users may read it. setup.
+  /// Reads the key of a store, or makes a key if the store has none. The secret half is on the medium before
+  /// the constructor returns. store: directory that can be written. Throws BoardError if the key cannot be
+  /// read or made, is not a key, or if other users may read it. setup.
   explicit BoardKey(const std::string& store);
   ~BoardKey() override;
   BoardKey(const BoardKey&) = delete;

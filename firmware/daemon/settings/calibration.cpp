@@ -40,7 +40,8 @@ CalibrationPoint parse_point(const std::string& line, const std::string& where) 
 
 Calibration fit_calibration(const std::vector<CalibrationPoint>& points, std::int64_t codes, bool rotary) {
   const auto n = static_cast<double>(points.size());
-  if (points.size() < 3) throw BoardError{"calibration: fewer than three points"};
+  if (points.size() < 3)
+    throw BoardError{"calibration: fewer than three points; measure at least three codes"};
   double mean_code = 0, mean = 0, sxx = 0, sxy = 0, squares = 0;
   for (const CalibrationPoint& p : points)
     mean_code += static_cast<double>(p.code) / n, mean += p.measured / n;
@@ -48,7 +49,7 @@ Calibration fit_calibration(const std::vector<CalibrationPoint>& points, std::in
     const double x = static_cast<double>(p.code) - mean_code;
     sxx += x * x, sxy += x * (p.measured - mean);
   }
-  if (!(sxx > 0)) throw BoardError{"calibration: all points have one code"};
+  if (!(sxx > 0)) throw BoardError{"calibration: all points have the same code; measure several codes"};
   const double slope = sxy / sxx;
   Calibration result;
   for (const CalibrationPoint& p : points) {
@@ -59,8 +60,9 @@ Calibration fit_calibration(const std::vector<CalibrationPoint>& points, std::in
   result.residual = std::sqrt(squares / (n - 2));
   const double slope_std = result.residual / std::sqrt(sxx);
   if (!(std::fabs(slope) > kLeastSignificance * slope_std))
-    throw BoardError{"calibration: the measured values do not follow the code (slope " + text("%.4g", slope) +
-                     " +- " + text("%.4g", slope_std) + " a code)"};
+    throw BoardError{
+        "calibration: the measured value does not depend on the code; check wiring and instrument (slope " +
+        text("%.4g", slope) + " +- " + text("%.4g", slope_std) + " a code)"};
   const double to_span = static_cast<double>(codes) / kPerUnit[rotary ? 1 : 0];
   result.span = std::fabs(slope) * to_span;
   result.span_std = slope_std * to_span;

@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// Reading of an instrument at an axis while its output held a code.
+/// Reading of an instrument at an axis while the output of the axis had a constant code.
 struct CalibrationPoint {
   std::int64_t code = 0;
   double measured = 0;  // um of a linear axis, arcsec of a rotary one; 0 is without a correction
@@ -22,20 +22,21 @@ struct Calibration {
   std::size_t points = 0;
 };
 
-/// Least squares. codes: those of the whole span. Throws BoardError: fewer than three points, one code only,
-/// a slope that is not five times its uncertainty. setup. Source: JCGM 100:2008, H.3 (calibration line).
+/// Fits a line to the points by least squares. codes: number of codes of the whole span. Throws BoardError:
+/// fewer than three points, only one code, a slope smaller than five times its uncertainty. setup. Source:
+/// JCGM 100:2008, H.3 (calibration line).
 Calibration fit_calibration(const std::vector<CalibrationPoint>& points, std::int64_t codes, bool rotary);
 
-/// Reads "code,measured[um]" (rotary: "code,measured[arcsec]"), a header and then a point a line; # comments.
-/// Throws BoardError with file and line. setup.
+/// Reads a file with the header "code,measured[um]" (rotary: "code,measured[arcsec]") and one point per line;
+/// # begins a comment. Throws BoardError with file and line. setup.
 std::vector<CalibrationPoint> read_calibration_points(const std::string& path, bool rotary);
 
-/// The file that an output names as its `calibration`: span, zero (the nearest code) and polarity, and their
-/// uncertainties for people. Written by write_output: as a whole or, if that fails, not changed; throws
-/// BoardError then. setup.
+/// Writes the file that an output names as its `calibration`: span, zero (the nearest code) and polarity. The
+/// uncertainties are written as comments for people. The file is written by write_output: as a whole or, if
+/// that fails, not changed. Then BoardError is thrown. setup.
 void write_calibration(const std::string& path, const Calibration& calibration, const std::string& axis);
 
-/// The same as JSON.
+/// Returns a calibration as JSON: the content of write_calibration.
 std::string calibration_json(const Calibration& calibration, const std::string& axis);
 
 }  // namespace vernier

@@ -24,7 +24,7 @@ AnalogueScale analogue_scale(const SignalSource& source, bool rotary, std::int64
   const std::string after(suffix);
   AnalogueScale scale;
   if (source.texts.contains("calibration") && !source.numbers.contains("span"))
-    source.fail(source.text("calibration") + " is not there yet; vernierd --calibrate makes it");
+    source.fail(source.text("calibration") + " does not exist; make it with vernierd --calibrate");
   const double span = source.number("span");
   if (!(span > 0 && span <= kMostSpan)) source.fail("span must be above 0 and at most 10000");
   scale.span = std::llround(span * (rotary ? kCountsPerDeg : kNmPerMm));
@@ -35,7 +35,7 @@ AnalogueScale analogue_scale(const SignalSource& source, bool rotary, std::int64
   scale.inverted = is_inverted(source);
   if (scale.span < 1) source.fail("span is less than one count of the axis");
   if (!scale.valid())
-    source.fail("low" + after + ", zero" + after + ", high" + after + " are not in this order");
+    source.fail("low" + after + ", zero" + after + ", high" + after + " must be in this order");
   return scale;
 }
 

@@ -19,7 +19,7 @@ std::uint32_t input_of(const BoardFile& file, const SignalSource& source, const 
     if (file.inputs[i].source.kind == "feature") source.fail(name + " is a feature itself");
     return i;
   }
-  source.fail(std::string(setting) + ": the board has no input " + name);
+  source.fail(std::string(setting) + ": the board file has no input " + name);
 }
 
 /// Resolution of a sample, millionths of its signal's unit. Resolutions are decimal fractions, which a double
@@ -46,7 +46,7 @@ void add_displacement(const BoardFile& file, const InputEntry& input, FeatureReq
   if (input.unit != "um") source.fail("a displacement is in um: unit = \"um\"");
   const double millionth_nm_s2 = nm_s2_in_a_millionth(file.inputs[request.of], source);
   if (request.minus != kNoInput && file.inputs[request.minus].unit != file.inputs[request.of].unit)
-    source.fail("of and minus have two units");
+    source.fail("the inputs `of` and `minus` must have the same unit");
   request.lsb_nm_s2 = std::llround(static_cast<double>(request.lsb.count) * millionth_nm_s2);
   const double corner_mHz = 1000 * source.number("corner_Hz", 0);
   if (!(corner_mHz >= 1 && corner_mHz <= 1e6)) source.fail("corner_Hz must be between 0.001 and 1000");

@@ -7,8 +7,8 @@
 
 namespace vernier {
 
-/// The inputs of kind "feature" of a board file. Throws BoardError if one names no input with samples or no
-/// feature, or has a window or resolution that is not possible. setup.
+/// The inputs of kind "feature" of a board file. Throws BoardError if an input names no input with samples or
+/// no feature, or has a window or resolution that is not possible. setup.
 std::vector<FeatureRequest> feature_requests(const BoardFile& file);
 
 }  // namespace vernier

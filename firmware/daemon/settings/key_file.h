@@ -6,8 +6,8 @@
 
 namespace vernier {
 
-/// An error in a board file or a file that it names: "board.toml:12: axis.X: kind: 'lineal' is neither linear
-/// nor rotary".
+/// An error in a board file or in a file that the board file names: "board.toml:12: axis.X: kind: 'lineal' is
+/// neither linear nor rotary".
 struct BoardError {
   std::string what;
 };

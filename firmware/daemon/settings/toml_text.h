@@ -4,9 +4,9 @@
 
 namespace vernier {
 
-/// Letters beyond ASCII are allowed only in comments and in strings of one line of a TOML file that a board
-/// reads. The parser library assumes this ("unit = µm", without quotes, is undefined in it): other letters
-/// are refused before. Throws BoardError with file, line and word. setup.
+/// Refuses a TOML file that has letters beyond ASCII outside comments and strings of one line. The parser
+/// library is undefined for such letters ("unit = µm", without quotes); they are therefore refused before
+/// parsing. Throws BoardError with file, line and word. setup.
 void refuse_letters_outside_strings(const std::string& text, const std::string& path);
 
 }  // namespace vernier

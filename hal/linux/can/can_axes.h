@@ -10,7 +10,7 @@
 
 namespace vernier {
 
-/// What came over the bus so far; all only go up.
+/// Counters of the frames on the bus; each counter only increases.
 struct CanCounts {
   std::uint64_t frames = 0;      // taken as the newest position of an axis
   std::uint64_t malformed = 0;   // not 8 bytes, remote, or an identifier that was not requested
@@ -31,12 +31,12 @@ class CanAxes : public AxisReader {
   static constexpr std::uint32_t kMostFrames = 256;   // taken from the socket in one tick
   static constexpr std::uint32_t kStalledFrames = 3;  // frames with one and the same stamp that are accepted
 
-  /// interface: "can0"; ids: 11 bits, or 29 bits above 0x7ff, all different, at least one. Null with `error`
-  /// set if the kernel refuses. setup.
+  /// interface: for example "can0"; ids: 11 bits, or 29 bits above 0x7ff, all different, at least one.
+  /// Returns null with `error` set if the kernel refuses the socket. setup.
   static std::unique_ptr<CanAxes> open(const std::string& interface, const std::vector<std::uint32_t>& ids,
                                        std::string& error);
-  /// Any socket that keeps frames apart and does not block, and gives them as the kernel's can_frame; taken
-  /// over. setup.
+  /// Takes over any socket that keeps frames apart, does not block, and gives frames as the kernel's
+  /// can_frame. setup.
   CanAxes(int socket, const std::vector<std::uint32_t>& ids);
   ~CanAxes() override;
   CanAxes(const CanAxes&) = delete;
@@ -44,9 +44,9 @@ class CanAxes : public AxisReader {
 
   /// Takes the frames since the last call, at most kMostFrames, without waiting. realtime.
   void begin_tick() noexcept override;
-  /// kNoReading: no new, valid frame of this axis since the tick before. realtime.
+  /// kNoReading: no new, valid frame of this axis since the previous tick. realtime.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
-  /// The frames know neither feed nor curvature: zero. realtime.
+  /// Sets feed and curvature to zero: the frames do not contain them. realtime.
   HalFault read_path(PathReading& reading) noexcept override;
   bool gives_motion() const noexcept override { return false; }
 

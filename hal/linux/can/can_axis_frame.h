@@ -8,11 +8,11 @@ namespace vernier {
 ///
 ///   bytes 0..5  position, signed, 48 bits, least significant byte first; counts of the axis: 1 nm
 ///               (±140 km), or 2^-32 turn (±32768 turns)
-///   byte 6      counter: one more with each frame of this axis, modulo 256
+///   byte 6      counter: increases by 1 with each frame of this axis, modulo 256
 ///   byte 7      bit 0 the position is valid, bit 1 the axis is referenced, bits 2..7 stamp
 ///
-/// stamp: the low six bits of the controller's clock in units of 64 us when the position was *sampled*. It
-/// does not change if the communication of a controller continues after its measurement has stopped.
+/// stamp: the low six bits of the controller's clock in units of 64 us when the position was *sampled*. The
+/// stamp does not change if a controller still communicates after its measurement has stopped.
 struct CanAxisFrame {
   static constexpr unsigned kBytes = 8;
   static constexpr std::int64_t kMostPosition = (std::int64_t{1} << 47) - 1;

@@ -25,8 +25,8 @@ class IsotpLink : public CommandLink {
     return 1;
   }
 
-  /// The client's side: sends a request and waits for its reply. Returns the bytes of the reply, -1 with
-  /// errno set without a reply. setup.
+  /// The client's side of an ISO-TP link: sends a request and waits for the reply. Returns the bytes of the
+  /// reply; -1 with errno set if no reply came. setup.
   int ask(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, std::uint32_t room,
           TimeUs wait) noexcept;
 

@@ -11,7 +11,7 @@
 
 namespace vernier {
 
-/// A channel of a device's buffer: the name of its files in scan_elements without "in_" ("accel_x").
+/// A channel of the buffer of a device: the name of its files in scan_elements without "in_" ("accel_x").
 struct IioChannel {
   std::string name;
   IioScale scale;
@@ -25,7 +25,7 @@ struct IioBufferSettings {
   std::string frequency;  // written to sampling_frequency; empty: not changed
 };
 
-/// What came out of the buffer so far; all only go up.
+/// Counters of the scans from the buffer; each counter only increases.
 struct IioBufferCounts {
   std::uint64_t scans = 0;
   std::uint64_t skipped = 0;    // scans that came too quickly: beyond kMostWaiting the oldest are left out
@@ -34,25 +34,27 @@ struct IioBufferCounts {
   std::uint64_t broken = 0;     // ticks in which the device failed
 };
 
-/// A sensor (for example an accelerometer) that fills a buffer of the kernel's industrial I/O class by its
-/// clock or a trigger. Every tick gets the next scan, in order, each once. Input i is the i-th channel. A
-/// scan waits for its tick. If the sensor's clock is faster than the ticks, the queue grows to kMostWaiting
-/// and then a scan is skipped now and then. If it is slower, a tick has no scan (kNoReading): a feature's
-/// window repeats a sample there.
+/// A sensor (for example an accelerometer) that fills a buffer of the kernel's industrial I/O class. The
+/// sensor's clock or a trigger starts each scan. Every tick gets the next scan, in order; each scan is used
+/// once. Input i is the i-th channel. A scan waits in a queue until its tick. If the sensor's clock is faster
+/// than the ticks, the queue grows to kMostWaiting; then a scan is skipped now and then. If the sensor's
+/// clock is slower than the ticks, some ticks have no scan (kNoReading): the window of a feature then repeats
+/// a sample.
 class IioBuffer : public InputReader {
  public:
   static constexpr std::uint32_t kMostWaiting = 4;  // ticks that a tick may be late without a scan lost
 
-  /// Sets the device up (channels, trigger, rate) and starts it. Null with `error` set. setup.
+  /// Sets up the device (channels, trigger, rate) and starts it. Returns null with `error` set if that fails.
+  /// setup.
   static std::unique_ptr<IioBuffer> open(const IioBufferSettings& settings, std::string& error);
   /// Stops the device.
   ~IioBuffer() override;
   IioBuffer(const IioBuffer&) = delete;
   IioBuffer& operator=(const IioBuffer&) = delete;
 
-  /// Takes the received scans, without waiting, and steps to the next one. realtime: one or two system calls.
+  /// Takes the received scans without waiting, and steps to the next scan. realtime: one or two system calls.
   void begin_tick() noexcept override;
-  /// kNoReading: no scan for this tick. realtime.
+  /// kNoReading: this tick has no scan. realtime.
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
   const IioBufferCounts& counts() const noexcept { return counts_; }
 

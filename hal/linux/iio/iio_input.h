@@ -8,15 +8,15 @@
 
 namespace vernier {
 
-/// value = (value of the attribute + offset) * scale, in the unit of the input, as the kernel defines its
-/// in_*_offset and in_*_scale.
+/// Scale of an attribute: value = (value of the attribute + offset) * scale, in the unit of the input, as the
+/// kernel defines in_*_offset and in_*_scale.
 struct IioScale {
   double offset = 0;
   double scale = 1;
 };
 
-/// A sensor of the kernel's industrial I/O class, or of hwmon: one attribute, for example in_temp0_input in
-/// 1/1000 degC, or in_voltage3_raw.
+/// A sensor of the kernel's industrial I/O class, or of hwmon. The sensor is one attribute, for example
+/// in_temp0_input in 1/1000 degC, or in_voltage3_raw.
 class IioInput : public SampledInput {
  public:
   /// attribute: path. Null with `error` set. setup.

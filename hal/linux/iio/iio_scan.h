@@ -6,26 +6,27 @@
 
 namespace vernier {
 
-/// How the kernel lays a channel out in the scans of an IIO buffer (scan_elements/*_type,
+/// Layout of a channel in the scans of an IIO buffer (scan_elements/*_type,
 /// Documentation/ABI/testing/sysfs-bus-iio).
 struct IioElement {
   bool big_endian = false, is_signed = false;
   std::uint32_t bits = 0, storage_bits = 0, shift = 0;
   std::uint32_t repeat = 1;  // elements in a row, of which the first is taken
 
-  /// Bytes of all its elements; where a scan has it begins at a multiple of this.
+  /// Returns the bytes of all values of the channel; its offset in a scan is a multiple of this number.
   std::uint32_t bytes() const noexcept { return storage_bits / 8 * repeat; }
 };
 
-/// Reads "le:s16/16>>0", "be:u24/32X2>>8" and the like. False for other text, or if its storage is not 8, 16,
-/// 32 or 64 bits or does not hold its bits. setup.
+/// Reads "le:s16/16>>0", "be:u24/32X2>>8" and the like. Returns false for other text, or if the storage is
+/// not 8, 16, 32 or 64 bits or is too small for its bits. setup.
 bool parse_iio_element(std::string_view text, IioElement& element) noexcept;
 
-/// Value of a channel whose storage begins here: converted to the byte order of the host, shifted, cut to its
-/// bits, with its sign. An unsigned value of 64 bits is limited to the largest int64. realtime.
+/// Returns the value of a channel whose storage begins at `storage`: converted to the byte order of the host,
+/// shifted, cut to its bits, with its sign. An unsigned value of 64 bits is limited to the largest int64.
+/// realtime.
 std::int64_t iio_value(const unsigned char* storage, const IioElement& element) noexcept;
 
-/// Offset of an element after so many bytes of a scan; elements are aligned to their size.
+/// Returns the offset of an element that follows `at` bytes of a scan; elements are aligned to their size.
 constexpr std::size_t iio_aligned(std::size_t at, std::size_t size) noexcept {
   return (at + size - 1) / size * size;
 }

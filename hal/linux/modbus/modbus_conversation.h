@@ -7,18 +7,19 @@
 
 namespace vernier {
 
-/// Layout of the register map. The mailbox: a request is written (function 16) to the holding registers from
-/// `mailbox` on, its length in bytes, then the bytes, high byte first. The reply is in the input registers
-/// there, separate for each client. Input registers from 0: live state; holding register 0: command (function
-/// 6).
+/// Layout of the register map. The client writes a request (function 16) to the mailbox, the holding
+/// registers from `mailbox` on: the length of the request in bytes, then the bytes, high byte first. The
+/// reply is in the input registers at the same address, separate for each client. Input registers from 0:
+/// live state; holding register 0: command (function 6).
 struct ModbusLayout {
   int mailbox = 0, mailbox_registers = 0, live_registers = 0;
 };
 
-/// The server's side of a conversation with one Modbus client: bytes in, bytes out, no device and no wait.
-/// One buffer each way: while a reply is being made or has not been sent, no further bytes are accepted.
-/// Functions 3, 4, 6 and 16; all others are refused with the exceptions of the standard (Modbus Application
-/// Protocol V1.1b3; Modbus over Serial Line V1.02 for the frames of RTU).
+/// The server's side of a conversation with one Modbus client: takes and gives bytes, has no device and never
+/// waits. The conversation has one buffer in each direction. While a reply is being made or has not been
+/// sent, no further bytes are accepted. Functions 3, 4, 6 and 16 are supported; all others are refused with
+/// the exceptions of the standard (Modbus Application Protocol V1.1b3; Modbus over Serial Line V1.02 for the
+/// frames of RTU).
 class ModbusConversation {
  public:
   static constexpr std::uint32_t kMostFrame = 260;           // 7 of MBAP and 253 of a request
@@ -26,39 +27,40 @@ class ModbusConversation {
   static constexpr std::uint32_t kMostLive = 125;            // registers
   static constexpr InstantNs kReplyDeadline{1'000'000'000};  // for a peer to take its reply
 
-  /// unit: of a serial line, 1..247; 0: TCP, any unit. frame_time: for the whole of a request, from its first
-  /// byte on. setup.
+  /// unit: address on a serial line, 1..247; 0: TCP, any unit. frame_time: longest time for a whole request,
+  /// from its first byte on. setup.
   ModbusConversation(const ModbusLayout& layout, int unit, InstantNs frame_time) noexcept
       : layout_(layout), unit_(unit), frame_time_(frame_time) {}
 
-  /// It counts as having asked something at `when`. connection: its number (CommandHandler::comes_over).
+  /// Sets the time of the last request to `when`. connection: number of CommandHandler::comes_over.
   void begin(InstantNs when, std::uint64_t connection) noexcept {
     last_request_ = when, connection_ = connection;
   }
   std::uint64_t connection() const noexcept { return connection_; }
 
-  /// Where received bytes go, and how many fit now.
+  /// Returns the place for received bytes; room() is the number of bytes that fit now.
   std::uint8_t* space() noexcept { return in_ + used_; }
   std::uint32_t room() const noexcept { return busy() ? 0 : kMostFrame - used_; }
-  /// So many bytes came into space().
+  /// Reports that `bytes` bytes were written to space().
   void took(std::uint32_t bytes, InstantNs now) noexcept;
 
-  /// Answers the request that is complete, if one is, or goes on with one whose reply takes its time.
+  /// Answers the complete request, if there is a complete request, or continues with a request whose reply
+  /// takes time.
   void work(CommandHandler& handler, InstantNs now) noexcept;
 
-  /// Bytes to be sent, and number of bytes sent.
+  /// out() returns the bytes to be sent, waiting() their number; sent() takes the number of bytes sent.
   const std::uint8_t* out() const noexcept { return out_ + sent_; }
   std::uint32_t waiting() const noexcept { return out_size_ - sent_; }
   void sent(std::uint32_t bytes) noexcept;
 
-  /// The peer sends a wrong length, is too slow, or does not take its reply: a connection must be closed. A
-  /// serial line continues: the received bytes are discarded.
+  /// True if the peer sends a wrong length, is too slow, or does not take its reply: a connection must then
+  /// be closed. A serial line continues: the received bytes are discarded.
   bool broken(InstantNs now) noexcept;
-  /// A reply waits to be taken.
+  /// True if the client has not taken its reply.
   bool has_reply() const noexcept { return waiting() > 0; }
-  /// The client waits for the medium.
+  /// True if the client waits for the medium.
   bool waits_for_medium() const noexcept { return waits_for_reply_; }
-  /// A request of the client had a valid signature.
+  /// True if a request of the client had a valid signature.
   bool is_signed() const noexcept { return signed_; }
   InstantNs last_request() const noexcept { return last_request_; }
 
@@ -87,7 +89,7 @@ class ModbusConversation {
   bool waits_for_reply_ = false, senseless_ = false, signed_ = false;
 };
 
-/// CRC of an RTU frame (Modbus over Serial Line V1.02, 6.2.2).
+/// Returns the CRC of an RTU frame (Modbus over Serial Line V1.02, 6.2.2).
 std::uint16_t modbus_crc(const std::uint8_t* bytes, std::uint32_t size) noexcept;
 
 }  // namespace vernier

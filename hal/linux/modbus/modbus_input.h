@@ -11,15 +11,15 @@ struct _modbus;
 
 namespace vernier {
 
-/// The asking side of a Modbus line (libmodbus): a serial line that several sensors share, or a connection.
-/// Never used in the tick.
+/// The asking side of a Modbus line (libmodbus): a serial line that several sensors share, or a connection. A
+/// ModbusLine is never used in the tick.
 class ModbusLine {
  public:
-  /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; wait: for an answer. Null with
-  /// `error` set if the device cannot be used. setup.
+  /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; wait: longest time for an answer.
+  /// Returns null with `error` set if the device cannot be used. setup.
   static std::shared_ptr<ModbusLine> rtu(const std::string& device, int baud, char parity, TimeUs wait,
                                          std::string& error);
-  /// address: numeric. A peer that is not there is no error: it is tried again with each reading. setup.
+  /// address: numeric. A peer that does not answer is no error: each reading tries it again. setup.
   static std::shared_ptr<ModbusLine> tcp(const std::string& address, int port, TimeUs wait,
                                          std::string& error);
   ~ModbusLine();
@@ -27,9 +27,9 @@ class ModbusLine {
   ModbusLine& operator=(const ModbusLine&) = delete;
 
   enum class Registers { kInput, kHolding };
-  /// Reads `count` registers (1 or 2). False: no answer in time, an exception, or an answer of another unit,
-  /// transaction, function or length. After silence the line is left alone for as long again, so that a late
-  /// answer is not taken for that of the next request. setup.
+  /// Reads `count` registers (1 or 2). False: no answer in time, an exception, or an answer of another
+  /// unit, transaction, function or length. After a missing answer the line is not used for the same time
+  /// again: a late answer is then not taken for the answer to the next request. setup.
   bool read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;
   /// Answers so far that did not belong to their request or were damaged. For the thread that reads. setup.
   std::uint64_t wrong_answers() const noexcept { return wrong_answers_; }

@@ -23,16 +23,16 @@ namespace {
 // signature stays only until the next one waits. A further client thus always gets a place to sign in.
 constexpr std::size_t kOrdinaryPlaces = 16, kPlacesToSign = 4;
 constexpr std::size_t kMostClients = kOrdinaryPlaces + kPlacesToSign;
-constexpr std::size_t kMostNewcomers = 32;  // that wait for a place
-constexpr int kMostAccepted = 16;           // in one round
-constexpr int kBacklog = 64;                // of the socket, for what comes in one round
-constexpr int kRequestsInARound = 4;        // of one client, before the others have their turn
+constexpr std::size_t kMostArrivals = 32;  // that wait for a place
+constexpr int kMostAccepted = 16;          // in one round
+constexpr int kBacklog = 64;               // of the socket, for what comes in one round
+constexpr int kRequestsInARound = 4;       // of one client, before the others have their turn
 constexpr InstantNs kFrameTime(500'000'000);
 constexpr InstantNs kIdle(2'000'000'000);         // a client without a request for this time may be removed
 constexpr InstantNs kIntroduction(200'000'000);   // and one that is new, after that
 constexpr InstantNs kTimeToSign(500'000'000);     // in a place to sign in: a command needs 50 ms on a LAN
 constexpr InstantNs kSignedIdle(30'000'000'000);  // as kIdle, of a client that signed
-constexpr std::size_t kUnfair = 2;  // unsigned clients more than the peer of a newcomer has: one goes
+constexpr std::size_t kUnfair = 2;  // unsigned clients more than the peer of an arrival has: one goes
 
 InstantNs now_ns() {
   timespec now{};
@@ -52,7 +52,7 @@ ModbusServer::~ModbusServer() {
     return;
   }
   for (const Client& client : clients_) ::close(client.fd);
-  for (const Newcomer& newcomer : newcomers_) ::close(newcomer.fd);
+  for (const Arrival& arrival : arrivals_) ::close(arrival.fd);
 }
 
 std::unique_ptr<ModbusServer> ModbusServer::tcp(const std::string& address, int port,
@@ -141,33 +141,33 @@ void ModbusServer::remove(std::size_t client, CommandHandler& handler) noexcept 
   clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(client));
 }
 
-// A newcomer waits for a place. If too many wait, one of the peer with the most of them is closed.
-void ModbusServer::accept_newcomers() {
+// An arrival waits for a place. If too many wait, one of the peer with the most of them is closed.
+void ModbusServer::accept_arrivals() {
   for (int i = 0; i < kMostAccepted; ++i) {
     sockaddr_in name{};
     socklen_t length = sizeof(name);
     const int fd =
         ::accept4(listening_, reinterpret_cast<sockaddr*>(&name), &length, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd < 0) return;
-    newcomers_.push_back({fd, name.sin_addr.s_addr});
-    if (newcomers_.size() <= kMostNewcomers) continue;
-    const auto waiting = [&](const Newcomer& one) {
-      return std::count_if(newcomers_.begin(), newcomers_.end(),
-                           [&](const Newcomer& other) { return other.peer == one.peer; });
+    arrivals_.push_back({fd, name.sin_addr.s_addr});
+    if (arrivals_.size() <= kMostArrivals) continue;
+    const auto waiting = [&](const Arrival& one) {
+      return std::count_if(arrivals_.begin(), arrivals_.end(),
+                           [&](const Arrival& other) { return other.peer == one.peer; });
     };
-    const auto most = std::max_element(newcomers_.begin(), newcomers_.end(),
+    const auto most = std::max_element(arrivals_.begin(), arrivals_.end(),
                                        [&](const auto& a, const auto& b) { return waiting(a) < waiting(b); });
     ::close(most->fd);
-    newcomers_.erase(most);
+    arrivals_.erase(most);
   }
 }
 
-// The newcomer whose peer has the fewest clients comes in first.
-void ModbusServer::let_newcomers_in(CommandHandler& handler, InstantNs now) {
-  while (!newcomers_.empty()) {
+// The arrival whose peer has the fewest clients comes in first.
+void ModbusServer::admit_arrivals(CommandHandler& handler, InstantNs now) {
+  while (!arrivals_.empty()) {
     const auto next = std::min_element(
-        newcomers_.begin(), newcomers_.end(),
-        [&](const Newcomer& a, const Newcomer& b) { return places_of(a.peer) < places_of(b.peer); });
+        arrivals_.begin(), arrivals_.end(),
+        [&](const Arrival& a, const Arrival& b) { return places_of(a.peer) < places_of(b.peer); });
     if (clients_.size() >= kMostClients) {
       const std::size_t first = first_to_go(places_of(next->peer), now);
       if (first == kMostClients) return;
@@ -180,7 +180,7 @@ void ModbusServer::let_newcomers_in(CommandHandler& handler, InstantNs now) {
     ::setsockopt(next->fd, SOL_SOCKET, SO_SNDBUF, &buffer, sizeof(buffer));
     clients_.push_back({next->fd, ModbusConversation(layout_, unit_, frame_time_), next->peer, now});
     clients_.back().talk.begin(now - kIdle + kIntroduction, ++connections_);
-    newcomers_.erase(next);
+    arrivals_.erase(next);
   }
 }
 
@@ -234,8 +234,8 @@ HalFault ModbusServer::serve(CommandHandler& handler, TimeUs wait) noexcept {
     if (!serve_client(clients_[i], handler, now) && line_ == nullptr) remove(i, handler);
   }
   if (listening_ >= 0) {
-    accept_newcomers();
-    let_newcomers_in(handler, now);
+    accept_arrivals();
+    admit_arrivals(handler, now);
   }
   return HalFault::kNone;
 }

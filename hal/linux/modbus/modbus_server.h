@@ -13,15 +13,15 @@ struct _modbus;
 namespace vernier {
 
 /// A Modbus server over TCP for a few clients, or over a serial line (which libmodbus opens). No client can
-/// block it: it reads and writes what is available. It closes a connection whose request is not complete
-/// within half a second of its first byte, or whose reply is not taken within a second. Sixteen clients keep
-/// their places while they ask. A further client without a valid signature must make room for the next one
-/// after half a second; a client that signed keeps its place. A peer with more clients than another makes
-/// room for it.
+/// block the server: the server reads and writes only what is available. The server closes a connection if a
+/// request is not complete within half a second of its first byte, or a reply is not taken within a second.
+/// Sixteen clients keep their places while they send requests. A further client without a valid signature
+/// makes room for the next client after half a second. A client that signed keeps its place. A peer with more
+/// clients than another peer makes room for the other peer.
 class ModbusServer : public CommandLink {
  public:
-  /// address: numeric, "127.0.0.1"; port 0 takes any free one. Null with `error` set if it cannot listen.
-  /// setup.
+  /// address: numeric, "127.0.0.1"; port 0: any free port. Returns null with `error` set if the server cannot
+  /// listen. setup.
   static std::unique_ptr<ModbusServer> tcp(const std::string& address, int port, const ModbusLayout& layout,
                                            std::string& error);
   /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; unit: 1..247. setup.
@@ -33,7 +33,7 @@ class ModbusServer : public CommandLink {
 
   HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
   std::uint32_t handles(int* handles, std::uint32_t room) const noexcept override;
-  /// The port that it listens on; 0 on a serial line.
+  /// Returns the port on which the server listens; 0 on a serial line.
   int port() const noexcept { return port_; }
 
  private:
@@ -43,15 +43,15 @@ class ModbusServer : public CommandLink {
     std::uint32_t peer;  // IPv4 address
     InstantNs since;
   };
-  struct Newcomer {
+  struct Arrival {
     int fd;
     std::uint32_t peer;
   };
 
   ModbusServer(const ModbusLayout& layout, int unit, InstantNs frame_time)
       : layout_(layout), unit_(unit), frame_time_(frame_time) {}
-  void accept_newcomers();
-  void let_newcomers_in(CommandHandler& handler, InstantNs now);
+  void accept_arrivals();
+  void admit_arrivals(CommandHandler& handler, InstantNs now);
   void remove(std::size_t client, CommandHandler& handler) noexcept;
   std::size_t places_of(std::uint32_t peer) const noexcept;
   bool may_go(std::size_t index, std::size_t places, InstantNs now) const noexcept;
@@ -65,9 +65,9 @@ class ModbusServer : public CommandLink {
   InstantNs frame_time_;
   _modbus* line_ = nullptr;  // of a serial line, which is the only client then
   int listening_ = -1, port_ = 0;
-  std::vector<Client> clients_;      // in the order in which they came in
-  std::vector<Newcomer> newcomers_;  // connected, without a place
-  std::uint64_t connections_ = 0;    // so far
+  std::vector<Client> clients_;    // in the order in which they came in
+  std::vector<Arrival> arrivals_;  // connected, without a place
+  std::uint64_t connections_ = 0;  // so far
 };
 
 }  // namespace vernier

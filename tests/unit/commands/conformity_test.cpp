@@ -128,7 +128,7 @@ TEST_F(PartCommands, PlanForAccuracyIsMeasuredByAFit) {
   EXPECT_THAT(said_, HasSubstr("limited by"));
   EXPECT_FALSE(fs::exists(folder_ + "/none.csv"));
   ASSERT_EQ(run(plan + "100 -o none.csv"), 0) << said_;
-  EXPECT_THAT(said_, HasSubstr("no measurement is needed"));
+  EXPECT_THAT(said_, HasSubstr("no further measurement is needed"));
   EXPECT_FALSE(fs::exists(folder_ + "/none.csv"));
 }
 

@@ -150,7 +150,7 @@ TEST(Chain, LagWithATimeConstantFromStatics) {
     FAIL() << "a time constant that varies";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("lag(vX,t1+abs(Y))"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("time constant is not constant"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("time constant of a lag must be constant"), std::string::npos);
   }
 }
 

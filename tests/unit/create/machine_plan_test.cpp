@@ -66,7 +66,7 @@ TEST(MachinePlan, OrderOfTheSidesCanBeSaid) {
   const MachinePlan given = plan_machine("gantry", list, std::vector<std::string>{"X", "Z"}, std::nullopt);
   EXPECT_EQ(drawing(given), "bed > X (carriage) > Z (ram) > tool\nbed > Y (beam) > workpiece");
   EXPECT_EQ(refusal([&] { plan_machine("gantry", list, std::vector<std::string>{"Q"}, std::nullopt); }),
-            "\"Q\": no --axis of this name");
+            "\"Q\": no --axis has this name");
   EXPECT_EQ(
       refusal([&] {
         plan_machine("gantry", list, std::vector<std::string>{"X", "Y"}, std::vector<std::string>{"Y", "Z"});
@@ -119,7 +119,7 @@ TEST(MachinePlan, RefusalsSayWhatToDo) {
   EXPECT_TRUE(has(refusal([] { parse_planned_axis("X:0"); }), "NAME:MIN:MAX"));
   EXPECT_TRUE(has(refusal([] { parse_planned_axis("X:0:12,5"); }), "decimal sign is a point"));
   EXPECT_TRUE(has(refusal([] { parse_planned_axis("X:600:0"); }), "MAX must be greater"));
-  EXPECT_TRUE(has(refusal([] { parse_planned_axis("x:0:600"); }), "something else"));
+  EXPECT_TRUE(has(refusal([] { parse_planned_axis("x:0:600"); }), "formats reserve this name"));
   EXPECT_TRUE(has(refusal([] { parse_planned_axis("C:0:270:wrap"); }), "one turn"));
   EXPECT_TRUE(has(refusal([] { plan_robot(axes({"C:0:1"}), default_arm()); }), "1 axes, but 6 rows"));
   EXPECT_TRUE(has(refusal([] { parse_dh_row("1,2,3"); }), "theta,d,a,alpha"));
@@ -128,9 +128,10 @@ TEST(MachinePlan, RefusalsSayWhatToDo) {
 TEST(MachinePlan, NamesOfMeasuredColumnsAreRefused) {
   for (const char* name :
        {"setup", "clock", "block", "distance", "ix", "from", "corrected", "run", "x", "ua"})
-    EXPECT_NE(
-        refusal([&] { parse_planned_axis(std::string(name) + ":0:600:X"); }).find("formats use this name"),
-        std::string::npos)
+    EXPECT_NE(refusal([&] {
+                parse_planned_axis(std::string(name) + ":0:600:X");
+              }).find("formats reserve this name"),
+              std::string::npos)
         << name;
   EXPECT_EQ(refusal([&] {
               plan("gantry", {"X:0:600", "Y:0:400", "correctionX:-300:0:Z"});

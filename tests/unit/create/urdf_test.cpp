@@ -161,7 +161,7 @@ TEST(Urdf, SaysWhatItCannotTake) {
   };
   EXPECT_EQ(refusal(good), "accepted");
   EXPECT_NE(refusal("<machine/>").find("no URDF"), std::string::npos);
-  EXPECT_NE(refusal(good, "hand").find("\"hand\": no link has this name"), std::string::npos);
+  EXPECT_NE(refusal(good, "hand").find("\"hand\": the URDF has no link of this name"), std::string::npos);
   EXPECT_NE(refusal(with("<axis xyz=\"0 0 1\"", "<axis xyz=\"${a}\"")).find("xacro"), std::string::npos);
   EXPECT_NE(refusal(with("<axis xyz=\"0 0 1\"", "<axis xyz=\"0 0 0\"")).find("no direction"),
             std::string::npos);

@@ -122,7 +122,7 @@ TEST(Positioning, RefusesWhatItCannotJudge) {
     return std::string("accepted");
   };
   EXPECT_NE(refused("X[mm],x[mm]\n0,0\n", "Y", "x").find("\"Y\": this column is missing"), std::string::npos);
-  EXPECT_NE(refused("X[mm],x[deg]\n0,0\n", "X", "x").find("another kind of unit"), std::string::npos);
+  EXPECT_NE(refused("X[mm],x[deg]\n0,0\n", "X", "x").find("another dimension"), std::string::npos);
   EXPECT_NE(refused("X[mm],x[mm],dirX\n0,0,1\n1,1,1\n", "X", "x").find("one reading at 0 forward"),
             std::string::npos);
   EXPECT_NE(refused("X[mm],x[mm],dirX\n0,0,1\n0,0,1\n", "X", "x").find("two targets"), std::string::npos);

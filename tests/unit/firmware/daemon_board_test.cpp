@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "no input of kind thermo"},
         BadBoard{"FeatureOfNothing", "source = { kind = \"sim\" }",
                  "source = { kind = \"feature\", of = \"acc\", feature = \"RMS\" }",
-                 "input.T.source: of: the board has no input acc"},
+                 "input.T.source: of: the board file has no input acc"},
         BadBoard{"FeatureOfItself", "source = { kind = \"sim\" }",
                  "source = { kind = \"feature\", of = \"T\", feature = \"RMS\" }", "T is a feature itself"},
         BadBoard{"FeatureName", "source = { kind = \"sim\" }",

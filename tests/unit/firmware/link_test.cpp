@@ -230,11 +230,11 @@ TEST_F(GateTest, WithoutASignatureABoardWithKeysShowsItsStateAndDoesNothing) {
                                         [&] { board_->confirm(); },
                                         [&] { board_->revert(); }};
   for (const auto& act : acts)
-    EXPECT_EQ(refused(act), "the board refuses: it wants this signed (--key, or VERNIER_KEY)");
+    EXPECT_EQ(refused(act), "the board refuses: the request must be signed (--key, or VERNIER_KEY)");
   EXPECT_FALSE(way_->give(1)) << "nor by register";
   board_->sign_with(new_key());
   for (const auto& act : acts)
-    EXPECT_EQ(refused(act), "the board refuses: it does not trust this key with that");
+    EXPECT_EQ(refused(act), "the board refuses: the key has no right for this request");
   EXPECT_EQ(refused([&] { board_->newest(), board_->slots(); }), "");
   board_->sign_with(key_);
   EXPECT_NO_THROW(board_->upload(upload, [](double) {}));

@@ -69,7 +69,7 @@ TEST_F(FleetCommand, RecordsACalibrationAndItsChecks) {
   EXPECT_EQ(json("vernier fleet due")["machines"][0]["why"], "not checked since its calibration");
   EXPECT_EQ(run("vernier fleet check VMC-3 --result check.json --history checks.json --at 2026-11-01"), 2)
       << "it is there";
-  EXPECT_EQ(run("vernier fleet check VMC-3 --result check.json --at 2199-01-01"), 1) << "still to come";
+  EXPECT_EQ(run("vernier fleet check VMC-3 --result check.json --at 2199-01-01"), 1) << "in the future";
   const auto alike = json("vernier fleet alike")["quantities"];
   ASSERT_FALSE(alike.empty());
   EXPECT_FALSE(alike[0]["judged"]) << "one machine is no fleet";

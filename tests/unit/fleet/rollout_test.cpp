@@ -190,7 +190,7 @@ TEST_F(RolloutTest, BoardOfAnotherNameIsRefusedAndAnEntryWithoutANameToo) {
   EXPECT_EQ(slots(1).newest_issued, 0u);
   ASSERT_EQ(vernier("fleet add m1 --registry fleet.db --board ''"), 0);
   EXPECT_EQ(roll("--machine m1"), 1) << said();
-  EXPECT_NE(said().find("no board name is entered"), std::string::npos) << said();
+  EXPECT_NE(said().find("has no board name for this machine"), std::string::npos) << said();
 }
 
 TEST_F(RolloutTest, KeyThatIsNotEnteredIsTrustedOnFirstUseAndToldSo) {

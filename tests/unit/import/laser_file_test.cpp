@@ -58,9 +58,9 @@ TEST(LaserFile, ZerosThatFillATestOfOneSenseAreLeftOut) {
 
 TEST(LaserFile, WhatDoesNotAgreeIsRefusedWithItsPlace) {
   const std::pair<std::string, const char*> kBad[] = {
-      {file("1 1 0.5\n1 4 1\n"), "l.rtl:25: \"4\": no such target: there are 3"},
+      {file("1 1 0.5\n1 4 1\n"), "l.rtl:25: \"4\": this target does not exist: the file has 3 targets"},
       {file("1 1 0.5\n1 2 x\n"), "l.rtl:25: \"x\": not a number"},
-      {file("1 1 0.5\n1 2\n"), "l.rtl:25: \"1 2\": not run, target and deviation"},
+      {file("1 1 0.5\n1 2\n"), "l.rtl:25: \"1 2\": the line must contain run, target and deviation"},
       {file("1 1 0.5\n1 1 1\n", "0 1 2 0", "1"), "l.rtl:25: \"1\": this target occurs twice in run 1"},
       {file(kBoth, "0 0 2 0", "4"), "2 runs where the count is 4"},
       {file("", "0 0 2 0", "0"), "no readings"},

@@ -148,7 +148,7 @@ const Case kCases[] = {
     {"Words", "X[mm];x[mm]\n1;2\n2;abc\n3;4\n", "refused: s.csv:3: \"abc\": not a number, for x"},
     {"NothingMeasured", "X[mm];Y[mm]\n1;2\n", "nothing measured among the columns"},
     {"OldWorkbook", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "save it as .xlsx or as CSV"},
-    {"NoNumbers", "only;words\nhere;too\n", "no row of this table holds numbers"},
+    {"NoNumbers", "only;words\nhere;too\n", "no row of this table contains numbers"},
     {"PressureIsNoDeviation", "X [mm];Abweichung [bar]\n100;1\n200;2\n",
      "refused: s.csv:1: \"Abweichung [bar]\": [bar] is no unit of a deviation of X, which needs a unit like "
      "mm "
@@ -208,7 +208,9 @@ TEST(SheetWish, DeviationIsAddedToThePosition) {
 TEST(SheetWish, UnknownHeadingIsNamedWithThoseThatAreThere) {
   const std::string result = import(
       kOdd, {}, [](SheetWishes& wishes, const SheetTable& table) { assign_column(wishes, table, "x=Weg"); });
-  EXPECT_NE(result.find("no such heading; there are Pos, Anzeige [µm], Stift"), std::string::npos) << result;
+  EXPECT_NE(result.find("the sheet has no such heading; its headings are Pos, Anzeige [µm], Stift"),
+            std::string::npos)
+      << result;
 }
 
 TEST(SheetProfile, ReadsTheNextFileAsThisOne) {

@@ -130,7 +130,7 @@ TEST(Tracker, ErrorsNameFileLineAndWord) {
   EXPECT_TRUE(has(message_of("colum 1 = x[mm]\n", "1\n"), "map.txt:1: \"colum 1\""));
   EXPECT_TRUE(has(message_of("column Far = x[mm]\n", "a,b\n1,2\n"), "data.txt:1: \"Far\""));
   EXPECT_TRUE(has(message_of("column a = x[mm]\n", "a,a\n1,2\n"), "several"));
-  EXPECT_TRUE(has(message_of("column 1 = X[mm]\n", "1,2\n"), "nothing measured"));
+  EXPECT_TRUE(has(message_of("column 1 = X[mm]\n", "1,2\n"), "no measured column is mapped"));
   EXPECT_TRUE(has(message_of("column 1 = rX[deg]\n", "1,2\n"), "rY rZ"));
   EXPECT_TRUE(has(message_of("column 1=qw\ncolumn 2=qx\ncolumn 3=qy\ncolumn 4=qz\n", "1,0,0,0\n1,0.2,0,0\n"),
                   "data.txt:2: \"qw\""));

@@ -45,7 +45,7 @@ TEST(LoadArguments, NameAxesInputsAndWhatTurns) {
 TEST(LoadArguments, RefuseByNameWhatCannotBe) {
   const std::string long_name(30, 't');
   const auto why = [](const Load& load) { return load.good ? std::string("taken") : std::string(load.why); };
-  EXPECT_EQ(why(Load({})), "axes=: missing: axes=X,Y,... names the axes of the joints");
+  EXPECT_EQ(why(Load({})), "axes=: axes is missing: give the axis names of the joints, axes=X,Y,...");
   EXPECT_EQ(why(Load({"X", "Y"}, {}, {"Q"})), "rotary=Q: none of the axes");
   EXPECT_EQ(why(Load({"X", "A"}, {}, {"none", "A"})), "rotary=none: none of the axes");
   EXPECT_EQ(why(Load({"X"}, {"X"})), "inputs=X: the name of an axis");

@@ -81,7 +81,7 @@ TEST(VolumeJson, SaysWhyThereIsNone) {
   open.axes[0].max.reset();
   std::string why_not;
   EXPECT_FALSE(volume_json(open, 3, why_not).has_value());
-  EXPECT_NE(why_not.find("this axis needs min and max"), std::string::npos);
+  EXPECT_NE(why_not.find("this axis has no min and max"), std::string::npos);
 }
 
 TEST(Measured, ScaleErrorOnAxesAndDiagonals) {

@@ -104,7 +104,7 @@ TEST(MachineFile, ReadsWhatIsCorrected) {
   };
   EXPECT_FALSE(parse_machine(text("position"), "m.xml").correct_orientation);
   EXPECT_TRUE(parse_machine(text("position orientation"), "m.xml").correct_orientation);
-  EXPECT_NE(error_of(text("orientation")).find("correct is"), std::string::npos);
+  EXPECT_NE(error_of(text("orientation")).find("correct must be"), std::string::npos);
   EXPECT_NE(error_of(text("position tilt")).find("tilt"), std::string::npos);
 }
 

@@ -150,7 +150,8 @@ TEST(MeasurementFile, ErrorsNameFileLineAndWord) {
   EXPECT_EQ(error_of("X[mm],x[mm]\n1,2\n"), "m.csv:1: \"B\": the column of this axis is missing");
   EXPECT_EQ(error_of("X[mm],B[deg],x[mm]\n1,2,3\n1,2\n").substr(0, 14), "m.csv:3: \"1,2\"");
   EXPECT_EQ(error_of("X[mm],B[deg],x[mm]\n1,2,3a\n"), "m.csv:2: \"3a\": not a number, in column x");
-  EXPECT_EQ(error_of("X[mm],B[mm],x[mm]\n1,2,3\n"), "m.csv:1: \"B[mm]\": this column needs a unit like deg");
+  EXPECT_EQ(error_of("X[mm],B[mm],x[mm]\n1,2,3\n"),
+            "m.csv:1: \"B[mm]\": this column needs a unit, for example deg");
   EXPECT_EQ(error_of("X[mm],B[deg],x[furlong]\n1,2,3\n").substr(0, 28), "m.csv:1: \"furlong\": unknown ");
 }
 
@@ -229,7 +230,7 @@ TEST(MeasurementFile, RefusesACorrectionThatItCannotTakeAway) {
             "m.csv:3: \"0123456789abcdef\"");
   EXPECT_EQ(error_of("X[mm],B[deg],x[mm],corrected\n1,2,3,on\n").substr(0, 13), "m.csv:2: \"on\"");
   EXPECT_EQ(error_of("X[mm],B[deg],C[deg],x[mm],correctionC[deg]\n1,2,3,4,0\n"),
-            "m.csv:1: \"correctionC\": the machine file has no such axis");
+            "m.csv:1: \"correctionC\": the machine file has no axis of this name");
   EXPECT_EQ(error_of("X[mm],B[deg],x[mm],correctionX[deg]\n1,2,3,0\n").substr(0, 28),
             "m.csv:1: \"correctionX[deg]\":");
   EXPECT_EQ(error_of("X[mm],B[deg],x[mm],corrected\n1,2,3,\n"), "accepted");  // no image ran

@@ -73,8 +73,9 @@ TEST(Workbook, CellsOfTheFirstSheetThatHasSome) {
 TEST(Workbook, SheetIsTakenByNameOrNumber) {
   EXPECT_EQ(read_workbook(bytes_of("survey.xlsx"), "b.xlsx", "2").name, "Messung");
   EXPECT_TRUE(read_workbook(bytes_of("survey.xlsx"), "b.xlsx", "Deckblatt").rows.empty());
-  EXPECT_EQ(refusal(bytes_of("survey.xlsx"), "Tabelle9"),
-            "b.xlsx: \"Tabelle9\": no sheet of this name; there are Deckblatt, Messung");
+  EXPECT_EQ(
+      refusal(bytes_of("survey.xlsx"), "Tabelle9"),
+      "b.xlsx: \"Tabelle9\": the workbook has no sheet of this name; its sheets are Deckblatt, Messung");
 }
 
 /// 46085 days are the fourth of March 2026: shown as a date, a date it is.
@@ -133,7 +134,7 @@ TEST(Workbook, SmallFilesThatUnpackToAnythingLargeAreRefusedOrRead) {
   std::string far;
   for (int i = 1; i <= 2000; ++i) far += "<row><c r=\"XFD" + std::to_string(i) + "\"><v>1</v></c></row>";
   EXPECT_EQ(refusal(workbook_of("", far), ""),
-            "b.xlsx:257: \"XFD257\": nearly all cells up to here are empty: no table");
+            "b.xlsx:257: \"XFD257\": nearly all cells up to here are empty: the sheet contains no table");
 }
 
 }  // namespace

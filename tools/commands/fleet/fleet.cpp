@@ -255,7 +255,7 @@ struct CheckArguments {
 
 void run_check(const CheckArguments& arguments) {
   const std::int64_t now_us = text::now_us(), at_us = time_of(arguments.at, now_us);
-  if (at_us > now_us) throw text::InputError({}, arguments.at, "this time is still to come");
+  if (at_us > now_us) throw text::InputError({}, arguments.at, "this time is in the future");
   registry::FleetCheck check = fleet::parse_check(text::read_file(arguments.result), arguments.result);
   check.machine = arguments.machine, check.at_us = at_us;
   std::vector<registry::FleetReading> readings;
@@ -268,7 +268,7 @@ void run_check(const CheckArguments& arguments) {
   }
   registry::Registry registry = open_registry(arguments.registry);
   registry.machine(arguments.machine);
-  if (!registry.put(check, readings)) throw text::LimitNotMet("this check is in the registry already");
+  if (!registry.put(check, readings)) throw text::LimitNotMet("the registry already contains this check");
 }
 
 void add_machine_kinds(CLI::App& fleet) {
@@ -309,9 +309,9 @@ void add_machine_kinds(CLI::App& fleet) {
   command->callback([list] { run_list(*list); });
 
   const auto status = std::make_shared<ListArguments>();
-  command = fleet.add_subcommand(
-      "status", "what was last heard of each machine: online, stale or away; mode, fault, image");
-  command->add_option("MACHINE", status->machine, "only this one, with all values");
+  command = fleet.add_subcommand("status",
+                                 "newest state of each machine: online, stale or away; mode, fault, image");
+  command->add_option("MACHINE", status->machine, "only this machine, with all values");
   add_registry(*command, status->registry);
   command
       ->add_option(
@@ -330,7 +330,7 @@ void add_forget(CLI::App& fleet) {
     double days = 0;
   };
   const auto forget = std::make_shared<ForgetArguments>();
-  CLI::App* command = fleet.add_subcommand("forget", "delete samples that are older; all else stays");
+  CLI::App* command = fleet.add_subcommand("forget", "delete old samples; other data do not change");
   add_registry(*command, forget->registry);
   command->add_option("--days", forget->days, "samples of so many days are kept")
       ->required()
@@ -359,7 +359,7 @@ void add_record_kinds(CLI::App& fleet) {
   command->callback([record] { run_record(*record); });
 
   const auto check = std::make_shared<CheckArguments>();
-  command = fleet.add_subcommand("check", "write down what `vernier check` answered for a machine");
+  command = fleet.add_subcommand("check", "record the result of `vernier check` for a machine");
   command->add_option("MACHINE", check->machine, "its name in the registry")->required();
   add_registry(*command, check->registry);
   command->add_option("--result", check->result, "file of `vernier check --json`")
@@ -370,7 +370,7 @@ void add_record_kinds(CLI::App& fleet) {
           "--history", check->history,
           "file of `vernier check --history`: what its last check reads of each parameter, for `alike`")
       ->type_name(kReads);
-  command->add_option("--at", check->at, "when it was measured (UTC): 2026-11-23T13:05:00Z; default: now");
+  command->add_option("--at", check->at, "time of the measurement (UTC): 2026-11-23T13:05:00Z; default: now");
   command->footer("Exit status 0 done, 1 bad input, 2 this check is there already.");
   command->callback([check] { run_check(*check); });
 }
@@ -398,7 +398,7 @@ registry::Registry make_registry(const std::string& place) {
 
 registry::Registry open_registry(const std::string& place) {
   if (!place.empty() && !registry::is_server(place) && !std::filesystem::exists(place))
-    throw text::InputError({}, place, "no registry there; `vernier fleet add` makes one");
+    throw text::InputError({}, place, "the registry does not exist; `vernier fleet add` makes a registry");
   return make_registry(place);
 }
 

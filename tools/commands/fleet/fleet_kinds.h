@@ -10,16 +10,16 @@
 
 namespace vernier::commands::fleet_cli {
 
-/// Adds `--registry`; its default is the variable VERNIER_REGISTRY. tool.
+/// Adds the option `--registry`; its default is the variable VERNIER_REGISTRY. tool.
 void add_registry(CLI::App& command, std::string& place);
-/// The registry with the given name; a file that does not exist is created. Throws InputError if no name is
-/// given, or if the registry is not available. tool.
+/// Opens the registry with the given name; creates a file that does not exist. Throws InputError if no name
+/// is given, or if the registry is not available. tool.
 registry::Registry make_registry(const std::string& place);
-/// ... which exists already: a misspelt file name is refused. tool.
+/// Opens a registry that exists already; a misspelt file name is refused. tool.
 registry::Registry open_registry(const std::string& place);
 
-/// The time in us since 1970 that a user wrote, or `otherwise` if the text is empty. Throws InputError if it
-/// is not a time. tool.
+/// Converts a time that a user wrote to us since 1970; `otherwise` if the text is empty. Throws InputError if
+/// the text is not a time. tool.
 std::int64_t time_of(const std::string& text, std::int64_t otherwise);
 
 /// Runs a function that continues until SIGINT, SIGTERM or SIGHUP stops it. tool.

@@ -29,7 +29,8 @@ struct RolloutArguments {
 upload::BoardClaim claim_of(const registry::FleetMachine& one) {
   if (one.board.empty())
     throw text::InputError({}, one.name,
-                           "no board name is entered for this machine: vernier fleet add " + one.name +
+                           "the registry has no board name for this machine; enter it: vernier fleet add " +
+                               one.name +
                                " --board NAME --board-key KEY, or --trust to enter those of the board that "
                                "answers at its address");
   upload::BoardClaim claim{one.board, std::nullopt};
@@ -110,7 +111,7 @@ text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet
                   end->in_effect.size(), states.size()));
   assurance.require(
       "not-stopped", end->stood.empty(),
-      end->stood.empty() ? "the rollout reached its end" : "the rollout has stopped: " + end->stood);
+      end->stood.empty() ? "the rollout reached its last stage" : "the rollout has stopped: " + end->stood);
   for (const std::string& note : end->notes) assurance.not_covered(note);
   if (arguments.options.judge.empty())
     assurance.not_covered("whether the machines are more accurate: no --judge was given");
@@ -144,7 +145,7 @@ void run_rollout(const RolloutArguments& arguments) {
   registry::Registry registry = open_registry(arguments.registry);
   if (arguments.images.empty()) {
     if (fleet::rollout_states(registry, arguments.options.name).empty())
-      throw text::InputError({}, arguments.options.name, "no rollout of this name; --images begins one");
+      throw text::InputError({}, arguments.options.name, "no rollout has this name; begin one with --images");
     tell(arguments, registry, nullptr);
     return;
   }
@@ -163,7 +164,7 @@ void run_rollout(const RolloutArguments& arguments) {
   const bool holds = tell(mine, registry, &end);
   if (!end.stood.empty()) throw text::LimitNotMet(end.stood);
   if (!holds)
-    throw text::LimitNotMet("not every machine of this rollout keeps its image and has it in effect");
+    throw text::LimitNotMet("not every machine of this rollout has its image confirmed and in effect");
 }
 
 /// Without its registry a rollout stops, because its steps could not be recorded.

@@ -87,7 +87,8 @@ void run_alike(const TrendArguments& arguments) {
           "{}: individual wander of the machines: {:.2g} of the stated uncertainty, over about {:.3g} days\n",
           drift.quantity, drift.wander, drift.wander_days);
   }
-  if (all.empty()) fmt::print(out, "no readings: `vernier fleet check --history` writes them down\n");
+  if (all.empty())
+    fmt::print(out, "the registry has no readings: enter them with `vernier fleet check --history`\n");
   write_json(arguments.json, {{"quantities", all}, {"false_alarms", arguments.alike.false_alarms}});
 }
 

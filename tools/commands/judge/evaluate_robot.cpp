@@ -83,12 +83,11 @@ Json shortcomings(const std::vector<evaluate::PoseReading>& readings, const Robo
   for (const evaluate::PoseReading& reading : readings) u = std::max(u, reading.u_mm);
   if (page.fewest < page.wanted)
     notes.push_back(fmt::format("{} cycles where ISO 9283 asks for {}", page.fewest, page.wanted));
-  if (u == 0)
-    notes.push_back("no uncertainty of the instrument is given (u): U is that of the scatter alone");
+  if (u == 0) notes.push_back("no uncertainty of the instrument is given (u): U contains only the scatter");
   if (2 * u > page.least_spread_mm / 4)
     notes.push_back(
-        fmt::format("U of the instrument is {:.3g} um, more than a quarter of the {:.3g} um of "
-                    "repeatability: it contains its own rules",
+        fmt::format("U of the instrument is {:.3g} um, more than a quarter of the repeatability of {:.3g} "
+                    "um: the result contains the errors of the instrument",
                     2 * u * maths::kUmPerMm, page.least_spread_mm * maths::kUmPerMm));
   return notes;
 }

@@ -9,13 +9,13 @@
 
 namespace vernier::commands::evaluate_cli {
 
-/// The largest of a characteristic, and how uncertain it is upwards (95 %).
+/// The largest value of a characteristic and its expanded uncertainty upwards (95 %).
 struct Judged {
   std::string name;
   double value_mm = 0, expanded_mm = 0;
 };
 
-/// What one kind of a robot's test comes to.
+/// Results of one kind of robot test.
 struct RobotPage {
   std::vector<Judged> characteristics;
   std::string key;              // of the list in the JSON

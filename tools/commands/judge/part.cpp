@@ -51,7 +51,7 @@ void free_only(model::Machine& machine, const std::string& names) {
   std::set<std::size_t> wanted;
   for (const std::string& name : text::words_in(names, ", ")) {
     const auto index = machine.find_static(name);
-    if (!index) throw text::InputError({"--free", 0}, name, "no static of this name in " + machine.name);
+    if (!index) throw text::InputError({"--free", 0}, name, "no static has this name in " + machine.name);
     wanted.insert(*index);
   }
   for (std::size_t i = 0; i < machine.statics.size(); ++i) {
@@ -220,8 +220,9 @@ std::array<double, 4> read_gauge_block(const std::string& file) {
   const auto column = [&](const char* name, const char* unit) {
     for (std::size_t i = 0; i < csv.columns.size(); ++i)
       if (csv.columns[i].name == name && csv.columns[i].unit == unit) return i;
-    throw text::InputError({file, csv.header_line}, name,
-                           fmt::format("a gauge block needs the column {}[{}]", name, unit));
+    throw text::InputError(
+        {file, csv.header_line}, name,
+        fmt::format("the file of gauge block readings needs the column {}[{}]", name, unit));
   };
   const std::size_t c = column("C", "deg"), y = column("y", "mm");
   std::array<std::optional<double>, 4> found;
@@ -313,9 +314,10 @@ void add_s_shape(CLI::App& part) {
                        "measured part (CSV: sx sy sz defect, u): fit the errors to it")
           ->type_name(kReads);
   command->add_option("--free", a->free, "only these statics are fitted, e.g. EA0B,EX0B");
-  command->add_flag("--aligned", a->aligned, "the measured part was best-fitted: fit a rigid motion too")
+  command
+      ->add_flag("--aligned", a->aligned, "the measured part was aligned by best fit: fit a rigid motion too")
       ->needs(identify_option);
-  command->add_flag("--tool-radius", a->tool_radius, "fit also the error of the tool radius")
+  command->add_flag("--tool-radius", a->tool_radius, "fit the error of the tool radius too")
       ->needs(identify_option);
   command
       ->add_option(

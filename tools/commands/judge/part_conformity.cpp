@@ -90,7 +90,7 @@ text::Assurance assurance_of(const model::Machine& machine, const tolerance::Par
       "not-conforming", static_cast<double>(open), 0,
       "Characteristics whose probability of conformity is below 95 %, or that were not measured there.");
   results::add_findings(word, machine);
-  word.require("settled", result.settled, "The ends of the intervals have settled.");
+  word.require("settled", result.settled, "The ends of the intervals have converged.");
   for (const std::string& range : result.outside)
     word.not_covered("The part is outside the measured range: " + range + ".");
   for (const std::string& name : result.stale) word.not_covered(name + " was set by hand since the fit.");
@@ -161,10 +161,11 @@ void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
   fmt::print(
       out, "{} trials, seed {}, {}\n", result.trials, result.seed,
       result.exact ? "each through the whole chain" : "linear in the uncertain parameters of the machine");
-  if (!result.settled) fmt::print(out, "stopped before the ends of the intervals had settled\n");
+  if (!result.settled) fmt::print(out, "the trials stopped before the ends of the intervals converged\n");
   for (const std::string& name : result.stale) fmt::print(out, "set by hand since the fit: {}\n", name);
   for (const std::string& range : result.outside)
-    fmt::print(out, "the part is outside the measured range: {}. No verdict is given there\n", range);
+    fmt::print(out, "the part is outside the measured range: {}. Characteristics there have no verdict\n",
+               range);
   if (const double most = *std::max_element(result.discrepancy_mm.begin(), result.discrepancy_mm.end());
       most > 0)
     fmt::print(out,
@@ -206,7 +207,8 @@ std::string conformity_page(const model::Machine& machine, const ConformityArgum
          fmt::format("{:.0f} %", 100 * one.open)});
   Json notes = Json::array();
   for (const std::string& range : result.outside)
-    notes.push_back("The part is outside the measured range: " + range + ". No verdict is given there.");
+    notes.push_back("The part is outside the measured range: " + range +
+                    ". Characteristics there have no verdict.");
   if (machine.fitted)
     for (const model::FitRecord::Finding& one : machine.fitted->findings)
       notes.push_back("Found by the fit: " + one.text);
@@ -303,11 +305,15 @@ void add_conformity(CLI::App& part) {
                    "part: places count from the datums, else from all features; machine: from the machine")
       ->check(CLI::IsMember({"part", "machine"}))
       ->capture_default_str();
-  command->add_option("--position", a->part.position_mm, "of a program's features: width of the zone, mm")
+  command
+      ->add_option("--position", a->part.position_mm,
+                   "width of the position zone of a program's features, mm")
       ->check(CLI::PositiveNumber);
-  command->add_option("--size", a->part.size_mm, "of a program's circles: diameter, plus and minus, mm")
+  command
+      ->add_option("--size", a->part.size_mm,
+                   "tolerance of the diameter of a program's circles, plus and minus, mm")
       ->check(CLI::PositiveNumber);
-  command->add_option("--form", a->part.form_mm, "of a program's circles: width of the zone, mm")
+  command->add_option("--form", a->part.form_mm, "width of the form zone of a program's circles, mm")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--process", a->process_um,
@@ -322,7 +328,7 @@ void add_conformity(CLI::App& part) {
   command->add_flag("--uncorrected", a->uncorrected,
                     "the machine runs without its correction: that decides the exit status");
   command->add_option("--images", a->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("-o,--output", a->output, "the same as a page (HTML)")->type_name(kWrites);
+  command->add_option("-o,--output", a->output, "the result as a page (HTML)")->type_name(kWrites);
   add_report_header(*command, a->header);
   command->add_option("--json", a->json, "result for programs; - for standard output");
   command->footer(

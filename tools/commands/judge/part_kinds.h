@@ -8,14 +8,14 @@
 
 namespace vernier::commands::part_cli {
 
-/// A part as a command line names it.
+/// A part as the options of a command name it.
 struct PartSource {
   std::string path, at, zero, place;
   double position_mm = 0, size_mm = 0, form_mm = 0;  // for all that a program cuts
 };
 
-/// The part at its place in the machine, from a list of features or a part program. Throws InputError, and
-/// LimitNotMet if a point is out of reach. tool.
+/// Returns the part at its place in the machine, from a list of features or a part program. Throws
+/// InputError, and LimitNotMet if a point is out of reach. tool.
 tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine& machine);
 
 /// Adds `vernier part conformity`. tool.

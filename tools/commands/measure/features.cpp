@@ -297,8 +297,8 @@ void register_features(CLI::App& vernier) {
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--features", arguments->features,
-                   "which (all, as in the literature: MAV .. BANDPOWER, PEAK); DISPLACEMENT: by double "
-                   "integration, at the row's instant, of accelerations")
+                   "features to compute (default: all, MAV .. BANDPOWER, PEAK); DISPLACEMENT: by double "
+                   "integration of accelerations, at the row's instant")
       ->delimiter(',');
   command->add_option("--corner", arguments->corner,
                       "DISPLACEMENT as a board has it: its filter's corner, Hz, or fit");
@@ -314,14 +314,14 @@ void register_features(CLI::App& vernier) {
       ->delimiter(',');
   command
       ->add_option("--resolution", arguments->resolution,
-                   "with --corner: of a sample, in the signal's unit (1e-5), as on the board")
+                   "with --corner: resolution of a sample, in the signal's unit (1e-5), as on the board")
       ->check(CLI::PositiveNumber);
   command->add_option("--difference", arguments->differences, "one more signal, NAME=A-B (table minus base)");
   command->add_flag("--centre", arguments->centred, "take the record's mean off each signal");
   command->add_option("--align", arguments->align,
                       "SIGNAL=AXIS: find the record's clock from the axis' acceleration in the rows");
   command->add_option("--offset", arguments->offset_s, "t of the rows at t 0 of the record, s (0)");
-  command->add_option("--clock", arguments->clock_rate, "seconds of the rows in a second of the record (1)")
+  command->add_option("--clock", arguments->clock_rate, "seconds of the rows per second of the record (1)")
       ->check(CLI::PositiveNumber);
   command
       ->add_option(

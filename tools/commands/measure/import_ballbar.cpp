@@ -141,7 +141,7 @@ void write_import(const std::string& kind, const std::vector<importer::BallbarFi
     for (const auto& note : file.notes) notes.push_back(file.path + ": " + note);
     if (!spans_a_circle(file)) {
       notes.push_back(file.path + ", " + file.axis_a + file.axis_b +
-                      ": the arc is too short for a centre and a radius; no circular numbers");
+                      ": the arc is too short to compute centre, radius and circular deviation");
       continue;
     }
     const importer::CircularResult circle =

@@ -5,7 +5,7 @@
 
 namespace vernier::commands::import_cli {
 
-/// What every kind of import writes.
+/// Output files and options that every kind of import has.
 struct ImportOutput {
   std::string csv_path, json_path;
 };

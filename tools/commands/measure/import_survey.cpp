@@ -42,7 +42,7 @@ importer::ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kin
   if (kind.count("--skip") > 0) map.format.skip = arguments.skip;
   if (arguments.header) map.format.header = true;
   if (map.columns.empty())
-    throw text::InputError("no column is mapped: give --map FILE or --column \"3=x[mm]\"");
+    throw text::InputError("no column has a meaning: give --map FILE or --column \"3=x[mm]\"");
   return map;
 }
 
@@ -142,7 +142,7 @@ void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& 
   kind.add_option("--separator", arguments->separator, "space: blanks; default: auto")
       ->check(CLI::IsMember(importer::separator_words()));
   kind.add_option("--decimal", arguments->decimal, "decimal sign")->check(CLI::IsMember({"point", "comma"}));
-  kind.add_option("--skip", arguments->skip, "lines at the top to leave out");
+  kind.add_option("--skip", arguments->skip, "number of lines at the top to skip");
   kind.add_option("--comment", arguments->comment,
                   "lines that begin with it are skipped; none: no such lines; default: #");
   kind.add_flag("--header", arguments->header, "the first line names columns (implied by a column by name)");
@@ -171,7 +171,8 @@ void add_tracker_kind(CLI::App& kind) {
   kind.add_option("--still", log.still, "--log: an axis is at rest if it stays within this range, mm or deg")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  kind.add_option("--tolerance", log.tolerance_mm, "--log: ways of machine and nominal machine differ by, mm")
+  kind.add_option("--tolerance", log.tolerance_mm,
+                  "--log: largest difference of the distances measured and nominal, mm")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   kind.footer(
@@ -184,9 +185,9 @@ void add_tracker_kind(CLI::App& kind) {
 void add_probe_kind(CLI::App& kind) {
   const auto arguments = std::make_shared<SurveyArguments>();
   add_survey_options(kind, arguments);
-  kind.add_option(
-      "--radius", arguments->radius_mm,
-      "of the stylus ball (mm), where recorded points are its centre and nominal ones on the surface");
+  kind.add_option("--radius", arguments->radius_mm,
+                  "radius of the stylus ball (mm), if recorded points are its centre and nominal points are "
+                  "on the surface");
   kind.footer(
       "Each touch: the normal nx ny nz, the nominal point px py pz, and the deviation d or the recorded "
       "point\n"

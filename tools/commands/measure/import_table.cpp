@@ -95,7 +95,8 @@ void run_table(const TableArguments& arguments) {
     fmt::print(out, "preview of {} rows: no file is written\n", read.line.size());
     return;
   }
-  if (arguments.output.empty()) throw text::InputError("where to? -o MEAS.csv (or --preview)");
+  if (arguments.output.empty())
+    throw text::InputError("the output is missing: give -o MEAS.csv (or --preview)");
   text::write_file(arguments.output, csv);
   if (!arguments.save_profile.empty())
     text::write_file(arguments.save_profile,
@@ -129,12 +130,13 @@ void add_table_kind(CLI::App& kind) {
       ->check(CLI::IsMember({"point", "comma"}));
   kind.add_option("--sheet", arguments->words.sheet,
                   "sheet of a workbook, name or number; default: the first with cells");
-  kind.add_option("--skip", arguments->words.skip, "lines at the top to leave out");
+  kind.add_option("--skip", arguments->words.skip, "number of lines at the top to skip");
   kind.add_option("--comment", arguments->words.comment,
                   "lines that begin with it are skipped; none: no such lines; default: #");
   kind.add_option("--profile", arguments->profile, "read the file with the assignments of this profile")
       ->type_name(kReads);
-  kind.add_option("--save-profile", arguments->save_profile, "write how it was read, for the next one")
+  kind.add_option("--save-profile", arguments->save_profile,
+                  "write the settings as a profile for the next file")
       ->type_name(kWrites);
   kind.add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
       ->check(CLI::Range(2, 1000000));

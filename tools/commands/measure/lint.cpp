@@ -46,7 +46,7 @@ void run_lint(const LintArguments& arguments) {
     useless += file.usable ? 0 : 1;
   }
   if (useless > 0)
-    throw text::InputError(useless == 1 ? std::string("one file cannot be used as it is")
+    throw text::InputError(useless == 1 ? std::string("one file has errors and cannot be used")
                                         : fmt::format("{} files cannot be used as they are", useless));
 }
 

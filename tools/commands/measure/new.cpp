@@ -60,7 +60,8 @@ create::MachinePlan plan_of_urdf(const NewArguments& arguments, const CLI::App& 
   if (arguments.type != "robot") throw text::InputError("--urdf: only a robot has one");
   for (const char* option : {"--dh", "--joint", "--axis"})
     if (command.count(option) > 0)
-      throw text::InputError(std::string(option) + ": not allowed, because the URDF describes the arm");
+      throw text::InputError(std::string(option) +
+                             ": not allowed together with --urdf, which describes the arm");
   const create::UrdfArm arm =
       create::parse_urdf(text::read_file(arguments.urdf), arguments.urdf, arguments.tip);
   create::MachinePlan plan = create::plan_robot(arm.axes, arm.rows);

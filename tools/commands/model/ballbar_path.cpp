@@ -42,13 +42,14 @@ void register_ballbar_path(CLI::App& vernier) {
       ->capture_default_str()
       ->check(CLI::IsMember({"XY", "YZ", "ZX"}));
   command->add_option("--radius", path.radius_mm, "of the bar, mm")->capture_default_str();
-  command->add_option("--feed", path.feed_mm_min, "along the circle, mm/min")->required();
+  command->add_option("--feed", path.feed_mm_min, "feed along the circle, mm/min")->required();
   command->add_option("--arc", arguments->arc, "FROM,TO of the arc that is analysed, deg; default 0,360")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("--overshoot", path.overshoot_deg, "run before and after it, deg")
+  command->add_option("--overshoot", path.overshoot_deg, "angle run before and after the arc, deg")
       ->capture_default_str();
-  command->add_option("--feed-in", path.feed_in_mm, "radial way in and out, mm")->capture_default_str();
+  command->add_option("--feed-in", path.feed_in_mm, "radial distance of the approach and the exit, mm")
+      ->capture_default_str();
   command->add_option("--pause", path.pause_s, "between the senses, s")->capture_default_str();
   command->add_option("--centre", arguments->centre, "X,Y,Z mm; default 0,0,0")->delimiter(',')->expected(3);
   command->add_option("--dialect", arguments->dialect, "iso, linuxcnc, urscript")

@@ -95,21 +95,26 @@ void print_failure(std::FILE* out, const nlohmann::ordered_json& json) {
   const auto& structure = json["structure"];
   const double chance = structure["omnibus_p"].get<double>();
   if (findings.empty()) {
-    fmt::print(out, "where it fails: {} ({} things tried, chance of the strongest {:.2g})\n",
-               chance < 1e-3 ? "there is structure, but no column stands out" : "nothing beyond chance",
+    fmt::print(out, "where the model fails: {} ({} patterns tested, chance of the strongest {:.2g})\n",
+               chance < 1e-3 ? "the residual has structure, but no single column explains it"
+                             : "nothing beyond chance",
                structure["tried"].get<std::size_t>(), chance);
   } else {
-    fmt::print(out, "where it fails (share of that residual's variance: alone, beyond the other findings)\n");
+    fmt::print(
+        out,
+        "where the model fails (share of the variance of the residual: alone, beyond the other findings)\n");
   }
   for (std::size_t i = 0; i < std::min(kMost, findings.size()); ++i)
     fmt::print(out, "  {:>7} {:>7}  {}\n", percent(findings[i]["share_alone"].get<double>()),
                percent(findings[i]["share_after"].get<double>()), findings[i]["sentence"].get<std::string>());
-  if (findings.size() > kMost) fmt::print(out, "  and {} more in the report\n", findings.size() - kMost);
+  if (findings.size() > kMost)
+    fmt::print(out, "  {} further findings are in the report\n", findings.size() - kMost);
   if (!structure["pure_error_um"].is_null())
-    fmt::print(out, "  repeats scatter by {:.4g} um; lack of fit beyond that {:.4g} um\n",
+    fmt::print(out, "  repeats scatter by {:.4g} um; the model misses {:.4g} um more\n",
                structure["pure_error_um"].get<double>(), structure["lack_of_fit_um"].get<double>());
   if (structure["outliers"].get<std::size_t>() > 0)
-    fmt::print(out, "  {} readings lie beyond 5 robust spreads\n", structure["outliers"].get<std::size_t>());
+    fmt::print(out, "  {} readings differ by more than 5 robust standard deviations\n",
+               structure["outliers"].get<std::size_t>());
 }
 
 void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
@@ -122,7 +127,7 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
     fmt::print(out, "rms rotations   {}\n", results::number_or_dash(rotations, "urad"));
   fmt::print(out, "noise           {}\n", results::number_or_dash(value_of(json, "noise_um"), "um"));
   if (const auto& known = json["prediction_std_um"]; !known.is_null())
-    fmt::print(out, "model known to  {:.4g} um on average over these rows, {:.4g} um at worst\n",
+    fmt::print(out, "uncertainty of the model  {:.4g} um on average over these rows, {:.4g} um at most\n",
                known["rms"].get<double>(), known["max"].get<double>());
   if (const auto& tilt = json["tilt_deg"]; !tilt.is_null())
     fmt::print(out, "tool tilted by  {:.4g} deg on average by the modelled errors, {:.4g} deg at most\n",
@@ -139,9 +144,9 @@ void print_groups(std::FILE* out, const nlohmann::ordered_json& groups) {
   for (const auto& column : groups) {
     const auto& chance = column["differ_p"];
     fmt::print(out, "by {}: {}\n", column["column"].get<std::string>(),
-               chance.is_null()
-                   ? "too few readings to decide if the groups differ"
-                   : fmt::format("chance that they differ so much by accident {:.2g}", chance.get<double>()));
+               chance.is_null() ? "there are too few readings to decide whether the groups differ"
+                                : fmt::format("probability that equal groups differ so much by chance {:.2g}",
+                                              chance.get<double>()));
     for (const auto& group : column["each"])
       for (const auto& one : group["readings"])
         fmt::print(out, "  {:<16} {:<7} {:>6} readings  mean {:>9.4g}  rms {:>9.4g} {}\n",
@@ -248,9 +253,10 @@ void register_compare(CLI::App& vernier) {
     return command->add_option(option, list, what)->expected(1)->allow_extra_args(false)->take_all();
   };
   several("--before", arguments->before,
-          "did it help? measured without the correction (CSV); may be repeated")
+          "tests whether the correction helped: measured without the correction (CSV); may be repeated")
       ->type_name(kReads);
-  several("--after", arguments->after, "the same with it; may be repeated; MEAS is not given then")
+  several("--after", arguments->after,
+          "measured with the correction (CSV); may be repeated; MEAS is then not given")
       ->type_name(kReads);
   several("--by", arguments->by,
           "take the rows apart by this column (operator, coolant, tool …); may be repeated");

@@ -75,8 +75,8 @@ void register_exclude(CLI::App& vernier) {
       ->type_name(kWrites);
   command->add_option("--lines", arguments->lines,
                       "lines of the rows: 12,15-20; none: list what is excluded");
-  command->add_option("--reason", arguments->reason, "why, kept with each row")->capture_default_str();
-  command->add_flag("--restore", arguments->restore, "put the rows on these lines back");
+  command->add_option("--reason", arguments->reason, "reason, stored with each row")->capture_default_str();
+  command->add_flag("--restore", arguments->restore, "include the rows on these lines again");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "An excluded row stays in its place as a comment with its reason, so every other row keeps its line\n"

@@ -119,7 +119,9 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
   print_findings(out, result);
   constexpr double kWild = 20;  // as the rule `outlier` of tools/docs/safety.md, which looks at the fit rows
   if (result.worst_check.ratio > kWild)
-    fmt::print(out, "check reading {} is {:.3g} spreads off: look at it before you trust the check rows\n",
+    fmt::print(out,
+               "check reading {} differs by {:.3g} standard deviations: examine it before you trust the "
+               "check rows\n",
                result.worst_check.reading, result.worst_check.ratio);
 }
 

@@ -48,7 +48,7 @@ bool agreed(const ImproveArguments& arguments, const diagnose::LadderStep& step,
   std::fflush(out);
   std::string answer;
   if (!std::getline(std::cin, answer)) {
-    fmt::print(out, "no answer: stopping here (--yes adds without asking)\n");
+    fmt::print(out, "no answer was given: the loop stops (--yes adds effects without asking)\n");
     return false;
   }
   return !answer.empty() && (answer[0] == 'y' || answer[0] == 'Y');
@@ -63,7 +63,8 @@ Json replayed(const ModelStep& model_step, const model::Measurement& rows, const
     const model::Measurement m = model::rebind(rows, from, machine);
     if (m.rows() > 0 && (m.states.time.maxCoeff() - m.states.time.minCoeff()) * 1000 > kMostTicks)
       return {{"label", model_step.label},
-              {"why_not", "the measurement is longer than four hundred million ticks"}};
+              {"why_not",
+               "the measurement lasts longer than four hundred million ticks; divide it into shorter files"}};
     const compile::CompiledMachine compiled = compile::compile_machine(machine, model_step.text, {});
     const auto image = compile::load_image(compiled.image, machine);
     const simulate::ReplayResult r = simulate::replay(*image, m, {});
@@ -118,7 +119,7 @@ class Improver {
     if (round == 0) {
       text::make_folder(arguments_.output);
       first_diagnosis_ = last_;
-      take({"the model as given, fitted", "", "", "", d.ladder[0].text, d.ladder[0].rms_um,
+      take({"the given model after a fit", "", "", "", d.ladder[0].text, d.ladder[0].rms_um,
             d.ladder[0].check_rms_um});
       fmt::print(out_, "the model as given, fitted: fit rows {}, check rows {}\n",
                  results::number_or_dash(d.ladder[0].rms_um, "um"),
@@ -172,7 +173,7 @@ class Improver {
     text::write_file(page, report::improve_report_html(arguments_.header.on(json)));
     text::write_file(arguments_.output + "/improve.json", json.dump(1) + "\n");
     write_json(arguments_.json, json);
-    fmt::print(out_, "left in {}: {} machine files, improve.json, improve.html\n", arguments_.output,
+    fmt::print(out_, "written to {}: {} machine files, improve.json, improve.html\n", arguments_.output,
                model_steps_.size());
   }
 

@@ -160,11 +160,12 @@ void run_map(const MapArguments& arguments) {
   if (!arguments.over.empty()) axes.clear();
   for (const std::string& name : arguments.over) {
     const auto axis = machine.find_axis(name);
-    if (!axis) throw text::InputError({machine.file, 0}, name, "no axis of that name");
+    if (!axis) throw text::InputError({machine.file, 0}, name, "the machine has no axis of this name");
     axes.push_back(*axis);
   }
   if (axes.empty())
-    throw text::InputError({machine.file, 0}, "", "no linear axis: give the axes, --over J1,J2,J3");
+    throw text::InputError({machine.file, 0}, "",
+                           "the machine has no linear axis: name the axes, --over J1,J2,J3");
   Json json = {{"machine", machine.name}, {"files", {arguments.machine}}, {"notes", Json::array()}};
   json["field"] = results::field_json(machine, map::error_field(machine, at, axes, arguments.grid));
   const bool measured = can_be_measured(machine);
@@ -183,7 +184,8 @@ void run_map(const MapArguments& arguments) {
              json["field"]["point_mm"].size());
   if (!json["field"]["std_um"].is_null())
     fmt::print(out,
-               "known to {:.4g} um on average, {:.4g} um at worst (standard uncertainty, measured or not)\n",
+               "standard uncertainty of the model {:.4g} um on average, {:.4g} um at most (also outside the "
+               "measured range)\n",
                json["field"]["rms_std_um"].get<double>(), json["field"]["max_std_um"].get<double>());
   if (!measured) fmt::print(out, "{}\n", kNotMeasured);
   if (!measured) return;

@@ -108,13 +108,14 @@ void run_check_plan(const PlanArguments& arguments) {
     fmt::print(out, "  {:<36} {:>10.3g} {:<4} ({:.3g} um at the tool)\n", one.suspect.name, one.change,
                one.suspect.unit, one.tool_um);
   if (!plan.not_seen.empty()) fmt::print(out, "not seen at all: {}\n", text::joined(plan.not_seen, ", "));
-  fmt::print(out, "as many poses at random: {:.3g} um where these show {:.3g}\n", plan.random_um, worst);
+  fmt::print(out, "the same number of random poses gives {:.3g} um, these poses {:.3g} um\n", plan.random_um,
+             worst);
 }
 
 /// Without measurements: where to measure a machine for the first time.
 void run_first_plan(const PlanArguments& arguments) {
   if (!arguments.separate.empty())
-    throw text::InputError({}, "MEAS", "telling two effects apart builds on measurements: name their files");
+    throw text::InputError({}, "MEAS", "distinguishing two effects needs measurements: name their files");
   const model::Machine machine = model::parse_machine(text::read_file(arguments.machine), arguments.machine);
   plan::FirstPlanOptions options;
   options.reading_um = arguments.reading_um.value_or(options.reading_um);
@@ -154,7 +155,7 @@ void run_first_plan(const PlanArguments& arguments) {
 
 void run_plan(const PlanArguments& arguments) {
   if (arguments.check && !(arguments.measurements.empty() && arguments.separate.empty()))
-    throw text::InputError({}, "--check", "needs the fitted machine only");
+    throw text::InputError({}, "--check", "--check needs only the fitted machine, no measurements");
   if (arguments.check) return run_check_plan(arguments);
   const bool aimed = !arguments.part.path.empty() || !arguments.region.empty() || !arguments.tool.empty();
   if (aimed && !arguments.separate.empty())
@@ -179,9 +180,9 @@ void run_plan(const PlanArguments& arguments) {
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "{}\n\n", plan.sentence);
   for (const auto& [rival, side] : {std::pair(&plan.a, &plan.a_true), std::pair(&plan.b, &plan.b_true)})
-    fmt::print(out, "if {} is true: non-centrality now {:.3g}, planned {:.3g}, needed {:.3g}\n",
-               rival->candidate.label, side->now, plan.rows.rows() > 0 ? side->planned : side->now,
-               side->needed);
+    fmt::print(
+        out, "if {} is the true effect: non-centrality now {:.3g}, with the plan {:.3g}, required {:.3g}\n",
+        rival->candidate.label, side->now, plan.rows.rows() > 0 ? side->planned : side->now, side->needed);
   for (const std::string& other : plan.ruled_out) fmt::print(out, "rules out as well: {}\n", other);
   for (const std::string& other : plan.not_ruled_out) fmt::print(out, "does not rule out: {}\n", other);
   if (plan.rows.rows() > 0) fmt::print(out, "\n{}", plan::plan_table(plan));
@@ -221,7 +222,9 @@ void register_plan(CLI::App& vernier) {
       ->add_option("--points", arguments->points,
                    "exactly so many points (default: as few as needed; accuracy: 200 at most)")
       ->check(CLI::Range(1, 500));
-  command->add_option("--confidence", arguments->confidence, "that the measurement will name the right one")
+  command
+      ->add_option("--confidence", arguments->confidence,
+                   "probability that the measurement shows the true effect")
       ->check(CLI::Range(0.5001, 0.9999))
       ->capture_default_str();
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated")
@@ -257,10 +260,14 @@ void register_plan(CLI::App& vernier) {
   command->add_option(
       "--tool", arguments->tool,
       "accuracy for this tool alone: one of <tools>, or \"X,Y,Z\" in mm from the end of the chain");
-  command->add_option("--feed", arguments->feed_mm_min, "from pose to pose, mm/min: for the minutes")
+  command
+      ->add_option("--feed", arguments->feed_mm_min,
+                   "speed from pose to pose, mm/min, to estimate the duration")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--dwell", arguments->dwell_s, "to settle and read one pose, s: for the minutes")
+  command
+      ->add_option("--dwell", arguments->dwell_s,
+                   "time to settle and read one pose, s, to estimate the duration")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);

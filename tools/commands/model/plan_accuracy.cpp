@@ -33,7 +33,7 @@ std::vector<model::WorkRange> region_of(const model::Machine& machine, const std
         range && (*low < (*range)[0] || *high > (*range)[1]))
       throw text::InputError(
           {"--region", 0}, word,
-          fmt::format("beyond the axis' own range, {:g} to {:g}", (*range)[0], (*range)[1]));
+          fmt::format("the region is outside the range of the axis, {:g} to {:g}", (*range)[0], (*range)[1]));
     region.push_back({*axis, *low, *high});
   }
   return region;
@@ -45,7 +45,7 @@ plan::Knowledge knowledge_from(const PlanArguments& arguments, const model::Mach
                                                           simulate::corrections_of_images(arguments.images));
   const fit::FitResult fitted = fit::fit(machine, rows);
   if (!fitted.absurd.empty()) throw text::LimitNotMet(fitted.absurd);
-  if (!fitted.converged) throw text::LimitNotMet("the fit of the rows at hand did not converge");
+  if (!fitted.converged) throw text::LimitNotMet("the fit of the measured rows did not converge");
   return plan::knowledge_of(fitted, rows);
 }
 
@@ -107,8 +107,8 @@ std::string why_not(const plan::AccuracyPlan& plan, double asked_um) {
 void print_accuracy(std::FILE* out, const plan::AccuracyAim& aim, const plan::AccuracyPlan& plan,
                     double asked_um) {
   if (plan.states.count == 0) {
-    fmt::print(out, "U95 over {} is {:.3g} um already{}: no measurement is needed\n", aim.words, plan.now_um,
-               asked_um > 0 ? fmt::format(", {:g} asked", asked_um) : "");
+    fmt::print(out, "U95 over {} is already {:.3g} um{}: no further measurement is needed\n", aim.words,
+               plan.now_um, asked_um > 0 ? fmt::format(", {:g} asked", asked_um) : "");
     return;
   }
   fmt::print(out, "U95 (k = 2) over {}:\n{:>8} {:>9} {:>10}\n", aim.words, "points", "minutes", "U95 um");

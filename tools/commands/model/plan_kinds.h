@@ -23,10 +23,11 @@ struct PlanArguments {
   bool check = false;
 };
 
-/// One pose of a plan: axes and approach directions.
+/// Returns one pose of a plan as JSON: axes and approach directions.
 nlohmann::ordered_json pose_json(const model::Machine& machine, const model::States& states, std::size_t row);
 
-/// The next poses for accuracy at the required locations. Throws LimitNotMet if it cannot be reached.
+/// The next poses for accuracy at the required locations. Throws LimitNotMet if the accuracy cannot be
+/// reached.
 void run_accuracy_plan(const PlanArguments& arguments);
 
 }  // namespace vernier::commands::plan_cli

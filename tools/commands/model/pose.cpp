@@ -52,7 +52,7 @@ void run_pose(const PoseArguments& arguments) {
   fmt::print(out, "tilt       {:10.6f} deg\n", tilt_deg);
   const bool with_rotary = arguments.with_rotary || machine.correct_orientation;
   if (!with_rotary && kinematics::linear_axes(machine).empty()) {
-    fmt::print(out, "no linear axis to correct with; --rotary corrects with all axes\n");
+    fmt::print(out, "the machine has no linear axis that can correct; --rotary corrects with all axes\n");
     write_json(arguments.json, json);
     return;
   }

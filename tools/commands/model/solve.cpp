@@ -39,7 +39,7 @@ kinematics::InverseOptions options_of(const SolveArguments& arguments, const mod
                            "a direction or a pose needs the rotation too: x,y,z,rx,ry,rz");
   for (const std::string& name : arguments.axes) {
     const auto axis = machine.find_axis(name);
-    if (!axis) throw text::InputError({machine.file, 0}, name, "no axis of that name");
+    if (!axis) throw text::InputError({machine.file, 0}, name, "the machine has no axis of this name");
     options.axes.push_back(*axis);
   }
   return options;
@@ -55,7 +55,8 @@ text::Assurance assurance_of(const model::Machine& machine, const kinematics::In
   if (options.match != kinematics::Match::kPosition)
     assurance.at_most("residual-deg", proof.residual_deg, options.tolerance_deg,
                       "Angle between the tool and the target, deg.");
-  assurance.require("solved", proof.converged, "The answer is no singular pose and within all ranges.");
+  assurance.require("solved", proof.converged,
+                    "The solution is not a singular pose and is within all axis ranges.");
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const model::Axis& axis = machine.axes[i];
     const double value = result.states.axis[i][0];
@@ -67,7 +68,7 @@ text::Assurance assurance_of(const model::Machine& machine, const kinematics::In
       assurance.not_covered("The machine file has no min and max of " + axis.name +
                             ": its range is not known.");
   }
-  assurance.not_covered("Collisions are not looked at.");
+  assurance.not_covered("Collisions are not tested.");
   return assurance;
 }
 
@@ -95,7 +96,7 @@ std::string failure_text(const model::Machine& machine, const kinematics::Invers
       fmt::format("residual {:.3g} mm, {:.3g} deg after {} iterations, condition {:.3g}", proof.residual_mm,
                   proof.residual_deg, proof.iterations, proof.condition);
   if (proof.fault == kinematics::InverseFault::kSingular)
-    return "no solution: the axes have lost a degree of freedom there (" + residual + ")";
+    return "no solution: the pose is singular, the axes cannot move in every direction (" + residual + ")";
   if (proof.fault == kinematics::InverseFault::kBeyondRange)
     return "no solution: axis " + machine.axes[proof.axis].name + " would have to leave its range (" +
            residual + ")";
@@ -142,11 +143,11 @@ void register_solve(CLI::App& vernier) {
   command->add_option("--axes", arguments->axes, "axes that may move; default: all")->delimiter(',');
   command
       ->add_option("--match", arguments->match,
-                   "what has to be met; auto: position without rotation, else pose")
+                   "target to reach; auto: position if no rotation is given, else pose")
       ->check(CLI::IsMember({"auto", "position", "direction", "pose"}))
       ->capture_default_str();
   command->add_flag("--nominal", arguments->nominal,
-                    "of the nominal chain; default: of the machine with its errors");
+                    "solve for the nominal chain; default: for the machine with its errors");
   command->add_option("--restarts", arguments->restarts, "further starts, spread over the axis ranges")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();

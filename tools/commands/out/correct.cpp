@@ -108,8 +108,8 @@ void run_correct(const CorrectArguments& arguments) {
                                         summary.not_converged, summary.positions));
   if (path_um && *path_um > arguments.deviation_um)
     throw text::LimitNotMet(
-        fmt::format("the blocks leave the corrected path by {:.4g} um, --deviation allows {} "
-                    "um; nothing is written",
+        fmt::format("the blocks deviate from the corrected path by {:.4g} um, --deviation permits {} um; no "
+                    "file is written",
                     *path_um, arguments.deviation_um));
   text::write_file(arguments.output, result);
   write_json(arguments.json, json);
@@ -146,12 +146,12 @@ void register_correct(CLI::App& vernier) {
                       "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command
       ->add_option("--deviation", arguments->deviation_um,
-                   "how far a block may leave the path that is corrected at every moment, um")
+                   "largest distance of a block from the path that is corrected at every moment, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag(
       "--back", arguments->back,
-      "the other way: positions as commanded, to those of an ideal machine that would be there");
+      "reverse: converts commanded positions to those of an ideal machine at the same tool point");
   command->add_flag("--chords", arguments->chords,
                     "write arcs as straight blocks, for a control that reads no G2 and G3");
   command->add_flag("--rotary", arguments->with_rotary,

@@ -34,7 +34,7 @@ struct ExchangeArguments {
 
 std::size_t axis_named(const model::Machine& machine, const std::string& name) {
   const auto axis = machine.find_axis(name);
-  if (!axis) throw text::InputError({machine.file, 0}, name, "no axis of that name");
+  if (!axis) throw text::InputError({machine.file, 0}, name, "the machine has no axis of this name");
   return *axis;
 }
 
@@ -152,7 +152,8 @@ void export_screw(const ExchangeArguments& arguments) {
   std::vector<std::size_t> axes = kinematics::linear_axes(machine);
   if (!arguments.axis.empty()) axes = {axis_named(machine, arguments.axis)};
   if (machine.axes[axes.at(0)].rotary)
-    throw text::InputError({machine.file, 0}, arguments.axis, "a rotary axis: only linear axes are exported");
+    throw text::InputError({machine.file, 0}, arguments.axis,
+                           "this axis is rotary; only linear axes can be exported");
   std::vector<exchange::LeftOut> left_out;
   for (const std::size_t axis : axes)
     for (exchange::LeftOut& one : exchange::beyond_own_axis(machine, axis, at))
@@ -291,7 +292,7 @@ void register_export(CLI::App& vernier) {
                      "the configuration of the component `vernier` alone, which expresses every machine "
                      "(tools/docs/linuxcnc.md)");
   linuxcnc->add_option("--axis", screw->axis, "this axis only");
-  linuxcnc->add_option("--tolerance", screw->tolerance_um, "what may be lost between lines, um")
+  linuxcnc->add_option("--tolerance", screw->tolerance_um, "largest error between two lines of the table, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   add_type(linuxcnc, *screw);

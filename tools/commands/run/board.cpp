@@ -66,8 +66,8 @@ void run(const Arguments& arguments) {
       if (arguments.what == named.name) client.command(named.command);
     std::this_thread::sleep_for(kTakenAfter);
     if (client.health().refused_commands != refused)
-      throw text::LimitNotMet(
-          fmt::format("the board refuses to {} in mode {}", arguments.what, name_of(client.newest().mode)));
+      throw text::LimitNotMet(fmt::format("the board refuses the command {} in mode {}", arguments.what,
+                                          name_of(client.newest().mode)));
   }
   const upload::BoardTick tick = client.newest();
   fmt::print(human_stream(arguments.json), "mode {}{}, fault {}\n", name_of(tick.mode),

@@ -35,7 +35,7 @@ void vouch_for_board(text::Assurance& assurance, const ClaimWords& words, const 
   if (!words.board.empty())
     assurance.require("board-name", board == words.board, fmt::format("the board is {}", name));
   else
-    assurance.not_covered(fmt::format("whether {} is the board that was meant: no --board was given", name));
+    assurance.not_covered(fmt::format("whether {} is the intended board: no --board was given", name));
   if (!words.board_key.empty())
     assurance.require("board-key", true, "the board proved that it has the expected key");
   else

@@ -18,9 +18,9 @@ void add_board_claim(CLI::App& command, ClaimWords& words);
 /// Converts the options to a claim on the board. Throws InputError if the key is not valid. tool.
 upload::BoardClaim claim_of(const ClaimWords& words);
 /// Compares the board with the claim before data are signed or sent. Throws LimitNotMet with the words
-/// "nothing was sent" if it is another board. tool.
+/// "nothing was sent" if the board is another board. tool.
 void require_claim(upload::Client& client, const ClaimWords& words);
-/// Records the items that were compared, and those that were not. tool.
+/// Records in the assurance which items were compared and which were not. tool.
 void vouch_for_board(text::Assurance& assurance, const ClaimWords& words, const std::string& board);
 
 }  // namespace vernier::commands

@@ -33,7 +33,7 @@ double parse_length_um(const std::string& text) {
     throw text::InputError("--budget \"" + text + "\": not a length");
   }
   const std::string unit = text.substr(used);
-  if (!(value > 0)) throw text::InputError("--budget \"" + text + "\": must be greater than zero");
+  if (!(value > 0)) throw text::InputError("--budget \"" + text + "\": the value must be greater than zero");
   if (unit.empty() || unit == "um") return value;
   if (unit == "nm") return value / 1000;
   if (unit == "mm") return value * 1000;
@@ -138,7 +138,7 @@ void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const m
                "tilt of the tool: up to {:.4g} deg, {:.2g} left where it is neither damped nor at a limit "
                "(program {:.2g}, 2nd order {:.2g})\n",
                c.tilt->deviation_deg, c.tilt->left_deg(), c.tilt->fixed_point_deg, c.tilt->second_order_deg);
-  if (c.bounds.empty()) fmt::print(out, "  no axis has anything to correct\n");
+  if (c.bounds.empty()) fmt::print(out, "  no axis has a correction\n");
   for (const std::string& step : c.switching)
     fmt::print(out, "note: the bound holds away from the step of {}\n", step);
   for (const std::string& note : c.notes) fmt::print(out, "note: {}\n", note);

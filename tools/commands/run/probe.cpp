@@ -41,9 +41,9 @@ void add_conditions(CLI::App& command, probe::TouchConditions& conditions) {
   command
       .add_option(
           "--gain", conditions.gain_per_s,
-          "of the position loop, 1/s: following error = speed / gain; default: 1.78 mm at 2540 mm/min")
+          "gain of the position loop, 1/s: following error = speed / gain; default: 1.78 mm at 2540 mm/min")
       ->check(CLI::PositiveNumber);
-  command.add_option("--stylus", conditions.stylus_mm, "deflection that the stylus bears, mm")
+  command.add_option("--stylus", conditions.stylus_mm, "largest permitted deflection of the stylus, mm")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
 }
@@ -130,7 +130,8 @@ void run_cal(CalArguments& arguments) {
     groups = probe::compare_groups(table, arguments.setup, arguments.group, result);
   if (!arguments.output.empty()) {
     if (!result.delay_found)
-      throw text::LimitNotMet("no delay was found and no file is written: " + result.findings.front());
+      throw text::LimitNotMet("the touches do not determine the delay; no file is written: " +
+                              result.findings.front());
     text::write_file(arguments.output, board_lines(result));
   }
   Json json = {{"artefact", arguments.artefact},           {"n_touches", table.rows()},
@@ -269,20 +270,23 @@ void register_probe_path(CLI::App& vernier) {
   command->add_option("--step", path.step_deg, "deg")->capture_default_str();
   command->add_option("--elevation", path.elevations_deg, "circles above the equator, deg; 90 is the pole")
       ->delimiter(',');
-  command->add_option("--feeds", path.feeds, "per minute, in the program's unit")->delimiter(',')->required();
-  command->add_option("--repeats", path.repeats, "block: touches of each face")->check(CLI::Range(1, 10000));
+  command->add_option("--feeds", path.feeds, "feed per minute, in the unit of the program")
+      ->delimiter(',')
+      ->required();
+  command->add_option("--repeats", path.repeats, "number of touches on each face of the block")
+      ->check(CLI::Range(1, 10000));
   command->add_option("--unit", arguments->unit, "of the program")
       ->check(CLI::IsMember({"mm", "in"}))
       ->capture_default_str();
   add_conditions(*command, path.conditions);
-  command->add_flag("--unchecked", path.unchecked, "write it even where a touch would not be a valid one");
+  command->add_flag("--unchecked", path.unchecked, "write the program even if a touch would not be valid");
   command->add_option("--name", path.name, "of the program")->capture_default_str();
   command->add_option("--title", path.title, "")->capture_default_str();
   command
       ->add_option("--centre", path.centre_offset, "turning: from zero to the sphere's axis, program units")
       ->capture_default_str();
   command->add_option("--dwell", path.dwell, "turning: after a touch")->capture_default_str();
-  command->add_option("--comment", path.comments, "a line at the top; again for each")
+  command->add_option("--comment", path.comments, "a comment line at the top of the program; again for each")
       ->allow_extra_args(false);
   command->add_option("-o", arguments->output, "program")->type_name(kWrites)->required();
   command->footer(
@@ -302,11 +306,13 @@ void register_feature(CLI::App& vernier) {
   add_table(*command, *arguments);
   command->add_option("--ball-radius", arguments->setup.ball_radius_mm,
                       "effective radius of the stylus ball, mm (probe-cal)");
-  command->add_flag("--inside", arguments->setup.inside, "touched from inside, where rows have no normals");
+  command->add_flag("--inside", arguments->setup.inside,
+                    "the feature was touched from inside (for rows without normals)");
   command->add_option("--size", arguments->size, "block: X,Y in mm")->delimiter(',')->expected(2);
   command->add_option("--expansion", arguments->expansion,
-                      "of the workpiece, um/(m K): sizes are those at 20 degC");
-  command->add_option("--temperature", arguments->temperature, "of all rows, degC, without a column T");
+                      "expansion of the workpiece, um/(m K): results are sizes at 20 degC");
+  command->add_option("--temperature", arguments->temperature,
+                      "temperature of all rows, degC, if the file has no column T");
   command->add_option("--expansion-std", arguments->expansion_std, "its standard uncertainty, um/(m K)")
       ->capture_default_str();
   command->add_option("--temperature-std", arguments->temperature_std, "K")->capture_default_str();

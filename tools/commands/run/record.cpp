@@ -103,7 +103,7 @@ void register_record(CLI::App& vernier) {
   command->add_option("--seconds", arguments->seconds, "length of the recording")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
-  command->add_option("--every", arguments->every, "every so many ticks a row")
+  command->add_option("--every", arguments->every, "number of ticks per row")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   command

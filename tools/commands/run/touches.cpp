@@ -63,7 +63,7 @@ std::string in_words(const Lost& lost) {
     if (number > 0) text += fmt::format("; {} {}", number, what);
   };
   say(lost.overwritten, "touches were overwritten before they were read");
-  say(lost.without_position, "touches have no position (an edge was lost, or samples around it)");
+  say(lost.without_position, "touches have no position (an edge or samples near it were lost)");
   say(lost.board.lost_edges, "times edges were lost on the way to the board");
   say(lost.board.lost_touches, "touches came faster than the board could publish them");
   say(lost.board.missing, "edges are missing from the line");
@@ -85,7 +85,7 @@ void run(const Arguments& arguments) {
     }
   }
   if (arguments.output.empty())
-    throw text::InputError("nothing to do: give -o FILE, or --origin-x/y/z and --angle");
+    throw text::InputError("no output is requested: give -o FILE, or --origin-x/y/z and --angle");
   Progress progress("touches");
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();

@@ -83,7 +83,7 @@ std::uint32_t security_of(const Arguments& arguments, const SlotsReply& slots) {
   if (arguments.security < 0) return slots.security;
   if (arguments.security < slots.security)
     throw text::LimitNotMet(
-        fmt::format("the board's security counter is {} and never falls", slots.security));
+        fmt::format("the security counter of the board is {} and cannot be lowered", slots.security));
   return static_cast<std::uint32_t>(arguments.security);
 }
 
@@ -138,7 +138,7 @@ text::Assurance vouch(const Arguments& arguments, upload::Client& client, const 
                     : all_axes   ? ""
                                  : ", an axis below its full weight",
                     100 * state.weight));
-  assurance.not_covered("whether the machine is more accurate: nothing was measured");
+  assurance.not_covered("whether the machine is more accurate: no measurement was made with the image");
   return assurance;
 }
 
@@ -167,7 +167,7 @@ void tell(const Arguments& arguments, upload::Client& client, const Done& done) 
 
 void run(const Arguments& arguments) {
   if (arguments.directory.empty() && !arguments.confirm && !arguments.revert)
-    throw text::InputError("nothing to do: name a compiled directory, --confirm or --revert");
+    throw text::InputError("no action is requested: name a compiled directory, --confirm or --revert");
   if (arguments.revert && (arguments.confirm || !arguments.directory.empty()))
     throw text::InputError("--revert cannot be combined with DIR or --confirm");
   upload::Client client(upload::open_transport(upload::parse_url(arguments.url)));
@@ -179,7 +179,7 @@ void run(const Arguments& arguments) {
     const SlotsReply slots = client.slots();
     if (slots.trial != kNoSlot) done.kept = slots.trial_fingerprint;
     if (done.sent && done.kept != done.sent)
-      throw text::LimitNotMet("another image is on trial than the one that was sent: nothing was confirmed");
+      throw text::LimitNotMet("the image on trial is not the image that was sent: no image was confirmed");
     client.confirm();
   }
   if (arguments.revert) client.revert(), done.given_up = true;
@@ -208,8 +208,9 @@ void register_upload(CLI::App& vernier) {
       ->required();
   command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)")
       ->type_name(kReads);
-  command->add_flag("--confirm", arguments->confirm, "confirm the image on trial; with DIR: immediately");
-  command->add_flag("--revert", arguments->revert, "give the image on trial up");
+  command->add_flag("--confirm", arguments->confirm,
+                    "confirm the image on trial; with DIR: immediately after the upload");
+  command->add_flag("--revert", arguments->revert, "revert the image on trial");
   command->add_flag("--force", arguments->force,
                     "if the clock of this computer is behind the newest image of the board: sign with a time "
                     "right after that image");

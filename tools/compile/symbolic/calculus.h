@@ -9,8 +9,7 @@
 
 namespace vernier::compile {
 
-/// d node / d channel as a node. Throws std::domain_error if the node has a step or a table there.
-/// tool.
+/// Computes d node / d channel as a node. Throws std::domain_error if the node has a step or a table. tool.
 class Derivative {
  public:
   Derivative(Graph& graph, NodeId channel) : g_(graph), channel_(channel) {}
@@ -24,13 +23,14 @@ class Derivative {
   std::map<NodeId, NodeId> known_;
 };
 
-/// Values of nodes at random positions of their channels' ranges (seeded: the same in every call).
-/// A table or a lag has no value here. A node that depends on one throws std::domain_error. tool.
+/// Values of nodes at random positions of their channels' ranges. The random numbers are seeded: each call
+/// gives the same values. A table or a lag has no sampled value. A node that depends on a table or a lag
+/// throws std::domain_error. tool.
 class Samples {
  public:
   Samples(const Graph& graph, Eigen::Index count) : graph_(graph), count_(count) {}
   const Eigen::ArrayXd& of(NodeId node);
-  /// Sets values of a channel instead of random ones. Call it before the channel is used.
+  /// Sets the values of a channel instead of random values. Call set() before the channel is used.
   void set(NodeId channel, Eigen::ArrayXd values) { known_[channel] = std::move(values); }
 
  private:
@@ -41,12 +41,11 @@ class Samples {
   std::map<NodeId, Eigen::ArrayXd> known_;
 };
 
-/// Returns the value of a node that is the same number at every sample (a trigonometric identity),
-/// otherwise nullopt.
+/// Returns the value of a node that is equal at every sample (a trigonometric identity), otherwise nullopt.
 std::optional<double> sampled_constant(Samples& samples, NodeId node);
 
-/// Intervals over a part of the declared ranges. The channels of `box` have their part, others the
-/// whole range.
+/// Intervals over a part of the declared ranges. The channels in `box` have the range of the box, the other
+/// channels their whole range.
 class Enclosure {
  public:
   Enclosure(const Graph& graph, const std::map<NodeId, Interval>& box) : graph_(graph), box_(box) {}
@@ -58,18 +57,18 @@ class Enclosure {
   std::map<NodeId, Interval> known_;
 };
 
-/// Returns a lower bound of a node over the declared ranges, by bisection of the positions on
-/// which it depends. At most `boxes` parts are evaluated. Never above the true minimum. tool.
+/// Returns a lower bound of a node over the declared ranges, by bisection of the positions on which the node
+/// depends. lower_bound_of evaluates at most `boxes` parts. The result is never above the true minimum. tool.
 double lower_bound_of(const Graph& graph, NodeId node, std::size_t boxes);
 
-/// Upper bounds of |d node / d channel| over the declared ranges: tables by their steepest piece,
-/// choices by either side, steps of comparisons excluded. tables: largest slope of each column,
+/// Upper bounds of |d node / d channel| over the declared ranges. Tables count with their steepest piece,
+/// choices with the steeper side; steps of comparisons are excluded. tables: largest slope of each column,
 /// per graph node. tool.
 class Slopes {
  public:
   Slopes(const Graph& graph, NodeId channel, const std::map<NodeId, double>& table_slopes)
       : graph_(graph), channel_(channel), table_slopes_(table_slopes) {}
-  /// From this call on the node counts as given: it does not change with the channel.
+  /// From this call on the node counts as constant: its slope by the channel is 0.
   void hold(NodeId node) { known_[node] = {}; }
   Interval of(NodeId id);
 

@@ -8,12 +8,12 @@ namespace vernier::compile {
 
 enum class Function : std::uint8_t { kSin, kCos, kExp, kLog, kSqrt, kReciprocal, kArcTangent };
 
-/// Value of a function and of its first derivative. Arguments of sine and cosine and results of
-/// the arc tangent are in degrees.
+/// Returns the value of a function; slope_of returns its first derivative. Arguments of sine and cosine and
+/// results of the arc tangent are in degrees.
 double value_of(Function f, double x);
 double slope_of(Function f, double x);
-/// Largest |first| and |fourth| derivative over an interval (closed form). The fourth bounds the error of
-/// cubic pieces.
+/// Returns the largest |first| and |fourth| derivative over an interval (closed form). The fourth bounds the
+/// error of cubic pieces.
 double slope_bound(Function f, const Interval& x);
 double fourth_derivative_bound(Function f, const Interval& x);
 const char* name_of(Function f);

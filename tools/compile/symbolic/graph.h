@@ -51,9 +51,9 @@ struct Node {
   Interval range;
 };
 
-/// The error equation as a graph of real-valued operations. Equal nodes are one node
-/// (hash-consing). Constants are folded, zeros are pruned, sums are flattened and like terms are
-/// collected. Nodes are never removed. Unreachable nodes need no computing time. tool.
+/// The error equation as a graph of real-valued operations. Equal operations share one node (hash-consing).
+/// Constants are folded, zeros are pruned, sums are flattened and like terms are collected. Nodes are never
+/// removed. Unreachable nodes need no computing time. tool.
 class Graph {
  public:
   NodeId constant(double value);
@@ -77,7 +77,7 @@ class Graph {
   bool is_zero(NodeId id) const { return nodes_[id].kind == NodeKind::kConstant && nodes_[id].number == 0; }
   std::optional<double> constant_value(NodeId id) const;
 
-  /// Returns d node / d channel if it is constant; nullopt if it varies or is not known.
+  /// Returns d node / d channel if this slope is constant; nullopt if the slope varies or is unknown.
   std::optional<double> constant_slope(NodeId id, NodeId channel) const;
 
   bool depends_on(NodeId id, NodeId other) const;

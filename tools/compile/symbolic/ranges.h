@@ -8,10 +8,11 @@
 
 namespace vernier::compile {
 
-/// Returns the range of a channel in the unit of the machine file: declared, or the default of
-/// docs for its kind and unit.
+/// Returns the range of an axis in the unit of the machine file: the declared range, or the documented
+/// default for its kind and unit.
 Interval axis_range(const model::Machine& machine, std::size_t axis);
-/// Without a declared range, the default extends over the last fit's rows and a tenth beyond.
+/// Returns the range of an input. Without a declared range: the range of the last fit's rows, widened by a
+/// tenth.
 Interval input_range(const model::Machine& machine, std::size_t input);
 Interval channel_range(const model::Machine& machine, ChannelKind kind, std::size_t index);
 

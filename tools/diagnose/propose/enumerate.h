@@ -17,7 +17,7 @@ struct ScannedCandidate {
   FinePeriods fine;                       // of a cyclic error: the periods below its grid
   double most_driven = 2;  // factor beyond the grid that still counts as inside the search range
 
-  /// Did a fit move a scanned unknown from its found value out of the range of its search?
+  /// True if a fit moved a scanned unknown from its found value out of the range of its search.
   bool is_driven_out(std::size_t unknown, double found, double value) const;
 };
 
@@ -27,15 +27,15 @@ struct ScannedCandidate {
 std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
                                                    const std::vector<effects::Effect>& effects);
 
-/// Returns locations, as Evidence::places(), whose influence on all observations is the same as
-/// that of another location of their kind, but many times weaker. An example is a length across
-/// the reading that is visible through a tilt of the machine by minutes. An effect that a survey
-/// shows there belongs to the other location. tool.
+/// Returns locations whose influence on all observations equals that of another location of their kind, but
+/// is many times weaker. Index: as Evidence::places(). Example: a length across the reading direction that is
+/// visible only because the machine is tilted by minutes. An effect that a survey shows at such a location
+/// belongs to the other location. tool.
 std::vector<char> outshone_places(const Evidence& evidence);
 
-/// Returns the degrees of freedom that the observations can distinguish. Of those with the same
-/// influence on all observations (all but 1e-7 of the direction), the first one is used. Rows of
-/// the file precede an added row. `angles_apart`: the first angle and the first length. tool.
+/// Returns the degrees of freedom that the observations can distinguish. Among degrees of freedom with the
+/// same influence on all observations (all but 1e-7 of the direction), the first is used. Rows of the file
+/// precede an added row. `angles_apart`: returns the first angle and the first length. tool.
 std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
 
 }  // namespace vernier::diagnose

@@ -15,9 +15,8 @@
 
 namespace vernier::diagnose {
 
-/// All data that a search needs of a fitted machine and its rows: the influence of each degree of
-/// freedom on each observation, the residual, and the part that the model's own free parameters
-/// could still absorb.
+/// All data of a fitted machine and its rows that a search needs: the influence of each degree of freedom on
+/// each observation, the residual, and the part that the free parameters of the model can still absorb.
 class Evidence {
  public:
   /// `fitted`: the machine at its best fit. Every logged column becomes an input. tool.
@@ -28,62 +27,63 @@ class Evidence {
   const DiagnoseThresholds& thresholds() const { return thresholds_; }
   const model::Machine& machine() const { return machine_; }  // with every logged column as an input
   const model::Measurement& measurement() const { return measurement_; }
-  /// Reference value of an input: the declared reference, 20 degC, else a round number near its
-  /// mean.
+  /// Returns the reference value of an input: the declared reference, 20 degC, else a round number near the
+  /// mean of the input.
   double reference_of(std::size_t input) const;
   const std::vector<effects::DofPlace>& places() const { return places_; }
   std::size_t index_of(const effects::DofPlace& place) const;
 
-  /// d reading / d (mm or deg at the location), weighted by 1/u, for the fit observations.
+  /// Returns d reading / d (mm or deg at the location), weighted by 1/u, for the fit observations.
   auto response(std::size_t place) const { return response_.col(static_cast<Eigen::Index>(place)); }
   /// Row of each fit observation.
   const std::vector<std::size_t>& rows() const { return rows_; }
-  /// Commanded position of an axis in each row of the measurement. With a correction included,
-  /// every reading would be a pose of its own.
+  /// Returns the commanded position of an axis in each row of the measurement. Commanded positions exclude
+  /// the correction: with the correction, every reading would be a separate pose.
   const model::Column& position(std::size_t axis) const { return position_[axis]; }
   const Eigen::VectorXd& weights() const { return weight_; }
   /// (measured - model) / u of the fit observations, without the part that the model can absorb.
   const Eigen::VectorXd& residual() const { return residual_; }
-  /// Orthonormal columns that span what the free parameters can absorb.
+  /// Returns orthonormal columns that span what the free parameters can absorb.
   const Eigen::MatrixXd& absorbed() const { return absorbed_; }
   bool noise_known() const { return noise_known_; }
   double chi_square() const { return residual_.squaredNorm(); }
   double freedom() const { return static_cast<double>(residual_.size() - absorbed_.cols()); }
 
-  /// Columns of a candidate, one per linear unknown, unweighted in its own unit: weighted readings per unit
-  /// of the unknown. `scanned`: values of the other unknowns, in their order.
+  /// Returns the columns of a candidate, one per linear unknown: weighted readings per unit of the unknown,
+  /// without whitening. `scanned`: values of the other unknowns, in their order.
   Eigen::MatrixXd columns(const effects::Candidate& candidate, const std::vector<double>& scanned) const;
 
-  /// Runs of the fit rows for leave-out tests: one index per fit observation. If there is only one
-  /// run, blocks of successive rows.
+  /// Runs of the fit rows for leave-out tests: one index per fit observation. If there is only one run, the
+  /// blocks are groups of successive rows.
   const std::vector<int>& blocks() const { return block_; }
-  /// The same with every run divided into parts that are held out in turn.
+  /// Returns blocks like blocks(), with every run divided into parts that are held out in turn.
   std::vector<int> parts_of_runs() const;
 
-  /// Variance of the error that readings of one kind at one pose share, divided by the variance of
-  /// their differences (one-way analysis of variance, Searle 1992, 3.6). 0 if no pose was read
-  /// more than once, or if the ratio is not significant. `residual`: beside the model and the
-  /// orthonormal columns `fitted`.
+  /// Returns the variance of the error that readings of one kind at one pose share, divided by the variance
+  /// of their differences (one-way analysis of variance, Searle 1992, 3.6). 0 if no pose was read more than
+  /// once, or if the ratio is not significant. `residual`: beside the model and the orthonormal columns
+  /// `fitted`.
   double shared_pose_error(const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted) const;
-  /// From this call on, readings at one pose share an error of `share` times their own variance
-  /// (generalised least squares). It weights the residual, the columns and the part that the model
-  /// absorbs.
+  /// From this call on, readings at one pose share an error. The variance of this error is `share` times the
+  /// independent variance of the readings (generalised least squares). weigh_poses weights the residual, the
+  /// columns and the part that the model absorbs.
   void weigh_poses(double share);
-  /// From this call on, the readings' errors are correlated by this model (generalised least
-  /// squares). It whitens the residual, the columns and the part that the model absorbs.
+  /// From this call on, the noise model `noise` gives the correlation of the readings' errors (generalised
+  /// least squares). assume() whitens the residual, the columns and the part that the model absorbs.
   void assume(const fit::NoiseModel& noise);
   const fit::NoiseModel& noise() const { return noise_; }
   /// log det of the covariance of the readings under that model.
   double log_determinant() const { return log_determinant_; }
-  /// Correlation of the readings' errors beside the model and columns from `raw_columns`. `given`:
-  /// steps that are assumed, with the heights that they have beside all that.
+  /// Returns the correlation of the readings' errors beside the model and the columns from `raw_columns`.
+  /// `given`: steps that are assumed, with the heights that they have beside the model and these columns.
   fit::NoiseModel estimate(const Eigen::MatrixXd& raw, std::vector<fit::NoiseStep> given = {}) const;
   const fit::NoiseLayout& layout() const { return layout_; }
-  /// Sum of squares of the weighted residual beside the model and such columns, without whitening.
+  /// Returns the sum of squares of the weighted residual beside the model and the columns `raw`, without
+  /// whitening.
   double left_in_full(const Eigen::MatrixXd& raw) const;
-  /// Columns of a candidate before any whitening.
+  /// Returns the columns of a candidate before any whitening.
   Eigen::MatrixXd raw_columns(const effects::Candidate& candidate, const std::vector<double>& scanned) const;
-  /// Before any whitening: a column for each kind of reading, the influence of one common offset.
+  /// Returns a column for each kind of reading: the influence of one common offset, before any whitening.
   Eigen::MatrixXd offset_columns() const;
   /// The noise model for the rows of the file, if only every k-th row was used here.
   fit::NoiseModel noise_of_file() const;
@@ -96,10 +96,11 @@ class Evidence {
     bool even = true;  // the steps are multiples of one step, or nearly so
   };
   Range range_of(std::size_t axis) const;
-  /// Positions at which an axis was read, increasing. Positions within `apart` of each other count
-  /// once. sense +1 or -1: of the rows with that approach direction, 0: of all.
+  /// Returns the positions at which an axis was read, increasing. Positions within `apart` of each other
+  /// count once. sense +1 or -1: of the rows with that approach direction, 0: of all.
   std::vector<double> places_read(std::size_t axis, int sense, double apart) const;
-  /// Approach direction of a row: as recorded, else from the rows before. 0 if it is unknown.
+  /// Returns the approach direction of a row: as recorded, else from the rows before. The result is 0 if the
+  /// approach direction is unknown.
   int sense_of(std::size_t axis, std::size_t row) const;
   /// Extent of the points that were read, mm; 0 if no lengths were read.
   double reach_mm() const { return reach_mm_; }
@@ -113,12 +114,12 @@ class Evidence {
   void absorb();
   void share_poses(Eigen::MatrixXd& columns) const;
   void split_blocks();
-  /// Index of the part with which a row may be held out: its block, or its run if there are no
+  /// Returns the index of the part with which a row may be held out: its block, or its run if there are no
   /// blocks.
   std::size_t block_of(std::size_t row) const {
     return measurement_.states.of(measurement_.states.block, row);
   }
-  /// Fit observations of one kind at one position, in any run, if there are two or more.
+  /// Returns groups of two or more fit observations of one kind at one position, in any run.
   std::vector<std::vector<Eigen::Index>> readings_at_one_pose() const;
 
   DiagnoseThresholds thresholds_;
@@ -143,13 +144,13 @@ class Evidence {
   Eigen::MatrixXd raw_absorbed_;
 };
 
-/// Computes the columns of one candidate after the other (Evidence::columns) on one copy of the
-/// machine. Use one object per thread. tool.
+/// Computes the columns of candidates one after another (Evidence::columns) on one copy of the machine. Use a
+/// separate ColumnMaker for each thread. tool.
 class ColumnMaker {
  public:
   explicit ColumnMaker(const Evidence& evidence);
   Eigen::MatrixXd raw(const effects::Candidate& candidate, const std::vector<double>& scanned);
-  /// The same, whitened.
+  /// Returns the whitened columns of a candidate.
   Eigen::MatrixXd columns(const effects::Candidate& candidate, const std::vector<double>& scanned);
 
  private:

@@ -227,12 +227,89 @@ Eigen::VectorXd carrier_of(const Evidence& evidence, const effects::Candidate& c
   return carrier;
 }
 
+Eigen::VectorXd wave_gains(const Evidence& evidence, const WaveOfAxis& wave, double first, double step,
+                           Index count, const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) {
+  constexpr Index kBlock = 64;  // frequencies in one product
+  const Index size = residual.size();
+  const double least_square = std::pow(evidence.thresholds().pool.least_own, 2);
+  Eigen::ArrayXd at(size);
+  for (Index i = 0; i < size; ++i) at[i] = kTurn * position(evidence, wave.axis, static_cast<std::size_t>(i));
+  const Eigen::MatrixXd& absorbed = evidence.absorbed();
+  Eigen::VectorXd gains(count);
+  Eigen::MatrixXd columns;
+  for (Index begin = 0; begin < count; begin += kBlock) {
+    const Index width = std::min(kBlock, count - begin);
+    columns.resize(size, 2 * width);
+    for (Index k = 0; k < width; ++k) {
+      const Eigen::ArrayXd phase = (first + static_cast<double>(begin + k) * step) * at;
+      columns.col(2 * k) = wave.carrier.array() * phase.sin();
+      columns.col(2 * k + 1) = wave.carrier.array() * phase.cos();
+    }
+    evidence.whiten(columns);
+    const Eigen::RowVectorXd before = columns.colwise().squaredNorm();
+    if (absorbed.cols() > 0) columns -= absorbed * (absorbed.transpose() * columns);
+    if (beside.cols() > 0) columns -= beside * (beside.transpose() * columns);
+    const Eigen::RowVectorXd moment = residual.transpose() * columns;
+    for (Index k = 0; k < width; ++k) {
+      const double a = columns.col(2 * k).squaredNorm(), b = columns.col(2 * k + 1).squaredNorm(),
+                   c = columns.col(2 * k).dot(columns.col(2 * k + 1)), u = moment[2 * k],
+                   v = moment[2 * k + 1];
+      const double determinant = a * b - c * c, own = before[2 * k] + before[2 * k + 1];
+      // The smaller eigenvalue of the 2 x 2 matrix is at least its determinant over its trace.
+      const bool independent = determinant > least_square * own * (a + b);
+      gains[begin + k] = independent ? (b * u * u - 2 * c * u * v + a * v * v) / determinant : 0;
+    }
+  }
+  return gains;
+}
+
+bool is_affordable(const Evidence& evidence, Index count, const Eigen::MatrixXd& beside) {
+  constexpr double kMost = 4e8;  // multiplications: a few tenths of a second
+  const double columns = static_cast<double>(evidence.absorbed().cols() + beside.cols() + 4);
+  return 4 * columns * static_cast<double>(count) * static_cast<double>(evidence.residual().size()) < kMost;
+}
+
+namespace {
+
+/// The same by exact gains, for one candidate.
+std::vector<double> best_by_gain(const Evidence& evidence, const FinePeriods& fine, Index count,
+                                 const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) {
+  const WaveOfAxis wave{fine.axis, fine.carrier};
+  const FinePeriodThresholds& limits = evidence.thresholds().fine;
+  const Eigen::MatrixXd gains =
+      wave_gains(evidence, wave, fine.slowest, fine.step, count, beside, residual).transpose();
+  const double freedom = std::max(1.0, evidence.freedom()), all = residual.squaredNorm();
+  const double left = std::max(all - gains.maxCoeff(), evidence.noise_known() ? freedom : 0.0);
+  constexpr int kSections = 12;  // of a golden search between two frequencies
+  std::vector<double> periods;
+  for (const Index k : best_peaks(gains, 0, all / freedom * 2 * std::log(fine.tries()),
+                                  left / freedom * limits.nearly_as_well, limits.peaks)) {
+    const double middle = fine.slowest + static_cast<double>(k) * fine.step;
+    periods.push_back(1 / maths::golden_peak(
+                              [&](double frequency) {
+                                return wave_gains(evidence, wave, frequency, 0, 1, beside, residual)[0];
+                              },
+                              middle - fine.step, middle + fine.step, kSections)
+                              .at);
+  }
+  return periods;
+}
+
+}  // namespace
+
 std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
                                                    const std::vector<const FinePeriods*>& of_axis,
+                                                   const Eigen::MatrixXd& beside,
                                                    const Eigen::VectorXd& residual) {
   std::vector<std::vector<double>> found(of_axis.size());
   if (of_axis.empty()) return found;
   const FinePeriods& fine = *of_axis.front();
+  const auto count = static_cast<Index>(std::floor((fine.fastest - fine.slowest) / fine.step)) + 1;
+  if (is_affordable(evidence, count * static_cast<Index>(of_axis.size()), beside)) {
+    for (std::size_t i = 0; i < of_axis.size(); ++i)
+      found[i] = best_by_gain(evidence, *of_axis[i], count, beside, residual);
+    return found;
+  }
   // The columns are weighted like the residual. For a symmetric weighting, weighting the residual
   // once more is equivalent.
   Eigen::MatrixXd weighed = residual;
@@ -241,7 +318,6 @@ std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
   for (std::size_t i = 0; i < of_axis.size(); ++i)
     products.col(static_cast<Index>(i)) = of_axis[i]->carrier.cwiseProduct(weighed.col(0));
   const Positions positions = by_position(evidence, fine.axis, products);
-  const auto count = static_cast<Index>(std::floor((fine.fastest - fine.slowest) / fine.step)) + 1;
   const Eigen::MatrixXd power = powers(positions, fine.slowest, fine.step, count);
   // Power at which the wave explains as much as the highest of so many waves explains of noise.
   const double variance = residual.squaredNorm() / std::max(1.0, evidence.freedom());

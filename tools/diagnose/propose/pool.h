@@ -15,8 +15,8 @@ namespace vernier::diagnose {
 std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
                                                  const effects::Candidate& candidate);
 
-/// The best of all candidates. Their columns are stored side by side, so that sets of them can be
-/// compared.
+/// The best of all candidates. The columns of the candidates are stored side by side, so that sets of
+/// candidates can be compared.
 class Pool {
  public:
   struct Item {
@@ -29,8 +29,8 @@ class Pool {
 
   Pool(const Evidence& evidence, const Scanner& scanner);
 
-  /// Adds the most promising candidates: those with the largest gain minus penalty, and the best
-  /// of every effect. Scanned values are refined first.
+  /// Adds the most promising candidates: those with the largest gain minus penalty, and the best candidate of
+  /// every effect. Scanned values are refined first.
   void add(const std::vector<Scored>& scored, const Eigen::MatrixXd& beside);
 
   /// Removes all entries.
@@ -41,7 +41,7 @@ class Pool {
 
   /// The entries that are not banned, as a problem of selection. `items`: item of each entry.
   SelectionProblem problem(std::vector<std::size_t>& items) const;
-  /// The same for given items, banned or not.
+  /// Returns the selection problem of the given items, excluded or not.
   SelectionProblem problem_of(const std::vector<std::size_t>& items) const;
 
   std::size_t size() const { return items_.size(); }
@@ -52,27 +52,28 @@ class Pool {
     items_[i].why_not = std::move(why);
   }
 
-  /// Columns of several items side by side.
+  /// Returns the columns of several items side by side.
   Eigen::MatrixXd columns(const std::vector<std::size_t>& items) const;
   /// A term from the search, without a name in the catalogue.
   bool is_custom(std::size_t i) const { return candidate(i).choice.effect == &effects::custom_effect(); }
-  /// Share of the squares of an item's columns that lies in the span of another's.
+  /// Returns the share of the squares of an item's columns that lies in the span of another's.
   double common_share(std::size_t item, std::size_t other) const;
-  /// Effective number of readings that support an item: squared sum over the sum of squares of its
-  /// columns' squares.
+  /// Returns the effective number of readings that support an item: squared sum over the sum of squares of
+  /// its columns' squares.
   double witnesses(std::size_t item) const;
-  /// Do two items have the same effect (or the cause that the catalogue names), driving axis and
-  /// inputs? Then they are the same cause.
+  /// True if two items have the same effect (or cause in the catalogue), driving axis and inputs. Two such
+  /// items are the same cause.
   bool same_cause(std::size_t a, std::size_t b) const;
-  /// Do two items span the same columns (all but a thousandth of their squares)?
+  /// True if two items span the same columns (all but a thousandth of their squares).
   bool same_columns(std::size_t a, std::size_t b) const;
-  /// Does `general` have more unknowns than `special`, depend on all that `special` depends on,
-  /// and contain its columns (all but 2 % of their squares)?
+  /// True if `general` has more unknowns than `special`, depends on all that `special` depends on, and
+  /// contains its columns (all but 2 % of their squares).
   bool contains(std::size_t general, std::size_t special) const;
-  /// Do both depend on the same kinds of quantities (positions, count of rows and travel since a
-  /// reversal do not count)? If their columns are the same too, they are two forms of one term.
+  /// True if two items depend on the same kinds of quantities. Positions, count of rows and travel since a
+  /// reversal do not count. If the columns of two such items are also equal, the items are two forms of one
+  /// term.
   bool same_kind(std::size_t a, std::size_t b) const;
-  /// Penalty of a candidate for the number of tested candidates (twice the logarithm of their
+  /// Returns the penalty of a candidate for the number of tested candidates (twice the logarithm of their
   /// number).
   double penalty(const Scored& scored) const;
 

@@ -7,16 +7,16 @@
 
 namespace vernier::diagnose {
 
-/// A product of recorded quantities at one degree of freedom: k*X*(T-20).
+/// A product of recorded quantities at one degree of freedom, for example k*X*(T-20).
 struct Product {
   effects::DofPlace place;
   model::ExprPtr term;
   std::vector<std::string> inputs, units;
 };
 
-/// Searches beyond the catalogue. If `extend` is empty, returns all products of one or two
-/// recorded quantities at every location. Otherwise returns each of `extend` with one additional
-/// factor.
+/// Searches beyond the catalogue. If `extend` is empty, enumerate_products returns all products of one or two
+/// recorded quantities at every location. Otherwise enumerate_products returns each product of `extend` with
+/// one additional factor.
 std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
                                                  const std::vector<Product>& extend);
 

@@ -8,19 +8,19 @@
 
 namespace vernier::diagnose {
 
-/// Selects the gravity functions along a chain that become candidates: those that several axes
-/// drive together, few enough to distinguish. Functions of one axis or of a sum of parallel axes
-/// have forms of their own.
+/// Selects the gravity functions along a chain that become candidates: functions that several axes drive
+/// together, few enough to distinguish. Functions of one axis, or of a sum of parallel axes, have separate
+/// forms.
 class Pulls {
  public:
   explicit Pulls(const Evidence& evidence);
 
-  /// Does a form need such a function?
+  /// True if a form needs a gravity function along the chain.
   static bool asks(const effects::EffectForm& form);
-  /// Is such a form possible at this location? For a bend, only variants() tries `toward`.
+  /// True if such a form is possible at this location. For a bend, only variants() tries the directions
+  /// `toward`.
   bool admits(const effects::EffectForm& form, const effects::DofPlace& place) const;
-  /// Returns a choice with its location, once for every bar and every mass with a distinct
-  /// function.
+  /// Returns a choice with its location, once for every bar and every mass with a distinct gravity function.
   std::vector<effects::Choice> variants(const effects::Choice& choice) const;
 
  private:

@@ -159,6 +159,11 @@ std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside, const std::func
   return seen;
 }
 
+double Scanner::alike_within(double left) const {
+  const double spread = left / std::max(1.0, evidence_.freedom());
+  return evidence_.thresholds().fine.told_apart * (evidence_.noise_known() ? std::max(1.0, spread) : spread);
+}
+
 Scored Scanner::best_period(std::size_t candidate, const std::vector<double>& periods,
                             const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const {
   const Eigen::MatrixXd& q = evidence_.absorbed();
@@ -171,8 +176,7 @@ Scored Scanner::best_period(std::size_t candidate, const std::vector<double>& pe
     most = std::max(most, scored.gain);
     seen.push_back(std::move(scored));
   }
-  const double apart = evidence_.thresholds().fine.told_apart;
-  const double near = most - apart * residual.squaredNorm() / std::max(1.0, evidence_.freedom());
+  const double near = most - alike_within(residual.squaredNorm() - most);
   Scored best;
   for (Scored& scored : seen)
     if (scored.gain >= near && (best.unknowns == 0 || scored.scanned[0] > best.scanned[0])) best = scored;
@@ -188,7 +192,7 @@ std::vector<Scored> Scanner::scan_fine(const Eigen::MatrixXd& beside, std::size_
   for (const auto& [axis, list] : of_axis) {
     std::vector<const FinePeriods*> fine;
     for (const std::size_t c : list) fine.push_back(&candidates_[c].fine);
-    const std::vector<std::vector<double>> periods = promising_periods(evidence_, fine, residual);
+    const std::vector<std::vector<double>> periods = promising_periods(evidence_, fine, beside, residual);
     for (std::size_t i = 0; i < list.size(); ++i) {
       Scored best = best_period(list[i], periods[i], beside, residual);
       if (best.unknowns > 0) found.push_back(std::move(best));
@@ -220,6 +224,31 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
   }
 }
 
+std::vector<double> Scanner::possible_aliases(const Scored& scored, double own, double most, double mine,
+                                              const Eigen::MatrixXd& beside,
+                                              const Eigen::VectorXd& residual) const {
+  const effects::Candidate& candidate = candidates_[scored.candidate].candidate;
+  const std::size_t axis = *candidate.choice.axis;
+  const Evidence::Range range = evidence_.range_of(axis);
+  const double length = range.high - range.low;
+  std::vector<double> possible;
+  for (const double shift : alias_frequencies(evidence_, axis, most + own))
+    for (const double middle : {shift - own, shift + own}) possible.push_back(std::abs(middle));
+  // At few positions a wave can be like another one that is no alias of it by their window alone.
+  constexpr double kPerRange = 5;  // tested frequencies for each that the range distinguishes
+  const double step = 1 / (kPerRange * length), first = 0.5 / length;
+  const auto count = static_cast<Eigen::Index>((most - first) / step) + 1;
+  const FinePeriods both{axis, 2 * first, most, step, length, {}};
+  const WaveOfAxis wave{axis, carrier_of(evidence_, candidate, both)};
+  if (wave.carrier.size() == 0 || !is_affordable(evidence_, count, beside)) return possible;
+  constexpr double kKept = 0.8;  // least share of a peak's height at the nearest tested frequency
+  const Eigen::VectorXd gains = wave_gains(evidence_, wave, first, step, count, beside, residual);
+  for (Eigen::Index k = 1; k + 1 < count; ++k)
+    if (gains[k] > kKept * mine && gains[k] >= gains[k - 1] && gains[k] > gains[k + 1])
+      possible.push_back(first + static_cast<double>(k) * step);
+  return possible;
+}
+
 std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd& beside) const {
   const effects::Candidate& candidate = candidates_[scored.candidate].candidate;
   std::size_t scanned = 0;
@@ -241,27 +270,22 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
     return gain_at(maker, scored, {1 / frequency}, beside, residual);
   };
   const double mine = gain_of(own), left = residual.squaredNorm() - mine;
-  // If the residual exceeds the noise, it is the scale for the distinction.
-  const double spread = left / std::max(1.0, evidence_.freedom());
-  const double near = mine - limits.told_apart * (evidence_.noise_known() ? std::max(1.0, spread) : spread);
+  const double near = mine - alike_within(left);
   const auto known = [&](const std::vector<double>& list, double frequency) {
     return std::any_of(list.begin(), list.end(),
                        [&](double other) { return std::abs(other - frequency) * length < 0.5; });
   };
   std::vector<double> frequencies = {own};
-  for (const double shift : alias_frequencies(evidence_, axis, most + own))
-    for (const double middle : {shift - own, shift + own}) {
-      const double frequency = std::abs(middle);
-      if (frequency > most || frequency * length < 0.5 || known(frequencies, frequency)) continue;
-      constexpr int kSections = 10;  // of a golden search
-      const double width = 0.25 / length;
-      // The centre itself is exact if positions are even to the last digit.
-      const double there = gain_of(frequency);
-      if (there < mine / 2) continue;
-      const maths::Peak best = maths::golden_peak(gain_of, frequency - width, frequency + width, kSections);
-      if (std::max(there, best.value) >= near)
-        frequencies.push_back(there >= best.value ? frequency : best.at);
-    }
+  for (const double frequency : possible_aliases(scored, own, most, mine, beside, residual)) {
+    if (frequency > most || frequency * length < 0.5 || known(frequencies, frequency)) continue;
+    constexpr int kSections = 10;  // of a golden search
+    const double width = 0.25 / length;
+    // The centre itself is exact if positions are even to the last digit.
+    const double there = gain_of(frequency);
+    if (there < mine / 2) continue;
+    const maths::Peak best = maths::golden_peak(gain_of, frequency - width, frequency + width, kSections);
+    if (std::max(there, best.value) >= near) frequencies.push_back(there >= best.value ? frequency : best.at);
+  }
   std::vector<double> periods;
   for (std::size_t i = 1; i < frequencies.size(); ++i) periods.push_back(1 / frequencies[i]);
   std::sort(periods.begin(), periods.end(), std::greater<>());

@@ -16,8 +16,8 @@ struct SelectionEntry {
   std::size_t cause = 0;    // at most one entry of each cause is selected
 };
 
-/// Selects the groups of columns that explain a residual. It needs only columns and residual, both
-/// after projection on the complement of what the model can absorb.
+/// Selects the groups of columns that explain a residual. Needs only columns and residual, both after
+/// projection on the complement of what the model can absorb.
 struct SelectionProblem {
   Eigen::MatrixXd gram;     // columns^T columns
   Eigen::VectorXd moment;   // columns^T residual
@@ -35,8 +35,8 @@ struct Selection {
   double chi_square = 0;
 };
 
-/// Extended BIC of a set of entries (Schwarz 1978; Chen and Chen 2008). The likelihood uses the
-/// noise at its best value, but never below the given uncertainty. Infinite if the columns are
+/// Returns the extended BIC of a set of entries (Schwarz 1978; Chen and Chen 2008). The likelihood uses the
+/// noise with the best fit, but never below the given uncertainty. The BIC is infinite if the columns are
 /// linearly dependent.
 Selection evaluate_selection(const SelectionProblem& problem, const std::vector<std::size_t>& chosen);
 
@@ -44,7 +44,7 @@ Selection evaluate_selection(const SelectionProblem& problem, const std::vector<
 /// steps find, at most `most` entries. tool.
 Selection select(const SelectionProblem& problem, std::size_t most);
 
-/// Coefficients of the columns of a set, in its order.
+/// Returns the coefficients of the columns of a set, in the order of the set.
 Eigen::VectorXd coefficients(const SelectionProblem& problem, const std::vector<std::size_t>& chosen);
 
 }  // namespace vernier::diagnose

@@ -14,24 +14,24 @@ namespace vernier::diagnose {
 
 /// Assumptions about the data before any candidate is tested.
 struct EvidenceThresholds {
-  /// Directions of the scaled Jacobian below this share of the largest are not followed by a fit.
-  /// They are visible only through products of errors. Experiment: chains with station tables,
-  /// whose spectrum has its gap here.
+  /// Limit of the scaled Jacobian, as a share of its largest direction: a fit does not follow a weaker
+  /// direction. Weaker directions are visible only through products of errors. Experiment: chains with
+  /// station tables, whose spectrum has a gap at this value.
   double absorb_cutoff = 1e-4;
-  /// If the Jacobian has more numbers than this, only every k-th row is used: 240 MB. A limit for
-  /// long surveys.
+  /// If the Jacobian has more numbers than this (240 MB), only every k-th row is used. The limit is for long
+  /// surveys.
   double most_numbers = 3e7;
   /// Significance level at which readings of one pose are assumed to share an error (analysis of
   /// variance). Searle 1992.
   double pose_chance = 1e-3;
-  /// Degrees of freedom between and within poses that such a test requires. Below, the uncertainty
-  /// of the variance exceeds a half (sqrt(2/10)).
+  /// Degrees of freedom between and within poses that the test for a shared pose error requires. With fewer
+  /// degrees of freedom, the uncertainty of the variance exceeds a half (sqrt(2/10)).
   double pose_freedom = 10;
-  /// Steps of an axis are even if they are multiples of the smallest one to within this share of
-  /// it. The value represents the positioning accuracy relative to the step of a measurement.
+  /// Steps of an axis are even if they are multiples of the smallest step, to within this share of the
+  /// smallest step. The value represents the positioning accuracy relative to the step of a measurement.
   double even_step = 0.05;
-  /// Response of a location, as a share of the largest of its kind, below which it is rounding: a
-  /// point that no rotation about it moves.
+  /// Response of a location, as a share of the largest of its kind, below which the response is only
+  /// rounding. Example: a point that no rotation about the location moves.
   double rounding = 1e-9;
 
   template <class Visit>
@@ -45,20 +45,19 @@ struct EvidenceThresholds {
   }
 };
 
-/// The candidates, and the values over which their unknowns are searched.
+/// Thresholds for the candidates, and for the values over which their unknowns are searched.
 struct CandidateThresholds {
-  /// Share of a unit vector, on average over the rows, that must be along gravity (a length) or
-  /// across it (an axis of rotation) for a location to sag: 17 degrees. A tilted table of 15
-  /// degrees counts as level.
+  /// Share of a unit vector, on average over the rows, that must be along gravity (a length) or across
+  /// gravity (an axis of rotation) for a location to sag: 17 degrees. A tilted table of 15 degrees counts as
+  /// level.
   double sag_share = 0.3;
-  /// Cosine above which joints count as parallel: 2.6 degrees. Errors of assembly are a tenth of
-  /// it.
+  /// Cosine above which joints count as parallel: 2.6 degrees. Errors of assembly are a tenth of this angle.
   double parallel_cosine = 0.999;
-  /// Largest number of products of sines and cosines in a gravity function along the chain: a tick
-  /// computes them all. An arm of seven joints on a tilted base has 30.
+  /// Largest number of products of sines and cosines in a gravity function along the chain: a tick computes
+  /// all of them. An arm of seven joints on a tilted base has 30.
   std::size_t most_terms_of_gravity = 40;
-  /// Cosine between the moments of two masses over the rows above which they are one: a hundredth
-  /// of the squares differs, below the resolution of any survey.
+  /// Cosine between the moments of two masses over the rows above which the masses count as one. A hundredth
+  /// of the squares then differs, below the resolution of any survey.
   double same_moment = 0.995;
   /// Share of the declared range above which terms name the declared range instead of the measured
   /// range: "200" and not "199.3".
@@ -68,49 +67,49 @@ struct CandidateThresholds {
   std::size_t most_steps_of_runs = 4;
   /// Correlation with the row number above which a logged column is a clock or a counter.
   double like_a_clock = 0.95;
-  /// Readings for each function of a piecewise linear basis. With fewer, the table follows the
-  /// noise of single readings.
+  /// Readings for each function of a piecewise linear basis. With fewer readings per function, the table
+  /// follows the noise of single readings.
   double readings_per_hat = 4;
-  /// Searched time constants: from this many intervals of the rows, or this part of their duration
-  /// if that is longer, to this many durations. Beyond, a first-order lag is a step or a straight
-  /// line.
+  /// Range of the searched time constants. Shortest: this many intervals of the rows, or this part of their
+  /// duration if that is longer; longest: this many durations. Beyond this range, a first-order lag is a step
+  /// or a straight line.
   double time_least_steps = 3, time_least_part = 200, time_most = 3;
   /// Number of time constants in that range, logarithmic: a factor of 1.5 apart, refined
   /// afterwards.
   std::size_t time_values = 16;
-  /// Decay lengths: from this part of the range to that part of it.
+  /// Range of the searched decay lengths, as parts of the travel range.
   double travel_least_part = 500, travel_most_part = 2;
   std::size_t travel_values = 14;  // a factor of 1.6 apart, refined afterwards
-  /// Periods on the grid: up to so many in the range (shorter ones are searched by a periodogram),
-  /// so many frequencies for each that the range distinguishes. The longest is this share of the
-  /// range. A longer one is a curve, not a period.
+  /// Periods of the grid: largest number of periods in the range (a periodogram searches shorter periods),
+  /// and number of frequencies for each frequency that the range distinguishes. The longest period of the
+  /// grid is this share of the range. A longer period is a curve, not a period.
   double most_periods = 100, periods_per_range = 2.5, longest_period_share = 0.4;
-  /// The same for a linear axis that was read at even positions only, where a short wave looks
-  /// like a long one: six tenths of a wave in the range are not yet a parabola.
+  /// Longest period, as a share of the range, for a linear axis that was read at even positions only. There a
+  /// short period looks like a long one: six tenths of a period in the range are not yet a parabola.
   double longest_aliased_share = 1.6;
   /// Integer fractions of a revolution that are always tested: gears and bearings up to the
   /// twelfth order.
   std::size_t harmonics_of_turn = 12;
-  /// Share of a period that an axis must travel to show a cyclic error of known period. On a
-  /// shorter travel it is a curve.
+  /// Share of a period that an axis must travel to show a cyclic error of known period. On a shorter travel
+  /// the cyclic error is a curve.
   double least_of_a_period = 0.75;
-  /// The same for a period of one revolution, the most frequent period of a rotary axis: half of
-  /// it.
+  /// Share of one revolution that a rotary axis must travel to show a cyclic error with the period of one
+  /// revolution, the most frequent period: half a revolution.
   double least_of_a_turn = 0.5;
-  /// Number of positions of an axis in one approach direction, and share of the rows, above which
-  /// the direction has a grid of its own.
+  /// Number of positions of an axis in one approach direction, and share of the rows, above which this
+  /// approach direction has a grid of its own.
   std::size_t comb_positions = 6;
   double comb_share = 0.25;
   /// Steps per period: two by the sampling theorem, and a twentieth for steps that are not quite
   /// even.
   double steps_per_period = 2.1;
-  /// 1 - cosine below which two locations have the same influence on all readings: sqrt of
-  /// rounding, with three digits of margin.
+  /// 1 - cosine below which two locations have the same influence on all readings: sqrt of the rounding, with
+  /// three digits of margin.
   double same_place = 1e-7;
-  /// Factor by which another location must have the same, stronger influence for a location to be
-  /// excluded: a tilt of 6 degrees.
+  /// A location is excluded if another location has the same influence, this factor stronger: a tilt of 6
+  /// degrees.
   double outshone = 10;
-  /// Share of a fit's range by which a scanned unknown may leave the range of its search.
+  /// Share of the range of a fit by which a scanned unknown may leave the range of its search.
   double driven_out = 2;
 
   template <class Visit>
@@ -148,29 +147,31 @@ struct CandidateThresholds {
 
 /// The periodogram below the grid's periods.
 struct FinePeriodThresholds {
-  /// Tested frequencies for each that the range distinguishes. A peak between two of them keeps
-  /// nine tenths.
+  /// Number of tested frequencies for each frequency that the range distinguishes. A peak between two tested
+  /// frequencies keeps nine tenths of its height.
   double per_range = 3;
-  /// Limits of the search: periods over the range, and periods for each measured position. The
-  /// first is a ball screw of 1 mm on a metre. The second: fewer positions do not show the wave.
-  /// With twelve positions the best of a thousand waves explains 80 % of an unrelated pattern, and
-  /// others explain as much. Such a cyclic error is reported with its aliases (Scanner::aliases).
+  /// Limits of the search for short periods: periods over the range, and periods for each measured position.
+  /// The first limit is a ball screw of 1 mm pitch on a metre. The second limit: fewer positions per period
+  /// do not show the cyclic error. With twelve positions the best of a thousand periods explains 80 % of an
+  /// unrelated pattern, and other periods explain as much. A cyclic error that was found with so few
+  /// positions is reported with its aliases (Scanner::aliases).
   double most_periods = 1000, per_position = 80;
-  /// Peaks of a location that are scored in full, in addition to the slowest of those that fit
+  /// Number of peaks of a location that are scored in full, in addition to the slowest of those that fit
   /// nearly as well.
   std::size_t peaks = 3;
-  /// Power of the positions' own window, as a share of its largest, at which waves are aliases of
-  /// one another: first for candidates, then for the decision.
+  /// Power of the window of the positions, as a share of its largest, above which periods are aliases of each
+  /// other. First value: for candidates; second value: for the decision.
   double alias_near = 0.8, alias_same = 0.9999;
-  /// The same limit above which two waves are compared in full, whether the readings distinguish
-  /// them.
+  /// Power of the window of the positions, as a share of its largest, above which two periods are compared in
+  /// full: do the readings distinguish them?
   double alias_partly = 0.9;
   /// Smallest number of frequencies for a search.
   double fewest = 4;
-  /// Difference of chi^2 by which the highest peak may exceed a slower one and still be its alias.
-  /// Kass and Raftery 1995: very strong.
+  /// Difference of chi^2 by which the highest peak may exceed a slower peak and still be its alias. Kass and
+  /// Raftery 1995: very strong.
   double nearly_as_well = 10;
-  /// The same among the periods that are scored in full: the required distance of alternatives.
+  /// Difference of chi^2 that distinguishes the periods that are scored in full: the required distance of
+  /// alternatives.
   double told_apart = 6;
 
   template <class Visit>
@@ -188,13 +189,14 @@ struct FinePeriodThresholds {
   }
 };
 
-/// When a column counts, and the penalty of a candidate.
+/// Thresholds for a column to count, and the penalty of a candidate.
 struct PoolThresholds {
-  /// Share of a column's length outside the model's reach below which it is not visible in the
-  /// data, and below which a column of a piecewise linear basis repeats the others. A thousandth
+  /// Share of a column's length outside the model's reach. Below the first value the column is not visible in
+  /// the data; below the second, a column of a piecewise linear basis repeats the other columns. A thousandth
   /// of an effect of 100 um is the noise of a laser.
   double least_own = 1e-3, least_independent = 1e-3;
-  /// Share of a column's square beside the columns of a set below which it is a copy of them.
+  /// Share of a column's square beside the columns of a set. Below this value the column is a copy of the
+  /// set.
   double least_pivot = 1e-5;
   /// Preference for the form nearest to the axis among forms that fit alike: a step of the BIC far
   /// below any evidence.
@@ -202,24 +204,24 @@ struct PoolThresholds {
   /// Penalty of a form that the catalogue calls rare: twice the logarithm of its relative
   /// frequency, a twentieth.
   double rare = 6;
-  /// Number of grid values that count as one test: neighbours explain nearly the same.
+  /// Number of grid values that count as one test, because neighbouring values explain nearly the same.
   double points_per_try = 2.5;
-  /// Number of candidates that enter the pool with one scan, and at least of each effect.
-  /// Experiment.
+  /// Number of candidates that enter the pool with one scan, and smallest number for each effect. Source:
+  /// experiment.
   std::size_t most_at_once = 50, of_each_effect = 3;
-  /// Criterion above which a candidate is refined before it enters. A lower one never becomes
-  /// significant.
+  /// Change of the BIC above which a candidate is refined before it enters the pool. A candidate below this
+  /// value never becomes significant.
   double refined_above = -20;
-  /// Share of chi^2 per degree of freedom that counts as noise during the ranking: half of it is
-  /// due to some effect.
+  /// Share of chi^2 per degree of freedom that counts as noise during the ranking: an effect causes the other
+  /// half.
   double noise_share = 0.5;
-  /// Periods of one location are different candidates if they differ by one part in this.
+  /// Two periods of one location are different candidates if they differ by more than 1 part in this number.
   double periods_per_e = 8;
-  /// Share of another's squares that a span may lack and still contains it; and for two that are
-  /// the same.
+  /// First value: share of an item's squares that a span may lack and still contains the item. Second value:
+  /// the share for two equal items.
   double held_share = 0.02, same_share = 1e-3;
-  /// Without u, where any remaining structure counts as noise: share of what a richer form
-  /// explains above which the simpler form in it is the cause. The rest has another cause.
+  /// Without u, where any remaining structure counts as noise: the simpler form is the cause if it explains
+  /// more than this share of what the richer form explains. The rest then has another cause.
   double simple_share = 0.9;
 
   template <class Visit>
@@ -249,40 +251,40 @@ struct AcceptanceThresholds {
   /// Required advantage of a named cause over the instrument alone. Kass and Raftery 1995: 10 is
   /// very strong.
   double instrument_distance = 10;
-  /// Share of an effect's motion that changes from row to row, below which it is as slow as a
-  /// drift of the instrument (von Neumann 1941: 1 for random rows). Experiment: temperatures in a
-  /// survey of random rows are at 0.01 to 0.1, multiplied by an axis position at 0.3 to 1.
+  /// Share of an effect's motion that changes from row to row. Below this value the effect is as slow as a
+  /// drift of the instrument (von Neumann 1941: 1 for random rows). Experiment: temperatures in a survey of
+  /// random rows are at 0.01 to 0.1, multiplied by an axis position at 0.3 to 1.
   double slow_share = 0.15;
-  /// Of the decrease on the rows to which an effect was fitted, it must reach this share on
-  /// held-out runs. An effect of the noise removes nothing there, a true one nearly all.
+  /// Share of the decrease on the fit rows that an effect must reach on held-out runs. An effect of the noise
+  /// explains nothing on held-out runs; a true effect explains nearly all.
   double held_out_share = 0.2;
-  /// In this share of the held-out runs its part must keep its direction, by this cosine (60
-  /// degrees).
+  /// In this share of the held-out runs the contribution of an effect must keep its direction, by this cosine
+  /// (60 degrees).
   double stable_runs = 0.75, stable_cosine = 0.5;
-  /// Share of an effect in one block above which the others cannot confirm it.
+  /// Share of an effect in one block above which the other blocks cannot confirm the effect.
   double in_one_block = 0.8;
-  /// A single run is divided into this many blocks, and so is a run with this share of the rows.
-  /// An effect of runs is tested on this many parts of each.
+  /// Number of blocks into which a single run is divided; a run with this share of the rows is divided too.
+  /// An effect of runs is tested on this many parts of each run.
   std::size_t blocks_of_one_run = 5;
   double large_run = 1.0 / 3;
   std::size_t parts_of_run = 4;
-  /// Share of the information on a direction that the other blocks must contain to determine it.
+  /// Share of the information on a direction that the other blocks must contain to determine the direction.
   double determined_share = 0.01;
-  /// Levels of a feed or a temperature: separated by this share of the fastest feed, by so many
-  /// degC. More levels than this are a sweep, which is divided into so many parts.
+  /// Levels of a feed or a temperature are different if their distance is this share of the fastest feed, or
+  /// this many degC. A larger number of levels is a sweep, which is divided into this many parts.
   double same_feed = 0.05, least_warmth_degC = 1;
   std::size_t most_levels = 8, parts_of_sweep = 3;
-  /// Largest size of a term as a share of the machine's reach, or of the travel of the rotary axis
-  /// that drives it. It applies if the catalogue's own limit, made for machine tools, is smaller:
-  /// the eccentricity of a resolver, the sag of a long arm. Joints of humanoids yield by a degree
-  /// in fifty.
+  /// Largest size of a term as a share of the machine's reach, or of the travel of the rotary axis that
+  /// drives the term. This limit applies if the catalogue's own limit, made for machine tools, is smaller:
+  /// the eccentricity of a resolver, the sag of a long arm. Joints of humanoid robots yield by one degree in
+  /// fifty.
   double size_share = 0.02;
-  /// A product of the search is rejected if fewer readings than this support it, or if this share
-  /// of its squares is in the span of failed effects.
+  /// A product of the search is rejected in two cases: fewer readings than this support it, or this share of
+  /// its squares is in the span of failed effects.
   double witnesses = 10, copy_of_failed = 0.9;
   /// Number of products that are tried with one additional factor.
   std::size_t extended = 25;
-  /// Share of the noise by which two noise models may differ and count as the same.
+  /// Share of the noise by which two noise models may differ and still count as equal.
   double same_noise = 0.1;
 
   template <class Visit>
@@ -313,16 +315,17 @@ struct AcceptanceThresholds {
 
 /// Evidence that held-out rows must give for a step, and for the whole result.
 struct ProofThresholds {
-  /// log of 20: an e-value of 20 is wrong for at most one in twenty absent steps, whatever was
-  /// tested before (Ville's inequality).
+  /// Logarithm of 20: an e-value of 20 is wrong for at most one in twenty absent steps, whatever was tested
+  /// before (Ville's inequality).
   double evidence = 2.996;
-  /// Expected evidence of a step below which the rows give no information about it. A true step
-  /// would be rejected by chance one time in six.
+  /// Expected evidence of a step below which the rows give no information about the step. A true step with so
+  /// little expected evidence would be rejected by chance one time in six.
   double least_expected = 2;
-  /// Standard deviations below the mean of that evidence that one true step in a hundred reaches.
+  /// Number of standard deviations below the mean of the evidence that one true step in a hundred reaches.
   double chance_sigmas = 2.33;
-  /// Mean square of the check rows, divided by what reading and model explain. If it exceeds 1 by
-  /// more than so many of its own standard deviations, the result does not hold on held-out rows.
+  /// Limit for the mean square of the check rows, divided by the value that reading and model explain. If
+  /// this ratio exceeds 1 by more than this many of its standard deviations, the result is not confirmed on
+  /// held-out rows.
   double carries_sigmas = 4;
 
   template <class Visit>
@@ -334,38 +337,39 @@ struct ProofThresholds {
   }
 };
 
-/// Is the residual of the stepwise model noise, and of which source?
+/// Thresholds for the decision whether the residual of the stepwise model is noise, and from which source.
 struct VerdictThresholds {
-  /// chi^2 per degree of freedom up to this many of its own standard deviations above 1 is noise.
-  /// Up to so many it is sufficient by itself, for up to so many effects.
+  /// First value: chi^2 per degree of freedom up to this many of its standard deviations above 1 is noise.
+  /// Second value: up to this many standard deviations chi^2 alone is sufficient, for up to a given number of
+  /// effects.
   double noise_sigmas = 4, hit_sigmas = 2;
   std::size_t few_effects = 2;
   /// Significance level below which the residual has structure, corrected for the number of tests.
   double structure = 1e-4;
   /// chi^2 per degree of freedom up to which the stated uncertainty may be too small: 1.4 of u.
   double doubtful_uncertainty = 2;
-  /// ... and beyond which that is excluded: a stated uncertainty is not three times too small.
+  /// chi^2 per degree of freedom above which a too small uncertainty is excluded as the cause: a stated
+  /// uncertainty is not three times too small.
   double implausible_uncertainty = 9;
   /// Without u: share of chi^2 that an accepted stepwise model must explain for a named cause.
   double mostly_explained = 0.5;
-  /// ... and the factor by which chi^2 must increase without the named effect: then the effect is
-  /// larger than the residual beside it.
+  /// Without u: factor by which chi^2 must increase without the named effect. The effect is then larger than
+  /// the residual beside it.
   double larger_than_rest = 2;
-  /// Noise above the stated value is accepted only above so many degrees of freedom. Experiment:
+  /// Number of degrees of freedom above which noise larger than the stated value is accepted. Experiment:
   /// outside the catalogue, 160 rows of one reading do not show structure, 400 do.
   double enough_readings = 300;
-  /// ... and only if no candidate is significant at this level.
+  /// Noise larger than the stated value is accepted only if no candidate is significant at this level.
   double stands_out = 1e-3;
   /// The instrument is unstable if the correlated part of the errors is this share of the
   /// independent noise, and -2 log likelihood decreases by this much for it.
   double drift_share = 0.7, drift_support = 20;
-  /// Standard deviations beyond which a reading is an outlier: one in 5e8 of a normal
-  /// distribution.
+  /// Number of standard deviations beyond which a reading is an outlier: one in 5e8 of a normal distribution.
   double outlier_spreads = 6;
-  /// The same if no u states the standard deviation: tails of an effect that was not found are
-  /// longer.
+  /// Number of standard deviations beyond which a reading is an outlier if no u states the standard
+  /// deviation: the tails of an effect that was not found are longer.
   double outlier_spreads_without_u = 8;
-  /// Share of the rows up to which outliers are the whole cause, and up to which they are excluded
+  /// Share of the rows up to which outliers are the whole cause, and share up to which they are excluded
   /// beside an effect.
   double outliers_alone = 0.05, outliers_beside = 0.15;
 
@@ -390,32 +394,32 @@ struct VerdictThresholds {
   }
 };
 
-/// Is an accepted effect what its name says?
+/// Thresholds for the test whether an accepted effect has the shape that its name states.
 struct ShapeThresholds {
-  /// Natural logarithm of the significance level for a doubt about a curve, and about a change
-  /// along the axes. Every term is tested, and chance should cause no doubt. 1e-3 and 1e-4.
+  /// Natural logarithm of the significance level for a doubt about a curve, and about a change along the
+  /// axes. Every term is tested, and chance should cause no doubt. The levels are 1e-3 and 1e-4.
   double curve_chance = -6.9, change_chance = -9.2;
   /// Half-waves of a smooth curve, at most and at least: an eighth of the range is the shortest
   /// that a table of 17 stations corrects.
   std::size_t most_half_waves = 8, fewest_half_waves = 3;
-  /// Share of what all half-waves explain that may have shorter half-waves.
+  /// Largest share of what all half-waves explain that may come from shorter half-waves.
   double fast_share = 0.15;
   /// Number of coefficients above which a function of an axis is a curve.
   double curve = 3;
-  /// Required number of independent functions of the axis in the readings, for each unknown of a
-  /// curve, and of a period (one of many that were tried).
+  /// Required number of independent functions of the axis in the readings: for each unknown of a curve, and
+  /// for each unknown of a period (a period is one of many that were tried).
   double seen_per_unknown = 1.5, seen_per_period = 2;
-  /// Positions closer than this share of the range count as one.
+  /// Positions closer than this share of the range count as one position.
   double apart = 1.0 / 64;
-  /// Share of a column beside the others below which it is not independent.
+  /// Share of a column beside the others; a column with a smaller share is not independent.
   double own = 1e-3;
   /// Number of positions along the axis at which a jump is tried.
   std::size_t places_of_jump = 64;
-  /// Pieces of one function: largest numbers of functions that count as separate causes, of one
-  /// axis, of position if rows have one reading, and beside a curve.
+  /// Test for pieces of one function: largest numbers of functions that count as separate causes. In order:
+  /// of one axis; of position, if rows have one reading; beside a curve.
   std::size_t most_of_one_axis = 2, most_of_one_reading = 3, most_beside_a_curve = 2;
-  /// Number of periods in the range above which a wave is a cause of its own (a worm, its gear)
-  /// and not a piece, and largest number of such waves.
+  /// Number of periods in the range above which a cyclic error is a separate cause (a worm, its gear) and not
+  /// a piece, and largest number of such cyclic errors.
   double periods_of_a_wave = 2;
   std::size_t most_waves = 3;
   /// Share of the longer period by which a ratio of two may differ from an integer and be a

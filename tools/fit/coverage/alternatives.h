@@ -13,18 +13,19 @@ namespace vernier::fit {
 /// A smaller motion of the tool is negligible, mm.
 inline constexpr double kNothing_mm = 5e-5;
 
-/// Finds other terms that explain the fit rows as well as terms of the fitted model, beside a free
-/// set-up. "As well" means within three standard deviations in all. Two kinds are searched:
-/// - for a cyclic error along an axis (a sine or cosine of it with a free static): one with a
-/// longer period in the same degree of freedom, if the measured positions are on a grid or nearly
-/// so (spectral window above 0.7);
+/// Finds other terms that, with a free set-up, explain the fit rows as well as terms of the fitted model. "As
+/// well" means within three standard deviations in all. Two kinds of alternative terms are searched:
+/// - for a cyclic error along an axis (a sine or cosine of the position with a free static): a term with a
+/// longer period in the same degree of freedom, if the measured positions are on a grid or nearly on a grid
+/// (spectral window above 0.7);
 /// - for a rotation (an angle with a free static): a shift in the three lengths of the same
-/// transform, if the rows read no rotation. With one tool and no axis behind the transform both
-/// are the same. tool.
+/// transform, if the rows read no rotation. With one tool and no axis behind the transform, the rotation and
+/// the shift have the same effect. tool.
 std::vector<model::FitRecord::Alternative> find_alternatives(const ReadingsBesideSetUp& readings);
 
-/// Returns the model's term minus its alternative at each state, as a motion of the tool point: 3
-/// N, mm. Zero if the machine has no such transform. machine: without BaseShifts. tool.
+/// Returns the motion of the tool point by the model's term minus the motion by its alternative, at each
+/// state: 3 N, mm. The result is zero if the machine has no such transform. machine: without BaseShifts.
+/// tool.
 Eigen::VectorXd alternative_column(const model::Machine& machine,
                                    const model::FitRecord::Alternative& alternative,
                                    const model::States& states);

@@ -9,9 +9,9 @@
 
 namespace vernier::fit {
 
-/// The fit rows' readings along one direction each (x, y, z, d), weighted. The part that a free
-/// set-up of each instrument absorbs is projected out. Two explanations of the readings are
-/// compared in this form. tool.
+/// The weighted readings of the fit rows along one direction each (x, y, z, d). The part that a free set-up
+/// of each instrument absorbs is projected out. Two explanations of the readings are compared in this form.
+/// tool.
 class ReadingsBesideSetUp {
  public:
   /// residual: measured - model of each reading; variance: of a weighted reading.
@@ -21,11 +21,11 @@ class ReadingsBesideSetUp {
   bool empty() const { return row_.empty(); }
   /// The fitted machine without BaseShifts: workpiece coordinates.
   const model::Machine& bare() const { return bare_; }
-  /// Do the fit rows contain rotations too?
+  /// True if the fit rows contain rotations too.
   bool rotations() const { return rotations_; }
-  /// All rows, including check rows.
+  /// Returns all rows, including check rows.
   const model::States& states() const { return states_; }
-  /// For each of these rows: is it a check row?
+  /// For each row of states(): true if the row is a check row.
   const std::vector<char>& check() const { return check_; }
   /// The residual, 1.
   const Eigen::VectorXd& left() const { return left_; }

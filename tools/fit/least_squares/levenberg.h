@@ -6,15 +6,16 @@
 
 namespace vernier::fit {
 
-/// Data that a least-squares problem gives to the solver at a point: the first and second
-/// derivative of half the weighted sum of squares.
+/// Data that the solver needs of a least-squares problem at a point: the first and second derivative of half
+/// the weighted sum of squares.
 struct NormalEquations {
   double cost = 0;           // sum of squared weighted residuals
   Eigen::MatrixXd normal;    // J^T W^2 J
   Eigen::VectorXd gradient;  // J^T W^2 (measured - predicted)
 };
 
-/// The first derivative alone. It needs a fraction of the computing time.
+/// The first derivative of half the weighted sum of squares. A Slope needs only a fraction of the computing
+/// time of NormalEquations.
 struct Slope {
   double cost = 0;           // infinity if the model is undefined
   Eigen::VectorXd gradient;  // J^T W^2 (measured - predicted)
@@ -22,20 +23,20 @@ struct Slope {
 
 struct LevenbergOptions {
   int max_iterations = 100;
-  /// Directions whose scaled square (unit diagonal) is below this limit are not seen: at the
-  /// start, or when a step is computed. The step does not move along them. It is observability's
-  /// cutoff, squared.
+  /// Limit for the scaled square (unit diagonal) of a direction. A direction below this limit is not seen: at
+  /// the start, or when a step is computed. The step does not move along it. The limit is the square of
+  /// observability's cutoff.
   double unseen = 1e-10;
-  /// A decrease of the cost below this value is negligible. The fit passes the variance of an
-  /// observation times a small factor. Then no parameter would move by more than a few percent of
-  /// its standard uncertainty.
+  /// Returns the largest decrease of the cost that is negligible. The fit passes the variance of an
+  /// observation times a small factor. With a smaller decrease no parameter would move by more than a few
+  /// percent of its standard uncertainty.
   std::function<double(double)> negligible = [](double cost) { return 1e-14 * cost; };
-  /// Returns J^T W^2 p'' of a point and a step. p'' is the second derivative of the predictions
-  /// along the step. With it, a failed step is curved along the valley (geodesic acceleration).
-  /// Without it the step is straight.
+  /// Returns J^T W^2 p'' for a point and a step. p'' is the second derivative of the predictions along the
+  /// step. With `bend`, a failed step is curved along the valley (geodesic acceleration). Without `bend` the
+  /// step is straight.
   std::function<Eigen::VectorXd(const Eigen::VectorXd&, const Eigen::VectorXd&)> bend;
-  /// With it a good factor is used for several steps (chord steps). Each of them needs only a
-  /// gradient.
+  /// With `slope`, a good factor of the normal equations is used for several steps (chord steps). Each chord
+  /// step needs only a gradient.
   std::function<Slope(const Eigen::VectorXd&)> slope;
   std::function<void(int, double)> progress;
 };
@@ -45,16 +46,15 @@ struct LevenbergResult {
   double cost = 0;
   int iterations = 0;
   bool converged = false;
-  /// Parameters that are held in place of the directions that stay at their start. Empty, or one
-  /// entry per parameter.
+  /// Parameters that keep their value instead of the directions that stay at their start. `held` is empty, or
+  /// has one entry per parameter.
   std::vector<char> held;
 };
 
-/// Gauss-Newton in the directions that the data determine, with column scaling.
-/// Levenberg-Marquardt if a step fails (Nocedal and Wright, Numerical Optimization, 2nd ed.,
-/// section 10.3; damping update by gain ratio, Nielsen 1999). Directions that are not seen at the
-/// start stay there without damping. `cost` evaluates the cost alone. It may return infinity for a
-/// point at which the model is undefined.
+/// Gauss-Newton in the directions that the data determine, with column scaling. Levenberg-Marquardt if a step
+/// fails (Nocedal and Wright, Numerical Optimization, 2nd ed., section 10.3; damping update by gain ratio,
+/// Nielsen 1999). Directions that are not seen at the start keep their start value without damping. `cost`
+/// computes only the cost. `cost` may return infinity for a point at which the model is undefined.
 LevenbergResult minimise(const Eigen::VectorXd& start,
                          const std::function<NormalEquations(const Eigen::VectorXd&)>& equations,
                          const std::function<double(const Eigen::VectorXd&)>& cost,

@@ -24,16 +24,16 @@ class FitProblem {
   void set_priors(const Eigen::SparseMatrix<double>& precision, Eigen::VectorXd centre);
   void clear_priors() { prior_centre_.resize(0); }
 
-  /// Returns the sum of squared weighted residuals and priors; infinity if the model is undefined
-  /// at this point.
+  /// Returns the sum of squared weighted residuals and priors; infinity if the model is undefined at the
+  /// point.
   double cost(const Eigen::VectorXd& point) const;
   /// Throws InputError if the model is undefined.
   NormalEquations equations(const Eigen::VectorXd& point) const;
   /// Returns cost and gradient without the normal matrix. The cost is infinity if the model is
   /// undefined.
   Slope slope(const Eigen::VectorXd& point) const;
-  /// Returns J^T W^2 p''. p'' is the second derivative of the predictions along `step`. It needs
-  /// one more evaluation at a part of the step. Zero if the model is undefined there.
+  /// Returns J^T W^2 p''. p'' is the second derivative of the predictions along `step`. bend() needs one more
+  /// evaluation at a part of the step. The result is zero if the model is undefined there.
   Eigen::VectorXd bend(const Eigen::VectorXd& point, const Eigen::VectorXd& step) const;
   /// Returns the weighted residuals (measured - predicted) / u and, if requested, the weighted
   /// Jacobian of `predicted`.

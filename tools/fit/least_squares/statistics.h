@@ -10,39 +10,38 @@
 
 namespace vernier::fit {
 
-/// Unweighted figures over one role's observations, lengths in um, rotations in urad. nullopt if
-/// there are no observations.
+/// Unweighted statistics of the observations of one role, lengths in um, rotations in urad. nullopt if there
+/// are no observations.
 struct RoleStatistics {
   std::optional<double> rms_um, max_um, rms_urad, max_urad;
   std::size_t count = 0;  // lengths and rotations
 };
 
-/// residual = measured - predicted, one per observation, mm or deg.
+/// Returns residual = measured - predicted, one per observation, mm or deg.
 Eigen::VectorXd residuals(const model::Machine& machine, const model::Measurement& measurement);
 
 /// residual: measured - model, one per observation of `m`, mm or deg. `check`: the role of the
 /// observations.
 RoleStatistics role_statistics(const model::Measurement& m, const Eigen::VectorXd& residual, bool check);
 
-/// Returns all values of a row that were set or logged, except time and the measured values. Rows
-/// with the same numbers are repeats. The correction of a board is not included: a residual does
-/// not contain it, a reading does. tool.
+/// Returns all values of a row that were set or logged, except time and the measured values. Rows with the
+/// same conditions are repeats. The correction of a board is not included: a reading contains it, a residual
+/// does not. tool.
 std::vector<double> row_conditions(const model::Measurement& m, std::size_t row);
 
-/// Returns the noise of the measurement, um: rms of u over the fit rows' lengths. Without u it
-/// comes from repeats (rows with the same axes, corrections, motion, inputs and candidates in the
-/// same run or another, pooled standard deviation, at least 5 degrees of freedom). Otherwise
-/// nullopt.
+/// Returns the noise of the measurement, um: rms of u over the fit rows' lengths. Without u the noise comes
+/// from repeats: rows with the same axes, corrections, motion, inputs and candidates in any run (pooled
+/// standard deviation, at least 5 degrees of freedom). Without u and without repeats the result is nullopt.
 std::optional<double> noise_um(const model::Measurement& m);
 
 /// Returns the unit of a weighted reading.
 NoiseUnit noise_unit(const model::Measurement& m);
 
-/// Weight of each observation in a fit: 1/u, 1 if u is absent, 0 for check rows. It multiplies the
-/// residual.
+/// Returns the weight of each observation in a fit: 1/u, 1 if u is absent, 0 for check rows. The weight
+/// multiplies the residual.
 Eigen::VectorXd fit_weights(const model::Measurement& m);
 
-/// Is u given for every fit row?
+/// True if u is given for every fit row.
 bool has_uncertainty(const model::Measurement& m);
 
 }  // namespace vernier::fit

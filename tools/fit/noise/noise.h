@@ -9,9 +9,9 @@
 
 namespace vernier::fit {
 
-/// A step: from this row on, all readings of one kind have the same additional error. Or, if the
-/// measured object was set up anew, the error is that component of a shift along each reading's
-/// normal.
+/// A step of the instrument: from this row on, all readings of one kind have the same additional error. If
+/// the measured object was set up again, the error is one component of a shift along the normal of each
+/// reading.
 struct NoiseStep {
   int kind = 0;
   std::size_t row = 0;
@@ -23,10 +23,10 @@ struct NoiseStep {
   }
 };
 
-/// Correlation of the errors of readings. Components: independent noise, per-pose noise, per-run
-/// (set-up) noise (`run`), and a drift with the clock (Ornstein-Uhlenbeck; a random walk if the
-/// time constant is much longer than the clock's duration). Standard deviations in units of u, or
-/// in mm and deg if no u is given.
+/// Correlation of the errors of readings. Components: independent noise, per-pose noise, per-run (set-up)
+/// noise (`run`), and a drift in time. The drift is an Ornstein-Uhlenbeck process; a random walk if its time
+/// constant is much longer than the record. Standard deviations in units of u, or in mm and deg if no u is
+/// given.
 struct NoiseModel {
   double own = 1, pose = 0, run = 0, drift = 0;
   double time_constant = 0;   // of the drift, s or rows
@@ -36,21 +36,21 @@ struct NoiseModel {
   std::vector<NoiseStep> steps;  // of the instrument: fitted, deterministic
 
   bool independent() const { return pose <= 0 && run <= 0 && drift <= 0 && steps.empty(); }
-  /// Standard deviation of all components except the independent noise.
+  /// Returns the standard deviation of all components except the independent noise.
   double shared() const;
   double total() const;
-  /// Penalty of the model in a criterion of selection, in units of the logarithm of the number of
-  /// readings. A parameter counts 1. A step counts 1 for its height in each kind of reading, and
+  /// Returns the penalty of the noise model in a selection criterion, in units of the logarithm of the number
+  /// of readings. A parameter counts 1. A step counts 1 for its height in each kind of reading, and
   /// `of_place` for its row.
   double price(double of_place = NoiseThresholds().price_of_place) const;
 };
 
-/// Returns the columns of the steps, one entry per reading: 1 from the step on. tool.
+/// Returns the columns of the steps, one entry per reading: 0 before the step, 1 from the step on. tool.
 Eigen::MatrixXd step_columns(const NoiseLayout& layout, const std::vector<NoiseStep>& steps,
                              Eigen::Index readings);
 
-/// Returns a shift of the measured object at each set-up, three components each. Empty if there is
-/// only one set-up or no reading along a normal. Heights are 0.
+/// Returns a shift of the measured object at each set-up, three components each. The result is empty if there
+/// is only one set-up or no reading along a normal. Heights are 0.
 std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout);
 
 /// Transforms the rows of `columns` (weighted readings) to independent rows with variance 1, by a
@@ -71,13 +71,13 @@ struct NoiseUnit {
 
   /// Returns the unit of a reading of that kind.
   double of(bool rotation) const { return rotation ? arcsec : um; }
-  /// Returns the unit of the components that all kinds share: that of lengths, unless there are no
+  /// Returns the unit of the components that all kinds share: that of lengths; that of angles if there are no
   /// lengths.
   double of_all() const { return of(angles_only); }
 };
 constexpr const char* unit_name(bool rotation) { return rotation ? "arcsec" : "um"; }
 
-/// Returns a description in one sentence for people. tool.
+/// Describes a noise model in one sentence for people. tool.
 std::string in_words(const NoiseModel& model, const NoiseUnit& unit);
 
 }  // namespace vernier::fit

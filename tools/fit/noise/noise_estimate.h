@@ -7,14 +7,14 @@
 
 namespace vernier::fit {
 
-/// Number of readings times the square of the number of fitted columns. Above this limit, a
-/// likelihood evaluation uses only the number of fitted columns.
+/// Number of readings times the square of the number of fitted columns. Above this limit, an evaluation of
+/// the likelihood uses only the number of fitted columns, not their values.
 inline constexpr double kMostNoiseProducts = 6e7;
 
-/// Restricted maximum likelihood (Patterson and Thompson 1971) of a residual beside the fitted
-/// columns. residual: weighted, first limited to a few robust standard deviations. fitted:
-/// orthonormal columns that were fitted to it. A component is included if the likelihood decreases
-/// by more than chance explains. `with_u`: all components together are not below 1. tool.
+/// Estimates the noise model of a residual beside the fitted columns by restricted maximum likelihood
+/// (Patterson and Thompson 1971). residual: weighted, first limited to a few robust standard deviations.
+/// fitted: orthonormal columns that were fitted to the readings. A component is included if the likelihood
+/// decreases by more than chance explains. `with_u`: all components together are not below 1. tool.
 NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                           const Eigen::MatrixXd& fitted, bool with_u, const NoiseThresholds& limits = {});
 

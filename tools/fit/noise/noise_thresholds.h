@@ -7,10 +7,10 @@ namespace vernier::fit {
 // All thresholds for the noise of readings: unit, meaning, source. "Experiment" is the sweep of
 // tools/docs/thresholds.md: halved and doubled over surveys of known truth.
 
-/// Which rows are repeated readings of one pose.
+/// Thresholds for the decision which rows are repeated readings of one pose.
 struct LayoutThresholds {
-  /// Steps between rows below this share of an axis' range may be at the same pose. The value
-  /// represents the repeatability of a drive relative to its travel.
+  /// Steps between rows below this share of an axis' range may be at the same pose. The value is the
+  /// repeatability of a drive relative to its travel.
   double small_step = 1e-2;
   /// Factor between the largest false step and the smallest real step. Experiment: poses read to 2
   /// um.
@@ -21,8 +21,8 @@ struct LayoutThresholds {
   /// Share of the rows that must return to a position before distances of neighbours are divided
   /// into small and large ones. Some random positions are near each other by chance.
   double least_revisits = 0.1;
-  /// Factor between the two. For random positions, neighbours in the order of distances, except
-  /// for those few, are within 1.5 of each other.
+  /// Factor between small and large distances of neighbours. For random positions, successive sorted
+  /// distances have a ratio below 1.5, except for a few.
   double revisit_gap = 3;
 
   template <class Visit>
@@ -37,22 +37,22 @@ struct LayoutThresholds {
 
 /// Evidence that is required to report correlated errors of readings.
 struct NoiseThresholds {
-  /// Decrease of -2 log likelihood at which a component of one parameter on its boundary is not
-  /// chance: a tail of chi^2 of 1e-3. Self and Liang 1987.
+  /// Required decrease of -2 log likelihood for a component with one parameter on its boundary: a tail
+  /// probability of chi^2 of 1e-3. Self and Liang 1987.
   double one_component = 9.5;
-  /// The same for a drift, which has two parameters.
+  /// Required decrease of -2 log likelihood for a drift, which has two parameters.
   double drift_component = 13;
-  /// Penalty for the row of a step, in units of the logarithm of the number of readings. In
-  /// addition, its height counts 1 in each kind of reading. Experiment: surveys with low noise.
+  /// Penalty for the row of a step, in units of the logarithm of the number of readings. The height of a step
+  /// counts 1 in addition, in each kind of reading. Experiment: surveys with low noise.
   double price_of_place = 2;
-  /// Without u: share of the residual below which the independent noise is negligible. Such a
-  /// residual is smooth and not noise.
+  /// Without u: share of the residual below which the independent noise is negligible. A residual with less
+  /// independent noise is smooth and not noise.
   double least_own_part = 0.02;
   /// Number of readings beyond the parameters below which noise counts as independent. With fewer
   /// readings the uncertainty of a variance exceeds a quarter (sqrt(2/30)).
   std::size_t least_freedom = 30;
-  /// Minimum number of rows on either side of a step of the instrument. With fewer rows a step
-  /// cannot be distinguished from their own noise.
+  /// Minimum number of rows on either side of a step of the instrument. With fewer rows a step cannot be
+  /// distinguished from their noise.
   std::size_t rows_beside_step = 10;
   /// Share of a step's rows that the model must not be able to absorb.
   double own_of_step = 0.02;
@@ -62,7 +62,7 @@ struct NoiseThresholds {
   /// Readings that scatter by less than this share of u are much better than stated. Then u counts
   /// as independent noise.
   double near_u = 0.7;
-  /// Readings that scatter by less than this share of u have negligible noise: they are simulated.
+  /// Readings that scatter by less than this share of u have negligible noise: they come from a simulation.
   double far_below_u = 0.01;
   /// Largest number of instrument steps that are searched. More steps are a drift.
   std::size_t most_steps = 4;

@@ -6,16 +6,15 @@
 
 namespace vernier::fit {
 
-/// The components of a model, relative to the independent one: squares.
+/// Components of a noise model, relative to the independent noise: ratios of variances.
 struct NoiseRatios {
   double pose = 0, run = 0, drift = 0, time_constant = 1;
   bool in_time = false;  // else the time constant is a number of rows
 };
 
-/// Transforms readings to independent readings. The variance of their independent noise is 1. It
-/// uses a Kalman filter of three states (drift, run, pose) along each series. `readings`: one
-/// column per reading. Returns log det of the covariance. Computing time: rows times columns.
-/// tool.
+/// Transforms readings to independent readings. The variance of the transformed readings is 1. whiten() uses
+/// a Kalman filter of three states (drift, run, pose) along each series. `readings`: one column per quantity,
+/// one row per reading. Returns log det of the covariance. Computing time: rows times columns. tool.
 double whiten(const NoiseLayout& layout, const NoiseRatios& ratios, Eigen::MatrixXd& readings);
 
 }  // namespace vernier::fit

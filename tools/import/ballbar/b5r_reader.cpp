@@ -32,7 +32,7 @@ class B5rReader {
     root_ = document_.child("TEST_DOCUMENT");
     if (!root_)
       throw text::InputError({path_, 1}, document_.first_child().name(),
-                             "a ball-bar file begins with TEST_DOCUMENT");
+                             "this file is not a ball-bar file: it must begin with TEST_DOCUMENT");
   }
 
   BallbarFile read() const {
@@ -44,7 +44,7 @@ class B5rReader {
     read_spec(bar, file);
     const pugi::xml_node results = need(root_, "RUN_RESULTS");
     for (const auto run : results.children("BALLBAR_RUN")) file.runs.push_back(read_run(bar, run));
-    if (file.runs.empty()) fail(results, "RUN_RESULTS", "no BALLBAR_RUN in it");
+    if (file.runs.empty()) fail(results, "RUN_RESULTS", "the file contains no BALLBAR_RUN");
     for (const auto analysis : root_.children("ANALYSIS")) read_analysis(analysis, file);
     return file;
   }
@@ -86,7 +86,7 @@ class B5rReader {
     const double value = number(node);
     if (value < 0 || value != std::floor(value) || value >= static_cast<double>(count)) {
       fail(node, text::trimmed(node.text().get()),
-           std::string(node.name()) + " is no index of the " + std::to_string(count) + " readings");
+           std::string(node.name()) + " is not an index of the " + std::to_string(count) + " readings");
     }
     return static_cast<std::size_t>(value);
   }
@@ -115,7 +115,7 @@ class B5rReader {
     const std::string word = text::trimmed(node.text().get());
     if (word == "CCW") return +1;
     if (word == "CW") return -1;
-    fail(node, word, "a direction is CCW or CW");
+    fail(node, word, "the direction must be CCW or CW");
   }
 
   void read_spec(const pugi::xml_node& bar, BallbarFile& file) const {
@@ -127,7 +127,7 @@ class B5rReader {
     file.axis_b = text::trimmed(need(plane, "B_AXIS_NAME").text().get());
     const auto is_linear = [](const std::string& axis) { return axis == "X" || axis == "Y" || axis == "Z"; };
     if (!is_linear(file.axis_a))
-      fail(plane.child("A_AXIS_NAME"), file.axis_a, "an axis of a plane is X, Y or Z");
+      fail(plane.child("A_AXIS_NAME"), file.axis_a, "an axis of the plane must be X, Y or Z");
     if (!is_linear(file.axis_b) || file.axis_b == file.axis_a) {
       fail(plane.child("B_AXIS_NAME"), file.axis_b, "an axis of a plane is X, Y or Z, and not the other one");
     }

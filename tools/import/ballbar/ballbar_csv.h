@@ -9,8 +9,8 @@
 namespace vernier::importer {
 
 struct BallbarCsvOptions {
-  /// Time between the records of two runs, s, if the instrument does not log it. The default is the time of
-  /// the dwell (5 s) and of the feeds in and out between the runs of the usual program.
+  /// Time between the records of two runs, s, if the instrument does not record it. The default is the time
+  /// of the dwell (5 s) and of the feeds in and out between the runs of the usual program.
   double pause_s = 9.0;
 };
 
@@ -20,9 +20,9 @@ struct BallbarCsv {
   std::vector<std::string> run_labels;
 };
 
-/// Measurement file (CSV) of some ball-bar files: positions, motion, clock, length with its centre, run and
-/// role. Samples in start..end are `fit`, those before and after it `check`. An axis is a column if some
-/// file's plane has it. tool.
+/// Writes ball-bar files as one measurement file (CSV): positions, motion, clock, length with its centre, run
+/// and role. Samples in start..end have the role `fit`, samples before and after it the role `check`. An axis
+/// becomes a column if the plane of a file contains the axis. tool.
 BallbarCsv ballbar_csv(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options);
 
 }  // namespace vernier::importer

@@ -7,7 +7,8 @@
 
 namespace vernier::importer {
 
-/// One printed result of a file: AF_CIRCULARITY and the like, with its unit type as written (UT_LENGTH_UM …).
+/// One printed result of a ball-bar file: AF_CIRCULARITY and the like, with its unit type as written
+/// (UT_LENGTH_UM …).
 struct BallbarFeature {
   std::string name, unit;
   double value = 0;
@@ -24,8 +25,8 @@ struct BallbarSimulation {
   std::vector<double> reading_mm;  // in time order
 };
 
-/// Time and angle of each sample of a run, for a file whose constant speed between START and END is not
-/// accepted (repair_time_base).
+/// Time and angle of each sample of a run, for a file whose speed between START and END is not constant
+/// (repair_time_base).
 struct RunClock {
   std::vector<double> turned_deg;  // per sample: from angle 0 in the direction of motion, not wrapped
   std::vector<double> sample;      // its number if no sample had been lost
@@ -47,7 +48,7 @@ struct BallbarRun {
   std::optional<RunClock> clock;  // nullopt: constant speed, one turn (or arc) from start to end
 };
 
-/// A circular test with a telescoping bar as its instrument's software stores it.
+/// A circular test with a telescoping bar, as the software of the instrument stores the test.
 struct BallbarFile {
   std::string path, instrument, machine;
   std::string axis_a, axis_b;    // the axes of the plane: "X", "Y"

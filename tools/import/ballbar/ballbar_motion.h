@@ -9,7 +9,7 @@
 
 namespace vernier::importer {
 
-/// Where the machine was commanded to be when one reading was taken, on a circle run at constant speed.
+/// Commanded position of the machine at the time of one reading, on a circle at constant speed.
 struct CirclePoint {
   double angle_deg = 0;              // from +A towards +B, 0..360
   double position_mm[2] = {0, 0};    // along A and B, about the programmed centre
@@ -19,10 +19,11 @@ struct CirclePoint {
   double since_mm[2] = {0, 0};  // travel of the axis since its last reversal
 };
 
-/// Actual feed of a run, from the samples that it took for its arc: mm/min. tool.
+/// Returns the actual feed of a run, from the samples that the run took for its arc: mm/min. tool.
 double actual_feed_mm_min(const BallbarFile& file, const BallbarRun& run);
 
-/// Commanded motion at sample `index` of a run; beyond start..end the angle goes on at the same speed. tool.
+/// Returns the commanded motion at sample `index` of a run; beyond start..end the angle continues at the same
+/// speed. tool.
 CirclePoint circle_point(const BallbarFile& file, const BallbarRun& run, std::size_t index);
 
 /// The analysed arcs (start..end) of all runs for analyse_circle. tool.

@@ -15,8 +15,8 @@ struct CircularPass {
   std::optional<double> feed_mm_min;
 };
 
-/// ISO 230-4 numbers of one pass. Circular deviations refer to the least-squares centre and radius of the
-/// pass, radial deviations to its centre and the nominal radius.
+/// Results of ISO 230-4 for one pass. Circular deviations refer to the least-squares centre and radius of the
+/// pass; radial deviations refer to its centre and the nominal radius.
 struct CircularPassResult {
   std::string label;
   int direction = +1;
@@ -30,14 +30,14 @@ struct CircularPassResult {
   std::vector<double> circular_um;  // of each sample, in the order given
 };
 
-/// Greatest difference of the radii of the two directions at one angle, about the mean of both centres.
+/// Largest difference between the radii of the two directions at one angle, about the mean of both centres.
 struct Hysteresis {
   double um = 0;
   double deg = 0;
 };
 
-/// Both directions about their mean centre and mean radius (ANSI/ASME B5.54), and the locations of the
-/// extremes.
+/// Results of both directions about their mean centre and mean radius (ANSI/ASME B5.54), and the locations of
+/// the extremes.
 struct AboutMean {
   double max_um = 0, min_um = 0;
   double max_deg = 0, min_deg = 0;
@@ -46,21 +46,22 @@ struct AboutMean {
 struct CircularResult {
   double nominal_radius_mm = 0;
   std::vector<CircularPassResult> passes;
-  /// The remaining values are of the first pass in each direction; absent if one direction is missing.
+  /// This value and the following values are of the first pass in each direction; absent if one direction is
+  /// missing.
   std::optional<double> bidirectional_um;
   std::optional<double> mean_centre_a_mm, mean_centre_b_mm, mean_radius_mm;
   std::optional<AboutMean> about_mean;
   /// Mean of the radii of both directions minus the nominal radius (ISO 230-4:2005). Each radius is that of
-  /// the least-squares circle in true distances. The linearised circle of the other values lacks the
+  /// the least-squares circle in true distances. The linearised circle of the other values lacks the term
   /// eccentricity squared over four radii.
   std::optional<double> mean_bidirectional_radial_um;
   std::optional<Hysteresis> hysteresis;  // sample i of one direction with sample i from the end of the other
   std::optional<Hysteresis> hysteresis_by_angle;  // at the same angle, linear between samples
 };
 
-/// ISO 230-4 analysis of passes about one centre. nominal_radius: mm. Each pass needs three samples at three
-/// different angles; throws std::invalid_argument otherwise. The centre is that of the linearised least
-/// squares deviation = c + a cos + b sin, as the instruments' software takes it. tool. Source: ISO
+/// Analyses passes about one centre by ISO 230-4. nominal_radius: mm. Each pass needs three samples at three
+/// different angles; throws std::invalid_argument otherwise. The centre comes from the linearised least
+/// squares deviation = c + a cos + b sin, as in the software of the instruments. tool. Source: ISO
 /// 230-4:1996, 3.4 to 3.6.
 CircularResult analyse_circle(double nominal_radius_mm, const std::vector<CircularPass>& passes);
 

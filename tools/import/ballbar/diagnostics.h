@@ -31,7 +31,7 @@ inline constexpr std::array<const char*, kDiagnosticsCount> kDiagnosticsNames = 
                                                                                  "LATERAL_PLAY_A_MISMATCH",
                                                                                  "LATERAL_PLAY_B_GLOBAL",
                                                                                  "LATERAL_PLAY_B_MISMATCH"};
-/// Their units: um, but um/m for the squareness and ms for the servo mismatch.
+/// Units of the linear diagnostics: um, but um/m for the squareness and ms for the servo mismatch.
 inline constexpr std::array<const char*, kDiagnosticsCount> kDiagnosticsUnits = {
     "um", "um", "um", "um", "um/m", "um", "um", "ms", "um", "um",
     "um", "um", "um", "um", "um",   "um", "um", "um", "um", "um"};
@@ -56,7 +56,8 @@ struct DiagnosticsSetup {
 std::array<double, kDiagnosticsCount> diagnostics_basis(double angle_deg, int direction,
                                                         const DiagnosticsSetup& setup);
 
-/// Peak-to-peak of a cyclic error of one axis, for one direction of the axis and one direction of the circle.
+/// Peak-to-peak amplitude of a cyclic error of one axis, for one direction of the axis and one direction of
+/// the circle.
 struct CyclicAmplitude {
   char axis = 'A';
   bool forward = true;  // the axis moves in its positive direction
@@ -80,9 +81,9 @@ struct DiagnosticsResult {
   double rms_um = 0, max_um = 0;                   // of the residual
 };
 
-/// Least squares of the linear diagnostics (and cyclic terms) to samples of both directions; the minimum-norm
-/// solution if the rank is deficient. Throws std::invalid_argument if there are fewer samples than terms.
-/// tool.
+/// Fits the linear diagnostics (and cyclic terms) to samples of both directions by least squares; the
+/// minimum-norm solution if the rank is deficient. Throws std::invalid_argument if there are fewer samples
+/// than terms. tool.
 DiagnosticsResult fit_diagnostics(const std::vector<DiagnosticsSample>& samples,
                                   const DiagnosticsSetup& setup);
 

@@ -89,7 +89,7 @@ struct Counting {
 
 nlohmann::json parse_json(const std::string& path, std::string_view text) {
   if (text::nests_deeper_than(text, text::kMostJsonDepth))
-    throw text::InputError({path, 1}, "[", "nests deeper than any record does");
+    throw text::InputError({path, 1}, "[", "the JSON of this file nests too deeply");
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::out_of_range& error) {

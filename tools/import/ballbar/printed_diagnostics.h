@@ -12,7 +12,7 @@ namespace vernier::importer {
 
 inline constexpr const char* kDiagnosticsAnalysis = "RENISHAW_DIAGNOSTICS";
 
-/// Computed results, with the data and the printed name for each; and remarks on names: why one cannot be
+/// Computed results, each with its data and its printed name. Remarks on names state why a result cannot be
 /// computed, or may differ.
 struct RecomputedResults {
   std::map<std::string, std::map<std::string, double>> values;
@@ -22,14 +22,14 @@ struct RecomputedResults {
 /// Mean of the feeds of a test's passes, mm/min; `nullopt` if a pass has no feed. tool.
 std::optional<double> mean_feed_mm_min(const CircularResult& circle);
 
-/// The file's own model curve as samples of a test: its SIMULATION series, both on the grid of the clockwise
-/// run, a sample in the middle of each step. tool. Source: found by recomputing
+/// Returns the model curve of the file as samples of a test: its SIMULATION series, both on the grid of the
+/// clockwise run, one sample in the middle of each step. tool. Source: found by recomputing
 /// (tests/data/ballbar/README.md).
 std::vector<DiagnosticsSample> model_curve(const BallbarFile& file);
 
-/// The diagnostics that a file prints: the linear ones, cyclic errors and their effects from the model curve
-/// of the file, values at the ends, shares and ranks from these, roundness about its centre and the others
-/// from the readings. tool.
+/// Computes the diagnostics that a file prints. The linear diagnostics and cyclic errors come from the model
+/// curve of the file. Values at the ends, shares and ranks follow from these; roundness and the other results
+/// come from the readings. tool.
 RecomputedResults recompute_diagnostics(const BallbarFile& file, const BallbarAnalysis& analysis,
                                         const CircularResult& circle);
 

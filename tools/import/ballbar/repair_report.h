@@ -9,7 +9,7 @@
 
 namespace vernier::importer {
 
-/// A repaired file and its repeating error, before and after.
+/// A repaired file and its repeating error, before and after the repair.
 struct RepairReport {
   TimeRepair repair;
   std::vector<RepeatingError> before,
@@ -20,7 +20,7 @@ struct RepairReport {
 /// tool.
 RepairReport repair_and_judge(const BallbarFile& file);
 
-/// The changes and their gain, for programs and for people. tool.
+/// Returns the changes by a repair and their gain: repair_json for programs, print_repair for people. tool.
 nlohmann::ordered_json repair_json(const RepairReport& report);
 void print_repair(std::FILE* out, const RepairReport& report);
 

@@ -19,7 +19,7 @@ struct RepeatingStep {
   std::optional<double> other_turn_usual_um;  // from the median size: independent of the few worst samples
 };
 
-/// Models of growing order, fitted to the analysed turn of one run and judged on the rest of the record.
+/// Models of increasing order, fitted to the analysed turn of one run and tested on the rest of the record.
 struct RepeatingError {
   std::string run;
   std::size_t fit_samples = 0, other_turn_samples = 0, other_direction_samples = 0;
@@ -29,9 +29,9 @@ struct RepeatingError {
   const RepeatingStep& best() const { return steps[chosen]; }
 };
 
-/// Fits run `run` of a file over its samples start..end. Samples that `on_circle` (per run, per sample;
-/// empty: all are) leaves out count nowhere. The angle is that of the run's clock, else that of the file.
-/// tool.
+/// Fits models of the repeating error to run `run` of a file, over its samples start..end. Samples that
+/// `on_circle` (per run, per sample; empty: all are) leaves out count nowhere. The angle is that of the clock
+/// of the run, else that of the file. tool.
 RepeatingError repeating_error(const BallbarFile& file, std::size_t run,
                                const std::vector<std::vector<char>>& on_circle = {});
 

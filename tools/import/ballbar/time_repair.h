@@ -10,14 +10,15 @@
 
 namespace vernier::importer {
 
-/// Samples that a record lacks before one of its samples; seen from the other pass, which has them.
+/// Samples that are missing before a sample of a record; the other pass, which has these samples, shows the
+/// gap.
 struct RecordGap {
   std::size_t sample = 0;               // 0-based index in the record
   double sample_uncertainty = 0;        // samples
   double missing = 0, uncertainty = 0;  // samples, standard uncertainty
 };
 
-/// How well the second pass repeats the first at the same angle.
+/// Agreement of the second pass with the first pass at the same angle.
 struct PassAgreement {
   double difference_um = 0;  // rms over what both passes have, mean and slope of each block taken off
   double level_um = 0;       // the same without a correction
@@ -46,11 +47,11 @@ struct TimeRepair {
 };
 
 /// Finds from the record how many samples a turn takes and where samples are missing, and gives each sample
-/// its angle and time. Method: the second pass over the circle repeats the first one. If the lag between them
-/// jumps, one pass lacks samples or the other waited; the function assumes missing samples. The angle of the
-/// file's START is kept in the run whose turn it reproduces best. In the other runs the angle is turned until
-/// the repeating error agrees with that run. A run of less than one and a half turns, or a run that does not
-/// repeat, is not changed and contains the reason. tool.
+/// its angle and time. Method: the second pass over the circle repeats the first pass. If the lag between the
+/// passes jumps, one pass lacks samples or the other waited; the function assumes missing samples. The angle
+/// of the file's START is kept in the run with the smallest residual between its turns. In the other runs the
+/// angle is turned until the repeating error agrees with that run. A run of less than one and a half turns,
+/// or a run that does not repeat, is not changed; its RunRepair contains the reason. tool.
 TimeRepair repair_time_base(const BallbarFile& file);
 
 }  // namespace vernier::importer

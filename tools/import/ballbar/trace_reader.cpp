@@ -21,7 +21,7 @@ class TraceReader {
 
   BallbarFile read() const {
     const nlohmann::json document = parse_json(path_, text_);
-    if (!document.is_object()) fail("", "a trace file is a JSON object");
+    if (!document.is_object()) fail("", "a trace file must be a JSON object");
     const std::string units = text_at(document, "ErrorUnits", "");
     if (units.empty()) fail("", "no ErrorUnits in it");
     if (units != "millimetres") fail("/ErrorUnits", "only millimetres are known");

@@ -24,16 +24,17 @@ struct TraceCircle {
   double start_deg = 180;
 };
 
-/// Reads the files of a test whose path has several circles about one centre (XY, YZ, ZX), one after the
-/// other: one BallbarFile per circle. The runs of all files, in their order, are assigned to the circles in
+/// Reads the files of a test whose path has several circles about one centre (XY, YZ, ZX), one after another:
+/// returns one BallbarFile per circle. The runs of all files, in their order, are assigned to the circles in
 /// their order. Each circle gets the same number of runs (two if both directions of a circle follow each
-/// other), labelled with their plane. With one circle it takes all runs of each file, one BallbarFile each.
-/// Throws InputError if the runs do not divide evenly, and as read_ballbar_trace. tool.
+/// other); the plane is the label of the runs. With one circle each file gives one BallbarFile with all its
+/// runs. Throws InputError if the runs do not divide evenly, and as read_ballbar_trace. tool.
 std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& paths, const TraceSetup& setup,
                                             const std::vector<TraceCircle>& circles);
 
 /// Reads a file of Renishaw Ballbar Trace (JSON: Runs[].Direction 0 or 1, Runs[].Readings, ErrorUnits). All
-/// readings are in the arc, none is overshoot. Throws InputError with file, line and word. tool.
+/// readings of the file are in the arc; no reading is overshoot. Throws InputError with file, line and word.
+/// tool.
 BallbarFile read_ballbar_trace(const std::string& path, const TraceSetup& setup);
 
 }  // namespace vernier::importer

@@ -84,12 +84,12 @@ std::size_t source_index(const DelimitedFile& file, const MappedColumn& column) 
     if (*number >= 1 && *number <= width) return *number - 1;
     throw text::InputError(
         column.place.file.empty() ? text::Place{file.file, file.line.front()} : column.place, column.source,
-        "no such column: the rows have " + std::to_string(width));
+        "this column does not exist: the rows have " + std::to_string(width));
   }
   const auto found = std::find(file.header.begin(), file.header.end(), column.source);
   if (found == file.header.end())
     throw text::InputError({file.file, file.header_line}, column.source,
-                           "the header has no column of that name");
+                           "the header has no column of this name");
   if (std::count(file.header.begin(), file.header.end(), column.source) > 1)
     throw text::InputError({file.file, file.header_line}, column.source,
                            "several columns have that name: give its number");
@@ -198,7 +198,7 @@ std::string measurement_csv(const ImportTable& table) {
   }
   const format::CsvFile back = format::parse_csv(text, table.file);
   if (back.rows.size() != table.line.size())
-    throw text::InputError({table.file, 0}, "", "some row has only empty cells");
+    throw text::InputError({table.file, 0}, "", "a row has only empty cells");
   return text;
 }
 

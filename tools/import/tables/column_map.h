@@ -9,7 +9,7 @@
 
 namespace vernier::importer {
 
-/// Where a column of the measurement file comes from.
+/// Source of a column of the measurement file.
 struct MappedColumn {
   std::string source;      // a number from 1, or a name in the header line; empty for a constant
   std::string constant;    // the value, if it is the same in every row
@@ -17,13 +17,13 @@ struct MappedColumn {
   text::Place place;       // line of the map; no file for an argument
 };
 
-/// What an instrument's table means.
+/// Meaning of the columns of an instrument's table.
 struct ColumnMap {
   DelimitedFormat format;
   std::vector<MappedColumn> columns;
 };
 
-/// Reads a column map: one statement a line, # comments.
+/// Reads a column map: one statement per line, # comments.
 ///   column 3 = x[mm]      (third column)      column Temp 1 = T_column[degC]   (column named so in the
 ///   header) set run = s1          set u[um] = 5       (the same in every row) separator = semicolon decimal
 ///   = comma   skip = 2   comment = %   header = yes
@@ -34,7 +34,7 @@ void read_column_map(ColumnMap& map, const std::string& text, const std::string&
 void add_column(ColumnMap& map, const std::string& words, const text::Place& place = {});
 void add_constant(ColumnMap& map, const std::string& words, const text::Place& place = {});
 
-/// A table on its way to a measurement file: columns of text, a cell for every row.
+/// A table that becomes a measurement file: columns of text, one cell for every row.
 struct ImportTable {
   struct Column {
     std::string name, unit;
@@ -45,18 +45,19 @@ struct ImportTable {
   std::vector<std::size_t> line;  // of each row in `file`
 
   const Column* find(const std::string& name) const;
-  /// Numbers of a column in the base unit of its dimension; an empty cell or another dimension is an error.
+  /// Returns the numbers of a column in the base unit of its dimension; an empty cell or another dimension is
+  /// an error.
   std::vector<double> numbers(const std::string& name) const;
   void remove(const std::string& name);
   void add(const std::string& name, const std::string& unit, const std::vector<double>& values);
 };
 
-/// The columns of a file that the map names, every number read and written with a decimal point. Columns with
-/// words are not changed. Throws InputError with file, line and word: no such column, not a number, an
-/// unknown unit, a name twice. tool.
+/// The columns of a file that the map names, every number read and written with a decimal point. Columns of
+/// words are not changed. Throws InputError with file, line and word: a column that does not exist, not a
+/// number, an unknown unit, a name twice. tool.
 ImportTable mapped_table(const std::string& text, const std::string& file, const ColumnMap& map);
 
-/// Writes the table as a measurement file and reads it back to test it. Throws InputError if that fails.
+/// Writes the table as a measurement file and reads the file back as a test. Throws InputError if that fails.
 /// tool.
 std::string measurement_csv(const ImportTable& table);
 

@@ -7,7 +7,7 @@
 
 namespace vernier::importer {
 
-/// How a table of an instrument is written.
+/// Format of a table that an instrument wrote: separator, decimal sign, header.
 struct DelimitedFormat {
   char separator = 0;  // ',' ';' '\t'; ' ' is any run of blanks; 0: detected from the first line
   bool decimal_comma = false;
@@ -16,7 +16,7 @@ struct DelimitedFormat {
   bool header = false;        // the first line that is left names the columns
 };
 
-/// Its lines as fields of text, trimmed, all rows with the same number of fields.
+/// Lines of a table as fields of text, trimmed; all rows have the same number of fields.
 struct DelimitedFile {
   std::string file;
   std::size_t header_line = 0;
@@ -30,9 +30,10 @@ struct DelimitedFile {
 DelimitedFile parse_delimited(const std::string& text, const std::string& file,
                               const DelimitedFormat& format);
 
-/// Names of separators: comma, semicolon, tab, space, auto.
+/// Returns the names of separators: comma, semicolon, tab, space, auto.
 std::vector<std::string> separator_words();
-/// The separator of such a name. place: of the name, if it is not an argument. Throws InputError.
+/// Converts the name of a separator to its character. place: of the name, if the name is not an argument.
+/// Throws InputError.
 char separator_of(const std::string& name, const text::Place& place = {});
 
 }  // namespace vernier::importer

@@ -53,8 +53,8 @@ class LaserReader {
     for (const char* section : {"header", "target data", "deviations"})
       if (!sections_.contains(section))
         throw text::InputError({file_, 0}, section,
-                               "no such section: not a file of linear laser runs (.rtl); a table is read by "
-                               "vernier import table");
+                               "this section is missing: the file is not a file of linear laser runs (.rtl); "
+                               "read a table with vernier import table");
     return std::move(read_);
   }
 
@@ -112,11 +112,12 @@ class LaserReader {
   void reading(const std::string& line) {
     const std::vector<std::string> words = text::words_in(line, " \t");
     if (words.size() != 3)
-      throw text::InputError(place_, line.substr(0, 30), "not run, target and deviation");
+      throw text::InputError(place_, line.substr(0, 30), "the line must contain run, target and deviation");
     const std::size_t run = count(words[0]), target = count(words[1]);
     if (target < 1 || target > read_.targets_mm.size())
-      throw text::InputError(place_, words[1],
-                             fmt::format("no such target: there are {}", read_.targets_mm.size()));
+      throw text::InputError(
+          place_, words[1],
+          fmt::format("this target does not exist: the file has {} targets", read_.targets_mm.size()));
     read_.runs[run].push_back({target, place_.line, number(words[2])});
   }
 
@@ -167,7 +168,8 @@ std::string axis_of(const LaserText& read, const std::string& said, const std::s
       if (word.size() == 1 && found.empty()) found = word;
   const std::string place_word = own == read.said.end() ? "Axis" : own->second;
   const text::Place place = own == read.said.end() ? text::Place{file, 0} : read.axis_at;
-  if (found.empty()) throw text::InputError(place, place_word, "which axis was measured? Give it: --axis X");
+  if (found.empty())
+    throw text::InputError(place, place_word, "the measured axis is missing; give it with --axis X");
   if (found.size() == 1 && found[0] >= 'a' && found[0] <= 'z') found[0] = static_cast<char>(found[0] - 32);
   if (found != "X" && found != "Y" && found != "Z")
     throw text::InputError(
@@ -229,8 +231,9 @@ LaserFile read_laser_file(const std::string& text, const std::string& file, cons
     int sense = senses == RunSenses::kForward || number % 2 == 1 ? 1 : -1;
     if (senses == RunSenses::kAsListed) sense = listed_sense(run, read.targets_mm);
     if (sense == 0)
-      throw text::InputError({file, run.front().line}, fmt::format("run {}", number),
-                             "its targets neither rise nor fall: give --senses alternate or forward");
+      throw text::InputError(
+          {file, run.front().line}, fmt::format("run {}", number),
+          "the targets of a run neither increase nor decrease: give --senses alternate or forward");
     const std::string pass = std::to_string(++passes[sense]);
     for (const LaserReading& one : run) {
       const double target = read.targets_mm[one.target - 1];

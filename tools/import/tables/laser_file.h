@@ -6,7 +6,7 @@
 
 namespace vernier::importer {
 
-/// Directions of the runs, if the order of their lines does not give them.
+/// Directions of the runs, if the order of the lines in the file does not give them.
 enum class RunSenses { kAsListed, kAlternate, kForward };
 
 /// Contents of a file of linear laser runs.
@@ -16,11 +16,11 @@ struct LaserFile {
   ImportTable table;                                // X[mm], dirX, run, x[mm]
 };
 
-/// Reads a file of linear targets and runs (.rtl) as the common laser software writes it: sections HEADER::,
-/// TARGET DATA:: (targets in mm), USER-TEXT::, RUNS::, DEVIATIONS:: (run, target, deviation in um). axis:
-/// replaces the axis of the file; empty: the axis of the file. Throws InputError with file, line and word:
-/// another kind of file, a rotary axis, counts that do not agree, a target twice in a run, approach
-/// directions that the file does not define. tool.
+/// Reads a file of linear targets and runs (.rtl) of the common laser software: sections HEADER::, TARGET
+/// DATA:: (targets in mm), USER-TEXT::, RUNS::, DEVIATIONS:: (run, target, deviation in um). axis: replaces
+/// the axis of the file; empty: the axis of the file. Throws InputError with file, line and word: another
+/// kind of file, a rotary axis, counts that do not agree, a target twice in a run, approach directions that
+/// the file does not define. tool.
 LaserFile read_laser_file(const std::string& text, const std::string& file, const std::string& axis,
                           RunSenses senses);
 

@@ -24,7 +24,7 @@ class Log {
   std::size_t need(const std::string& name) const {
     for (std::size_t k = 0; k < csv_.columns.size(); ++k)
       if (csv_.columns[k].name == name) return k;
-    throw text::InputError({csv_.file, csv_.header_line}, name, "the log has no such column");
+    throw text::InputError({csv_.file, csv_.header_line}, name, "the log has no column of this name");
   }
   /// In the base unit.
   double number(std::size_t row, std::size_t column) const {
@@ -95,7 +95,7 @@ ImportTable paired_table(const ImportTable& tracker, const Log& log, const Pairi
     const format::CsvColumn& column = log.csv().columns[k];
     if (column.name != format::columns::kTime && tracker.find(column.name) != nullptr)
       throw text::InputError({log.csv().file, log.csv().header_line}, column.name,
-                             "the tracker's table has this column too");
+                             "the log and the tracker's table both have this column");
     ImportTable::Column made{column.name, column.unit, {}};
     for (const std::size_t i : kept) made.cells.push_back(log.of(dwells[*pairing.dwell[i]], k));
     table.columns.push_back(std::move(made));
@@ -118,7 +118,7 @@ LoggedTable with_log(const ImportTable& tracker, const std::string& text, const 
   for (Index row = 1; row < time.size(); ++row)
     if (time[row] < time[row - 1])
       throw text::InputError({log_file, log.csv().line[static_cast<std::size_t>(row)]},
-                             format::columns::kTime, "falls: a log is in time order");
+                             format::columns::kTime, "the time decreases: a log must be in time order");
   Eigen::MatrixXd axes(time.size(), static_cast<Index>(machine.axes.size()));
   for (std::size_t a = 0; a < machine.axes.size(); ++a)
     axes.col(static_cast<Index>(a)) = log.numbers(log.need(machine.axes[a].name));

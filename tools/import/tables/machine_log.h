@@ -15,7 +15,7 @@ struct LogOptions {
   double tolerance_mm = 2;  // ways of machine and nominal machine between two points
 };
 
-/// What became of a tracker's table and a machine's log.
+/// Result of combining a tracker's table with a machine's log.
 struct LoggedTable {
   ImportTable table;  // the points that were paired, with the log's columns at their dwell
   Pairing pairing;
@@ -24,9 +24,10 @@ struct LoggedTable {
 };
 
 /// Assigns to the points of a tracker's table (x y z, and t if its clock is known) the axis positions and
-/// inputs of a machine's log. Values are those of the dwell in which the point was measured: means of
-/// numbers, the first of words, `t` by the log's clock. text: the log, a CSV of measurement columns with `t`
-/// and every axis of the machine, in time order. Throws InputError with file, line and word. tool.
+/// inputs of a machine's log. The assigned values are those of the dwell in which the point was measured:
+/// means of numbers, the first of words, `t` by the clock of the log. text: the log, a CSV of measurement
+/// columns with `t` and every axis of the machine, in time order. Throws InputError with file, line and word.
+/// tool.
 LoggedTable with_log(const ImportTable& tracker, const std::string& text, const std::string& log_file,
                      const model::Machine& machine, const LogOptions& options);
 

@@ -15,8 +15,9 @@ struct Dwell {
   double middle_s() const { return (begin_s + end_s) / 2; }
 };
 
-/// Stretches of at least `least_s` in which every axis stays within its tolerance of its position at their
-/// beginning. time: s, rising; axes: rows x axes; tolerance: one per axis, same unit. tool.
+/// Returns the dwells: intervals of at least `least_s` in which every axis stays within its tolerance of its
+/// position at the beginning of the interval. time: s, increasing; axes: rows x axes; tolerance: one per
+/// axis, same unit. tool.
 std::vector<Dwell> find_dwells(const Eigen::VectorXd& time, const Eigen::MatrixXd& axes,
                                const Eigen::VectorXd& tolerance, double least_s);
 
@@ -32,16 +33,17 @@ struct PairingInput {
 struct Pairing {
   std::vector<std::optional<std::size_t>> dwell;  // of each point
   std::vector<std::size_t> unused;                // dwells without a point
-  /// Clock of the log = offset + (1 + drift) x clock of the instrument; with their standard uncertainties.
+  /// Clock of the log = offset + (1 + drift) x clock of the instrument; offset and drift have their standard
+  /// uncertainties.
   std::optional<double> offset_s, offset_std_s, drift, drift_std;
   std::optional<double> rms_mm;  // of the paired points after the best rigid motion
 };
 
-/// Finds the dwell of each point if the trigger is missing or points were lost. Aligns both sequences so that
-/// distances between neighbours (which no frame changes) and times agree best. Dwells and points without a
-/// partner are skipped; the order is kept. Then one clock and one rigid motion are fitted for all; pairs that
-/// do not fit are separated again. Throws InputError if neither times nor nominal tool points are given and
-/// the numbers differ. tool.
+/// Finds the dwell of each point if the trigger is missing or points were lost. pair_points aligns both
+/// sequences so that distances between neighbours (which do not depend on the frame) and times agree best.
+/// Dwells and points without a partner are skipped; the order is kept. Then pair_points fits one clock and
+/// one rigid motion for all pairs; pairs that do not fit are separated again. Throws InputError if neither
+/// times nor nominal tool points are given and the numbers of dwells and points differ. tool.
 Pairing pair_points(const PairingInput& input);
 
 }  // namespace vernier::importer

@@ -194,7 +194,7 @@ SheetColumn target_of(const std::string& words, const text::Place& place) {
     column.unit = *sheet::unit_meant(unit);
   }
   if (!text::is_name(column.name))
-    throw text::InputError(place, column.name, "a column name is letters, digits and _");
+    throw text::InputError(place, column.name, "a column name may have only letters, digits and _");
   return column;
 }
 
@@ -512,7 +512,8 @@ void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const st
   }
   std::string known;
   for (const sheet::Heading& heading : table.headings) known += (known.empty() ? "" : ", ") + heading.text;
-  throw text::InputError("--column \"" + words + "\": no such heading; there are " + known);
+  throw text::InputError("--column \"" + words + "\": the sheet has no such heading; its headings are " +
+                         known);
 }
 
 void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place) {

@@ -10,7 +10,7 @@
 
 namespace vernier::importer {
 
-/// What becomes of a column of a sheet.
+/// Meaning of one column of a sheet in the measurement file.
 struct SheetColumn {
   enum class Use { kColumn, kDeviation, kLeft };
   Use use = Use::kColumn;
@@ -36,10 +36,10 @@ struct SheetWishes {
   std::vector<std::string> axes;  // of the machine, if it is known; else X Y Z A B C U V W J1 …
 };
 
-/// Adds "x[mm]=X ist" (also "X ist=x[mm]", as the other imports accept it: `table` defines which side is a
-/// heading). Throws InputError.
+/// Adds an assignment "x[mm]=X ist". "X ist=x[mm]" is also accepted, as in the other imports: `table` shows
+/// which side is a heading. Throws InputError.
 void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words);
-/// Adds "X[um]=Abweichung": the measured value is the position of the axis plus this deviation.
+/// Adds an assignment "X[um]=Abweichung": the measured value is the position of the axis plus this deviation.
 void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place = {});
 
 /// A profile: how a table is read, once and for all. A statement a line, # remarks:
@@ -47,12 +47,13 @@ void assign_deviation(SheetWishes& wishes, const std::string& words, const text:
 ///   column X ist = x[mm]     deviation Abw. = X[um]     leave Bemerkung     set run = a
 /// Throws InputError with file, line and word. tool.
 void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std::string& file);
-/// The same for the recognised columns: the next file of this kind needs no further settings. tool.
+/// Returns a profile of the recognised columns: with it, the next file of this kind needs no further
+/// settings. tool.
 std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           const std::vector<SheetColumn>& columns, const SheetWishes& wishes);
 
-/// What each column is: as assigned, else by its heading. Throws InputError for a wish that fits no column.
-/// tool.
+/// Returns the meaning of each column: as assigned, else by its heading. Throws InputError for a wish that
+/// fits no column. tool.
 std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                           const SheetWishes& wishes);
 

@@ -17,7 +17,7 @@ struct SheetWords {
   std::vector<std::string> axes;  // of the machine, if it is known
 };
 
-/// A spreadsheet as it was understood: everything up to the rows.
+/// A spreadsheet after it is understood: headings, columns and their meaning, without the rows of data.
 struct SheetReading {
   SheetWishes wishes;
   sheet::Sheet sheet;
@@ -33,7 +33,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
 
 /// "UTF-8, columns separated by semicolon, decimal comma".
 std::string how_read(const sheet::Sheet& sheet);
-/// "x[mm]", "position of X + this, [um]", "left out".
+/// Describes what a column becomes: "x[mm]", "position of X + this, [um]", "left out".
 std::string becomes(const SheetColumn& column);
 /// [{heading, use: column
 /// deviation

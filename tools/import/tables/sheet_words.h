@@ -20,8 +20,8 @@ bool says_deviation(const std::string& word);
 /// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no direction. tool.
 int sense_said(std::string_view word);
 
-/// True if a deviation is described as nominal - actual: "(nominal-actual)", "= Soll - Ist". `whole`: also if
-/// the text contains only that; "Soll-Ist-Vergleich" gives no sign. tool.
+/// True if a deviation is described as nominal - actual: "(nominal-actual)", "= Soll - Ist". `whole`: also
+/// true if the text is only this description; "Soll-Ist-Vergleich" gives no sign. tool.
 bool says_nominal_less_actual(std::string_view text, bool whole);
 
 /// The cells above the headings of a table. tool.

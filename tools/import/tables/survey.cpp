@@ -65,8 +65,8 @@ void check_dimension(const ImportTable& table, const std::string& names, format:
     throw text::InputError(
         {table.file, 0}, name + (unit.empty() ? "" : "[" + unit + "]"),
         dimension == format::Dimension::kNone
-            ? std::string("this column is a pure number, it has no unit")
-            : std::string("this column needs a unit like ") + format::base_unit(dimension));
+            ? std::string("this column is a pure number and must not have a unit")
+            : std::string("this column needs a unit, for example ") + format::base_unit(dimension));
   }
 }
 
@@ -101,7 +101,7 @@ void normalise(const ImportTable& table, std::vector<Eigen::VectorXd>& values, c
     const double length = values[i].norm();
     if (!(std::abs(length - 1) <= kLengthOff))
       throw text::InputError({table.file, table.line[i]}, first_of(names),
-                             names + " is no unit vector: its length is " + std::to_string(length));
+                             names + " is not a unit vector: its length is " + std::to_string(length));
     values[i] /= length;
   }
 }
@@ -149,8 +149,9 @@ void finish_tracker(ImportTable& table) {
     replace(table, quaternion, format::words_of(columns::kRotation), "deg", vectors);
   }
   if (has_reading(table)) return;
-  throw text::InputError({table.file, 0}, "",
-                         "nothing measured: map at least one of x y z, rX rY rZ, qw qx qy qz, rx ry rz");
+  throw text::InputError(
+      {table.file, 0}, "",
+      "no measured column is mapped: map at least one of x y z, rX rY rZ, qw qx qy qz, rx ry rz");
 }
 
 void finish_probe(ImportTable& table, double radius_mm) {
@@ -158,7 +159,8 @@ void finish_probe(ImportTable& table, double radius_mm) {
                     nominals = format::words_of(columns::kNominalPoint);
   if (!has_all(table, normals)) throw text::InputError({table.file, 0}, normals, "a touch needs its normal");
   if (!has_all(table, nominals))
-    throw text::InputError({table.file, 0}, nominals, "a touch needs its nominal point");
+    throw text::InputError({table.file, 0}, nominals,
+                           "the nominal point of a touch is missing: map px, py and pz");
   const bool recorded = has_all(table, "mx my mz"), given = table.find(columns::kDeviation) != nullptr;
   if (recorded == given)
     throw text::InputError({table.file, 0}, columns::kDeviation,
@@ -183,7 +185,7 @@ void finish_probe(ImportTable& table, double radius_mm) {
 
 void set_roles(ImportTable& table, std::size_t every) {
   if (table.find(columns::kRole) != nullptr)
-    throw text::InputError({table.file, 0}, columns::kRole, "the role is mapped already");
+    throw text::InputError({table.file, 0}, columns::kRole, "the column role is already mapped");
   ImportTable::Column role{columns::kRole, "", {}};
   for (std::size_t i = 0; i < table.line.size(); ++i)
     role.cells.emplace_back((i + 1) % every == 0 ? format::kCheckRole : format::kFitRole);

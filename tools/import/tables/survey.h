@@ -7,23 +7,24 @@
 
 namespace vernier::importer {
 
-/// Converts a tracker's table to a measurement. Positions x y z are kept. The orientation, as fixed order
-/// angles rX rY rZ (Rx*Ry*Rz, as a sixdof transform) or as a quaternion qw qx qy qz, becomes the rotation
-/// vector rx ry rz in deg. Throws InputError: an orientation with a part missing or given twice, a quaternion
+/// Converts a tracker's table to a measurement. Positions x y z are kept. The orientation becomes the
+/// rotation vector rx ry rz in deg. Input: fixed order angles rX rY rZ (Rx*Ry*Rz, as a sixdof transform), or
+/// a quaternion qw qx qy qz. Throws InputError: an orientation with a missing or repeated part, a quaternion
 /// whose length is not 1 within 1e-3, no measured column. tool.
 void finish_tracker(ImportTable& table);
 
-/// Converts a table of touches to a measurement. d is kept, or d = n * (m - p) with the recorded point mx my
-/// mz. nx ny nz (scaled to length 1, within 1e-3) and the nominal point px py pz are required. All points in
-/// workpiece coordinates. `radius_mm`: of the stylus ball, if the recorded point is its centre and the
-/// nominal point is on the surface: the nominal point moves out along the normal. Throws InputError. tool.
+/// Converts a table of touches to a measurement. A column d is kept; otherwise d = n * (m - p) with the
+/// recorded point mx my mz. nx ny nz (scaled to length 1, within 1e-3) and the nominal point px py pz are
+/// required. All points are in workpiece coordinates. `radius_mm`: radius of the stylus ball, if the recorded
+/// point is the centre of the ball and the nominal point is on the surface. The nominal point then moves out
+/// along the normal. Throws InputError. tool.
 void finish_probe(ImportTable& table, double radius_mm);
 
-/// Gives every `every`-th row the role check, the others fit. Throws InputError if the table has roles
-/// already.
+/// Gives every `every`-th row the role check, the other rows the role fit. Throws InputError if the table has
+/// roles already.
 void set_roles(ImportTable& table, std::size_t every);
 
-/// Rotation vector (deg) of the angles of a sixdof transform (deg) and of a quaternion w x y z.
+/// Returns the rotation vector (deg) of the angles of a sixdof transform (deg) and of a quaternion w x y z.
 Eigen::Vector3d rotation_vector_of_angles(const std::array<double, 3>& angles_deg);
 Eigen::Vector3d rotation_vector_of_quaternion(const std::array<double, 4>& wxyz);
 

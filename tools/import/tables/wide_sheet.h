@@ -8,11 +8,11 @@
 namespace vernier::importer {
 
 /// Converts a sheet with a column for each run and approach direction ("Pos | 1+ | 1- | 2+ …", "Run 1 fwd",
-/// "hin 1", "Messung 1 ↑") to a long one: one row per reading, with the columns run and sense. A reading is
-/// a deviation if its heading or a title says so. Otherwise it is a position if it spreads as the positions
-/// do, else a deviation. Result: number of columns that were joined, 0 if the sheet is not of this kind and
-/// is not changed. Throws InputError: the same run and direction twice, a table that would be too large.
-/// tool.
+/// "hin 1", "Messung 1 ↑") to a sheet with one row per reading and the columns run and sense. A reading is a
+/// deviation if its heading or a title says this. Otherwise a reading is a position if its values spread as
+/// the positions do, else a deviation. Returns the number of columns that were joined; 0 if the sheet is of
+/// another kind and is not changed. Throws InputError: the same run and direction twice, a table that would
+/// be too large. tool.
 std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table);
 
 }  // namespace vernier::importer

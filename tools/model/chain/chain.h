@@ -19,8 +19,8 @@ struct Poses {
 /// degree of freedom and state. tool.
 Poses forward(const Machine& machine, const States& states);
 
-/// Returns the deviation of each state: position of `machine` minus position of its nominal chain,
-/// mm.
+/// Returns the deviation of each state: position of `machine` minus position of the nominal chain of
+/// `machine`, mm.
 Eigen::Matrix3Xd deviation(const Machine& machine, const States& states);
 
 }  // namespace vernier::model

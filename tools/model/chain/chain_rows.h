@@ -29,8 +29,8 @@ Frame sixdof_frame(const std::array<double, 6>& value);
 /// `value`. `point`: the moved point in that frame.
 std::array<Twist, 6> sixdof_twists(const std::array<double, 6>& value, const Eigen::Vector3d& point);
 
-/// The chain of a machine, evaluated at states. The columns of the degrees of freedom are computed
-/// once. Then a pose is computed per state.
+/// The chain of a machine, evaluated at states. The columns of the degrees of freedom are computed once. A
+/// pose is then computed for each state.
 class ChainRows {
  public:
   /// `active` as for Evaluator: the derivatives that twists() reports. Throws InputError if an
@@ -40,8 +40,8 @@ class ChainRows {
   /// Returns the tool frame in workpiece coordinates at state i.
   Frame pose(std::size_t i) const;
 
-  /// Returns the same, and the twist of the tool point in workpiece coordinates by each active
-  /// key. `keys()` gives the key of each entry of `twists`.
+  /// Returns the pose of state i and the twist of the tool point in workpiece coordinates by each active key.
+  /// `keys()` gives the key of each entry of `twists`.
   Frame pose(std::size_t i, std::vector<Twist>& twists) const;
   const std::vector<std::size_t>& keys() const { return keys_; }
 

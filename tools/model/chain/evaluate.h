@@ -11,7 +11,7 @@
 
 namespace vernier::model {
 
-/// A number per state, or one number for all of them.
+/// A number for each state, or one number for all states.
 class Value {
  public:
   Value() = default;
@@ -29,10 +29,9 @@ class Value {
   bool varies_ = false;
 };
 
-/// A value and its derivatives by the quantities that a fit may change. Keys: the index of a
-/// static, or statics.size() + axis * 6 + column of a table value (the station weights are applied
-/// later, they are the same for all columns), or statics.size() + 6 * axes.size() + axis of a
-/// scale factor.
+/// A value and its derivatives by the quantities that a fit may change. Keys of the derivatives. Static: its
+/// index. Table value: statics.size() + axis * 6 + column; the weights of the stations are applied later,
+/// because they are equal for all columns. Scale factor: statics.size() + 6 * axes.size() + axis.
 struct ValueAndSlopes {
   Value value;
   std::vector<std::pair<std::size_t, Value>> by;
@@ -42,7 +41,7 @@ struct ValueAndSlopes {
 /// requested. The evaluation is column by column, because lag needs the whole run. tool.
 class Evaluator {
  public:
-  /// `active`: for each key whether its derivative is requested. Empty: no derivatives.
+  /// `active`: true for each key whose derivative is requested. Empty: no derivatives.
   Evaluator(const Machine& machine, const States& states, std::vector<char> active = {});
 
   ValueAndSlopes operator()(const Expr& expr);
@@ -68,7 +67,7 @@ class Evaluator {
 /// Returns the value of an expression of the machine at every state.
 Column evaluate(const Machine& machine, const Expr& expr, const States& states);
 
-/// Does any expression of the machine use lag? Then rows must be evaluated together, in time
+/// True if an expression of the machine uses lag. Rows of such a machine must be evaluated together, in time
 /// order.
 bool uses_lag(const Machine& machine);
 

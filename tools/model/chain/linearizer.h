@@ -13,8 +13,8 @@
 
 namespace vernier::model {
 
-/// Adjacent parameters that share their weights: the free columns of a table (a weight for each
-/// station that takes part at a row), statics, or the components of a BaseShift (weight 1).
+/// Adjacent parameters with common weights: the free columns of a table (one weight for each station that
+/// takes part at a row), statics, or the components of a BaseShift (weight 1).
 struct ParameterGroup {
   Eigen::Index slot = 0, width = 0;                           // rows of RowLinear::gradient
   std::vector<std::pair<Eigen::Index, double>> first_weight;  // parameter of the first column, weight
@@ -59,13 +59,12 @@ class Linearizer {
     const RowLinear& row() const { return is_joined_ ? joined_ : row_; }
 
    private:
-    /// Fills a row's observations with their dependence on the pose of row `at`: the row itself,
-    /// or the row at the other end of a distance. `other_end`: position of the end that is not
-    /// evaluated.
+    /// Computes how a row's observations depend on the pose of row `at`. `at` is the row itself, or the row
+    /// at the other end of a distance. `other_end`: position of the end that is not evaluated.
     void fill(std::size_t row, std::size_t at, const Eigen::Vector3d& other_end);
     Eigen::Vector3d point_at(std::size_t row) const;
-    /// Adds the influence of the pose at the other end of the row's distance. Gives every
-    /// parameter of both rows its own slot.
+    /// Adds the influence of the pose at the other end of the row's distance. After that, every parameter of
+    /// both rows has a separate slot.
     void join_other_end(std::size_t row, std::size_t other);
     const BaseShift* shift_of(std::size_t row) const {
       const States& states = all_.measurement_.states;

@@ -15,19 +15,19 @@ class ObservationModel {
   ObservationModel(const Measurement& measurement, const std::array<double, 3>& gravity,
                    const BaseShift* shift, const Frame& pose);
 
-  /// Tool point in the measuring frame, mm.
+  /// Returns the tool point in the measuring frame, mm.
   const Eigen::Vector3d& point() const { return point_; }
-  /// Sets the position of the other end of the row's distance. Call it before predicted() of a
+  /// Sets the position of the other end of the row's distance. Call set_other_end() before predicted() of a
   /// distance.
   void set_other_end(const Eigen::Vector3d& point) { other_end_ = point; }
 
-  /// Predicted value: mm, or deg for rotations. Rotation vectors repeat every 360 deg. The vector
+  /// Returns the predicted value: mm, or deg for rotations. Rotation vectors repeat every 360 deg. The vector
   /// nearest to the reading is used.
   double predicted(const Observation& observation);
 
-  /// Sensitivity of the observation to a motion of the tool in the measuring frame: point .
-  /// gradient.point (mm) + rotation . gradient.rotation (rad). For a rotation, call predicted() of
-  /// an observation of this row first.
+  /// Returns the sensitivity of the observation to a motion of the tool in the measuring frame: point .
+  /// gradient.point (mm) + rotation . gradient.rotation (rad). For a rotation, first call predicted() of an
+  /// observation of this row.
   Twist gradient(const Observation& observation) const;
 
   /// Twists of the tool in the measuring frame by the six components of the BaseShift.
@@ -37,10 +37,10 @@ class ObservationModel {
  private:
   Eigen::Vector3d normal(Eigen::Index row) const;
   const Eigen::Vector3d& rotation_vector(std::size_t row);
-  /// The measured direction and two directions across it. Without a measured direction, the tool's
-  /// axes are used.
+  /// Returns the measured direction and two directions across it. Without a measured direction, sight() uses
+  /// the axes of the tool.
   Eigen::Matrix3d sight(Eigen::Index row) const;
-  /// Tool axis (z of the tool's frame) in the measuring frame.
+  /// Returns the tool axis (z of the tool's frame) in the measuring frame.
   Eigen::Vector3d tool_axis() const { return base_.rotation * pose_.rotation.col(2); }
 
   const Measurement& m_;

@@ -11,9 +11,9 @@ namespace vernier::model {
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
-/// Returns the predicted value of each observation; mm, or deg for rotations. One entry per
-/// observation. Rotation vectors repeat every 360 deg. The predicted vector is the one nearest to
-/// the measured vector. tool.
+/// Returns the predicted value of each observation; mm, or deg for rotations. The result has one entry per
+/// observation. Rotation vectors repeat every 360 deg. The predicted rotation vector is the equivalent vector
+/// nearest to the measured vector. tool.
 Eigen::VectorXd predict(const Machine& machine, const Measurement& measurement);
 
 /// The prediction and its derivatives by the free parameters (analytic): n_obs x n_params, mm or
@@ -25,7 +25,8 @@ struct Linearisation {
 Linearisation linearise(const Machine& machine, const Measurement& measurement,
                         const ParameterSet& parameters);
 
-/// The same. The work that does not depend on the parameters' values is done beforehand.
+/// Returns the prediction and its derivatives, like linearise(), with a Linearizer that is made once. The
+/// work that does not depend on the parameters' values is done beforehand.
 class Linearizer;
 Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
                         std::size_t parameters);

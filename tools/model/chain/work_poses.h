@@ -17,9 +17,9 @@ struct WorkPoses {
 /// Returns poses in these ranges, one range per axis (low, high; mm or deg). tool.
 WorkPoses poses_over(const Machine& machine, const std::vector<std::array<double, 2>>& ranges);
 
-/// Returns poses of <volume>, else of the axes' ranges (Halton sequence, the same in every call).
-/// The first two poses are the two extreme corners. Both directions of motion occur. The axes are
-/// at rest, inputs are at their reference. Throws InputError for an axis without a range. tool.
+/// Returns poses in <volume>, else in the ranges of the axes (Halton sequence, equal in every call). The
+/// first two poses are the two extreme corners. The poses contain both directions of motion. In all poses the
+/// axes are at rest and inputs are at their reference. Throws InputError for an axis without a range. tool.
 WorkPoses work_poses(const Machine& machine);
 
 }  // namespace vernier::model

@@ -14,19 +14,19 @@ struct Cutter {
   double touch = 1;  // v of the curve of the flank that it touches; elsewhere it cuts too much
 };
 
-/// The paths that the paper defines. Analytical: equations 1 to 3, along the top curve. The programs give a
-/// lower curve and the axis by an upper one. The control offsets the tool perpendicular to the lower curve
+/// The paths that the paper defines. Analytical: equations 1 to 3, along the top curve. The programs define a
+/// lower curve, and the axis by an upper curve. The control offsets the tool perpendicular to the lower curve
 /// and the axis (CUT3DC): TP5C1 touches at Z0, TP6C2 at Z11.
 enum class ToolPath : std::uint8_t { kAnalytical, kTp5c1, kTp6c2 };
 
-/// Where on the part's height a path touches: Cutter::touch.
+/// Returns the height of the part at which a path touches: Cutter::touch.
 constexpr double touch_of(ToolPath path) {
   constexpr double kLowerOfTp6c2 = 11.0 / 30;  // table 2: Z11 of 30 mm
   return path == ToolPath::kAnalytical ? 1 : path == ToolPath::kTp5c1 ? 0 : kLowerOfTp6c2;
 }
 
-/// Definition of the normal of the path. The paper prints N = +-(R x T), which has no unit length, since
-/// T(u,1) is up to 16 deg away from a right angle to R; it does not give the side.
+/// Definition of the normal of the path. The paper prints N = +-(R x T), which does not have unit length,
+/// because T(u,1) is up to 16 deg away from a right angle to R. The paper does not state the side.
 struct NormalReading {
   bool unit = true;
   bool outward = true;

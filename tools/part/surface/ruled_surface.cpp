@@ -45,7 +45,7 @@ SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point, d
     u = next_u;
     v += step[1];
   }
-  if (!settled) throw std::runtime_error("nearest point on the ruled surface did not settle");
+  if (!settled) throw std::runtime_error("the search for the nearest point of the surface did not converge");
   const SurfacePoint s = surface_point(surface, u, v);
   const Eigen::Vector3d offset = point - s.position;
   SurfaceFoot foot{u, v, offset.dot(s.normal), 0, u <= 0 || u >= 1};

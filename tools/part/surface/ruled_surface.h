@@ -7,8 +7,8 @@
 
 namespace vernier::part {
 
-/// One flank of the part: straight lines between a bottom and a top curve at the same parameter,
-/// S(u,v) = (1-v) C0(u) + v C1(u), u and v 0..1, mm in workpiece coordinates.
+/// One flank of the part: straight lines between a bottom and a top curve at the same parameter. S(u,v) =
+/// (1-v) C0(u) + v C1(u), u and v 0..1, mm in workpiece coordinates.
 struct RuledSurface {
   char name = '?';
   Spline bottom, top;
@@ -23,7 +23,7 @@ struct SurfacePoint {
 
 SurfacePoint surface_point(const RuledSurface& surface, double u, double v);
 
-/// Where a point of space falls on a surface.
+/// Foot point: the nearest point of a surface to a point in space.
 struct SurfaceFoot {
   double u = 0, v = 0;
   double distance_mm = 0;   // along the outward normal; negative: within the material (overcut)
@@ -31,12 +31,12 @@ struct SurfaceFoot {
   bool beyond_end = false;  // u was held at 0 or 1
 };
 
-/// Nearest point of the surface by Gauss-Newton from (u, v), limited to 0 <= u <= 1, v free. point: mm.
-/// Throws std::runtime_error if the iteration does not converge (start farther off than the curve's radius).
-/// tool.
+/// Returns the nearest point of the surface by Gauss-Newton from (u, v), limited to 0 <= u <= 1, v free.
+/// point: mm. Throws std::runtime_error if the iteration does not converge (start farther off than the
+/// curve's radius). tool.
 SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point, double u, double v);
 
-/// The same with a start found by searching the whole surface.
+/// Finds the nearest point of a surface; searches the whole surface for the start.
 SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point);
 
 }  // namespace vernier::part

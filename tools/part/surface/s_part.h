@@ -11,7 +11,7 @@ namespace vernier::part {
 /// listed in tools/docs/s_part.md. tool.
 const std::array<RuledSurface, 2>& s_part();
 
-/// Height of the part and the heights at which it is measured (bottom and top line), mm.
+/// Height of the part, and the heights at which the part is measured (bottom and top line), mm.
 inline constexpr double kPartHeightMm = 30;
 inline constexpr std::array<double, 2> kMeasuredHeightsMm = {11, 25};
 

@@ -11,7 +11,7 @@ namespace vernier::plan {
 /// The aim as numbers that are linear in the parameters: U95 = 2 sqrt(trace(rows C rows^T)), mm.
 struct AimRows {
   Eigen::MatrixXd rows;  // by the machine's own parameters, in the order of `own`
-  /// Of a part's characteristics: their rows and divisors.
+  /// A part of the characteristics of a part: its rows and divisors.
   struct Piece {
     std::string name;
     Eigen::Index first = 0, count = 0;
@@ -23,7 +23,7 @@ struct AimRows {
 /// own: indices of the parameters that are the machine's, no set-up's. tool.
 AimRows aim_rows(const Knowledge& knowledge, const AccuracyAim& aim, const std::vector<Eigen::Index>& own);
 
-/// The machine with the aim's region as its `<volume>`.
+/// Returns the machine with the region of the aim as its `<volume>`.
 model::Machine with_region(const model::Machine& machine, const std::vector<model::WorkRange>& region);
 
 }  // namespace vernier::plan

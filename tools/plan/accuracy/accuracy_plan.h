@@ -9,24 +9,26 @@
 
 namespace vernier::plan {
 
-/// From existing measurements: the covariance and the noise of the fit. The next readings are in the set-up
-/// of the plain BaseShift if the file has a free one, else in a new set-up. Throws InputError if the
-/// measurement has no x, y or z. tool.
+/// Returns the knowledge from existing measurements: the covariance and the noise of the fit. The next
+/// readings are in the set-up of the plain BaseShift if the file has a free one, else in a new set-up. Throws
+/// InputError if the measurement has no x, y or z. tool.
 Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& measurement);
-/// From the machine file alone, with a new set-up. Throws InputError if it was never fitted. tool.
+/// Returns the knowledge from the machine file alone, with a new set-up. Throws InputError if the machine was
+/// never fitted. tool.
 Knowledge knowledge_of(const model::Machine& fitted);
 
 /// Chooses the next poses one by one until the required U95 is reached. Each pose lowers most the mean square
 /// of the tool point's uncertainty over the aim, with a set-up that may be new (I-optimal; Wu, Klimchik,
-/// Caro, Furet and Pashkevich 2013 for a test pose). A rigid motion of the whole (of a part: the motion that
-/// its datums absorb) is not counted. Throws InputError: an axis without range, no free parameter. tool.
+/// Caro, Furet and Pashkevich 2013 for a test pose). A rigid motion of the whole machine (for a part: the
+/// motion that its datums absorb) does not count. Throws InputError: an axis without range, no free
+/// parameter. tool.
 AccuracyPlan accuracy_plan(const Knowledge& knowledge, const AccuracyAim& aim,
                            const AccuracyOptions& options);
 
-/// U95 over the aim after readings at any poses, um, in the same terms. tool.
+/// Returns U95 over the aim after readings at any poses, um, computed as in accuracy_plan. tool.
 double expected_accuracy_um(const Knowledge& knowledge, const AccuracyAim& aim, const model::States& poses);
 
-/// A measurement file with these rows, readings to be filled in.
+/// Returns a measurement file with the rows of the plan; the readings must be filled in.
 std::string accuracy_plan_csv(const Knowledge& knowledge, const AccuracyPlan& plan);
 
 /// Label of the planned rows.

@@ -10,10 +10,10 @@ namespace vernier::workbench {
 
 /// JSON followed by long rows of numbers, for the page: a 4-byte length, the JSON padded with blanks to a
 /// multiple of 4, then the arrays, little-endian, each on a multiple of 4. In the JSON an array is {"f32":
-/// [offset, count]}, {"u32": ...} or {"u8": ...}, the offset from the first byte after the JSON.
+/// [offset, count]}, {"u32": ...} or {"u8": ...}; the offset is from the first byte after the JSON.
 class Blob {
  public:
-  /// The JSON placeholder for these numbers; values that are not finite are kept.
+  /// Adds numbers and returns their JSON placeholder; values that are not finite are kept.
   nlohmann::ordered_json f32(const std::vector<float>& values);
   nlohmann::ordered_json f32(const Eigen::ArrayXd& values);
   nlohmann::ordered_json u32(const std::vector<std::uint32_t>& values);

@@ -6,8 +6,8 @@
 
 namespace vernier::workbench {
 
-/// A row of a measurement file that was excluded by hand: a comment `# excluded "reason": row` in its place.
-/// Every command ignores it, every other row keeps its line, and no data are lost. tool.
+/// A row of a measurement file that a user excluded: a comment `# excluded "reason": row` replaces it. Every
+/// command ignores an excluded row, every other row keeps its line, and no data are lost. tool.
 struct ExcludedRow {
   std::size_t line = 0;  // 1-based
   std::string reason, row;
@@ -16,17 +16,18 @@ struct ExcludedRow {
 /// The rows taken out of a measurement file's text, by line. tool.
 std::vector<ExcludedRow> excluded_rows(const std::string& text);
 
-/// The text with the rows on these lines excluded. reason: without quotes and line ends. Throws InputError
-/// with the line if it contains no row. `file` is for messages. tool.
+/// Returns the text with the rows on these lines excluded. reason: without quotes and line ends. Throws
+/// InputError with the line if a line contains no row. `file` is for messages. tool.
 std::string exclude_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines, const std::string& reason);
 
-/// The text with the excluded rows on these lines restored. Throws InputError with the line if it has no
-/// excluded row.
+/// Returns the text with the excluded rows on these lines restored. Throws InputError with the line if a line
+/// has no excluded row.
 std::string restore_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines);
 
-/// Lines such as "12,15-20": 1-based, sorted, each once. Throws InputError with the word. tool.
+/// Reads line numbers such as "12,15-20"; returns them from 1, sorted, each once. Throws InputError with the
+/// word. tool.
 std::vector<std::size_t> parse_lines(const std::string& text);
 
 }  // namespace vernier::workbench

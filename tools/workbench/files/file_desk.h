@@ -8,15 +8,15 @@
 
 namespace vernier::workbench {
 
-/// All functions that read a machine, a measurement or a term. They run in a separate process: a harmful file
-/// ends that process and not the server. tool.
+/// All functions of the workbench that read a machine, a measurement or a term. These functions run in a
+/// separate process: a harmful file ends that process and not the server. tool.
 class FileDesk {
  public:
   explicit FileDesk(const Project& project) : project_(project), cache_(project) {}
 
-  /// True if the request is for this desk. Data to be stored (PUT) are only checked here.
+  /// True if FileDesk answers this request. Data to be stored (PUT) are only checked here.
   static bool answers(const ApiRequest& request);
-  /// Never throws; as Api::reply.
+  /// Answers a request and never throws, like Api::reply.
   ApiReply reply(const ApiRequest& request);
 
  private:

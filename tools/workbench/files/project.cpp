@@ -83,7 +83,8 @@ Project::Project(const std::string& directory) {
 }
 
 fs::path Project::checked(const std::string& name) const {
-  if (!is_project_name(name)) throw text::InputError("\"" + name + "\": no name for a file of a project");
+  if (!is_project_name(name))
+    throw text::InputError("\"" + name + "\": this name is not allowed for a file of a project");
   fs::path path = root_;
   for (const fs::path& part : fs::path(name)) {
     path /= part;

@@ -10,7 +10,7 @@ namespace vernier::workbench {
 
 /// Kind of a file of a project, by its name.
 enum class FileKind : std::uint8_t { kMachine, kMeasurement, kInstrument, kReport, kImage, kKey, kOther };
-/// As the page writes it: "machine" ...
+/// Returns the name of a kind as the page writes it: "machine" ...
 const char* kind_name(FileKind kind);
 
 struct ProjectFile {
@@ -27,24 +27,24 @@ bool is_project_name(std::string_view name);
 /// Throws InputError with the name if `path` is a symbolic link, a device or a pipe. tool.
 void refuse_special(const std::filesystem::path& path, const std::string& name);
 
-/// The folder that the workbench reads and writes; it accesses no file outside. Names are checked as above,
-/// and no part of a name may be a symbolic link, a device or a pipe. tool.
+/// The folder that the workbench reads and writes; the workbench accesses no file outside the folder. Names
+/// are checked as above, and no part of a name may be a symbolic link, a device or a pipe. tool.
 class Project {
  public:
   /// Throws InputError if `directory` is not a folder.
   explicit Project(const std::string& directory);
 
   const std::filesystem::path& root() const { return root_; }
-  /// Path of a file or folder that is there. Throws InputError with the name: no such name, a link, not
-  /// there.
+  /// Returns the path of an existing file or folder. Throws InputError with the name: a name that is not
+  /// allowed, a link, no such file.
   std::filesystem::path existing(const std::string& name) const;
-  /// Path that may be written; it need not exist. Throws InputError as above, and if a folder contains a
-  /// link, a device or a pipe.
+  /// Returns a path that may be written; the file need not exist. Throws InputError as above, and if a folder
+  /// contains a link, a device or a pipe.
   std::filesystem::path writable(const std::string& name) const;
-  /// Writes a file; a reader sees the old one or the whole new one.
+  /// Writes a file; a reader sees the old file or the complete new file.
   void save(const std::string& name, const std::string& bytes) const;
-  /// Files in the folder and one level below, by name; without hidden files and links, and only the first
-  /// 2000.
+  /// Returns the files in the folder and one level below, by name; without hidden files and links, and only
+  /// the first 2000.
   std::vector<ProjectFile> list() const;
 
  private:

@@ -55,7 +55,7 @@ nlohmann::json body_json(const ApiRequest& request) {
   if (text::nests_deeper_than(request.body, text::kMostJsonDepth))
     throw text::InputError("the request nests too deeply");
   auto json = nlohmann::json::parse(request.body, nullptr, false);
-  if (!json.is_object()) throw text::InputError("the request holds no JSON object");
+  if (!json.is_object()) throw text::InputError("the request contains no JSON object");
   return json;
 }
 
@@ -81,7 +81,7 @@ std::vector<std::string> texts_at(const nlohmann::json& json, const char* key) {
     throw text::InputError(std::string("\"") + key + "\": a list is missing");
   for (const auto& one : *found) {
     if (!one.is_string())
-      throw text::InputError(std::string("\"") + key + "\": holds something that is no text");
+      throw text::InputError(std::string("\"") + key + "\": contains a value that is not a text");
     list.push_back(one.get<std::string>());
   }
   return list;

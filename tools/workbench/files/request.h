@@ -17,7 +17,7 @@ struct ApiRequest {
   std::string method, path;  // "GET", "/api/rows"
   std::multimap<std::string, std::string> query;
   std::string body;
-  /// The value of a query word, empty if it is absent.
+  /// Returns the value of a query word, empty if the word is absent.
   std::string word(const std::string& name) const;
   std::vector<std::string> words(const std::string& name) const;
 };
@@ -31,11 +31,12 @@ struct ApiReply {
 ApiReply json_reply(const nlohmann::ordered_json& json, int status = 200);
 ApiReply blob_reply(std::string bytes);
 
-/// The result of `answer`. If it throws: bad input is 422 with {"message"}, an internal fault is 500. The
-/// project's folder is removed from messages. tool.
+/// The result of `answer`. If `answer` throws: bad input is 422 with {"message"}, an internal error is 500.
+/// The project's folder is removed from messages. tool.
 ApiReply reply_of(const Project& project, const std::function<ApiReply()>& answer);
 
-/// A body that contains a JSON object. This function and the following ones throw InputError with the word.
+/// Returns the JSON object in the body of a request. body_json and the functions below throw InputError with
+/// the word.
 nlohmann::json body_json(const ApiRequest& request);
 std::string text_at(const nlohmann::json& json, const char* key);
 std::vector<std::string> texts_at(const nlohmann::json& json, const char* key);

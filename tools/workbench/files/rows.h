@@ -26,9 +26,9 @@ struct LoadedRows {
 class RowCache {
  public:
   explicit RowCache(const Project& project) : project_(project) {}
-  /// Names in the project. `datum`: the machine's set-up is fitted to the rows first (`compare --datum`).
-  /// Rows that were measured with a correction on find its image in the project. Throws InputError with file,
-  /// line and word.
+  /// The names are those in the project. `datum`: the machine's set-up is fitted to the rows first (`compare
+  /// --datum`). Rows that were measured with a correction on need its image in the project. Throws InputError
+  /// with file, line and word.
   std::shared_ptr<const LoadedRows> get(const std::string& machine,
                                         const std::vector<std::string>& measurements, bool datum);
 
@@ -44,19 +44,19 @@ class RowCache {
   std::vector<Entry> kept_;
 };
 
-/// Everything that the page draws of a machine and rows (Blob): columns, runs, roles, lines, tool points,
-/// directions of lengths, observations with residuals in um or urad, circles, figures. tool.
+/// Returns everything that the page draws of a machine and rows (Blob): columns, runs, roles, lines, tool
+/// points, directions of lengths, observations with residuals in um or urad, circles, numbers. tool.
 std::string rows_blob(const LoadedRows& rows);
 
 /// Residuals and figures with some parameters changed; no file is written. tool.
 std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, double>& values);
 
-/// What an effect would explain: the change that adding and fitting it makes to the residual of the fitted
-/// model, per observation, um or urad. add: a candidate's `add` string. tool.
+/// Returns what an effect would explain: the change of the residual of the fitted model if the effect is
+/// added and fitted, per observation, um or urad. add: a candidate's `add` string. tool.
 std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 
-/// Free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention, prior) are those
-/// of the fit that wrote the file; null without a fit, or if the value was changed since.
+/// Returns the free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention,
+/// prior) are those of the fit that wrote the file; null without a fit, or if the value was changed since.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
 }  // namespace vernier::workbench

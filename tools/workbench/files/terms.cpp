@@ -74,7 +74,7 @@ Json check_term(const model::Machine& machine, const std::string& text, const st
     model::walk(*expr, [&](const model::Expr& node) {
       has_unknown |= node.op == model::Op::kSymbol && node.name == "k";
     });
-    if (!has_unknown) warnings.emplace_back("there is no unknown k in it: nothing to fit");
+    if (!has_unknown) warnings.emplace_back("the term has no unknown k; a fit needs it");
     result["warnings"] = warnings;
   } catch (const model::ExpressionError& error) {
     result = {{"ok", false}, {"message", error.what()}, {"offset", error.offset}, {"word", error.word}};

@@ -8,18 +8,18 @@
 
 namespace vernier::workbench {
 
-/// The steps of a project, in order. They are kept in `.vernier/history.json` and, without the undone steps,
-/// as the shell script `history.sh`, which repeats them. Commands to a board are comments in the script.
-/// tool.
+/// The steps of a project, in order. The steps are kept in `.vernier/history.json` and, without the undone
+/// steps, in the shell script `history.sh`, which repeats them. Commands to a board are comments in the
+/// script. tool.
 class CommandHistory {
  public:
-  /// Reads the history of an earlier session. Throws InputError if it cannot be read.
+  /// Reads the history of an earlier session. Throws InputError if the history cannot be read.
   explicit CommandHistory(const Project& project);
 
-  /// result: of the command; its rms_um and check_rms_um are kept.
+  /// Adds an entry. result: JSON of the command; its rms_um and check_rms_um are kept.
   void add(const std::string& typed, const PlannedCommand& command, const nlohmann::ordered_json& result);
-  /// Undoes the last entry (its files are kept, the script omits it), or restores the first undone entry
-  /// after it. Throws InputError if no such entry exists.
+  /// undo: undoes the last entry (its files are kept, the script omits it). redo: restores the first undone
+  /// entry. Throws InputError if no such entry exists.
   void undo();
   void redo();
   /// [{"command", "name", "at", "undone", "outputs", "rms_um", "check_rms_um"}].

@@ -46,7 +46,7 @@ std::uint64_t Jobs::start(const PlannedCommand& command) {
   const auto running =
       std::count_if(jobs_.begin(), jobs_.end(), [](const auto& one) { return !one.second->over; });
   if (static_cast<std::size_t>(running) >= kMostRunning)
-    throw text::InputError("too many commands at work: wait for one or cancel it");
+    throw text::InputError("too many commands are running: wait for one or cancel one");
   auto job = std::make_shared<Job>();
   job->command = command;
   job->typed = text::shell_text("vernier", command.arguments);

@@ -25,7 +25,7 @@ class Jobs {
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
-  /// Starts a command; returns its number. Throws InputError if too many run already.
+  /// Starts a command; returns the number of its job. Throws InputError if too many jobs are running already.
   std::uint64_t start(const PlannedCommand& command);
   /// {"id", "command" as typed, "state": "running" | "done" | "failed" | "cancelled", "fraction", "step",
   /// "seconds", "exit", "message", "text", "outputs", "result"}. Throws InputError for an unknown number.

@@ -4,9 +4,9 @@
 
 namespace vernier::workbench {
 
-/// s since an arbitrary moment, never decreasing: for durations. tool.
+/// Returns s since an arbitrary moment, never decreasing: for durations. tool.
 double steady_s();
-/// s since 1970: for dates. tool.
+/// Returns s since 1970: for dates. tool.
 std::int64_t unix_s();
 
 }  // namespace vernier::workbench
