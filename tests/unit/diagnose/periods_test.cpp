@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,6 +13,7 @@
 
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/propose/enumerate.h"
+#include "tools/maths/decompositions.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::periods_test {
@@ -192,7 +192,7 @@ TEST(WaveGains, AreThoseOfALeastSquaresFit) {
       columns.row(i) << evidence.weights()[i] * std::sin(phase), evidence.weights()[i] * std::cos(phase);
     }
     columns -= evidence.absorbed() * (evidence.absorbed().transpose() * columns);
-    const Eigen::VectorXd left = residual - columns * columns.colPivHouseholderQr().solve(residual);
+    const Eigen::VectorXd left = residual - columns * maths::least_squares(columns, residual);
     EXPECT_NEAR(gains[k], residual.squaredNorm() - left.squaredNorm(), 1e-6 * residual.squaredNorm()) << k;
   }
 }
