@@ -112,7 +112,7 @@ TEST(MachinePlan, RefusalsSayWhatToDo) {
     return text.find(part) != std::string::npos;
   };
   EXPECT_TRUE(has(refusal([] { plan("delta", {"X:0:1"}); }), "closes several"));
-  EXPECT_TRUE(has(refusal([] { plan("lathe", {"X:0:1"}); }), "known are gantry bridge"));
+  EXPECT_TRUE(has(refusal([] { plan("lathe", {"X:0:1"}); }), "known types are gantry bridge"));
   EXPECT_TRUE(has(refusal([] { plan("gantry", {}); }), "no axis"));
   EXPECT_TRUE(has(refusal([] { plan("gantry", {"X:0:1", "X:0:2"}); }), "given twice"));
   EXPECT_TRUE(has(refusal([] { plan("gantry", {"Q:0:1"}); }), "Q:MIN:MAX:X"));

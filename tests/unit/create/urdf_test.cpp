@@ -160,7 +160,7 @@ TEST(Urdf, SaysWhatItCannotTake) {
     return text.replace(text.find(from), from.size(), to);
   };
   EXPECT_EQ(refusal(good), "accepted");
-  EXPECT_NE(refusal("<machine/>").find("no URDF"), std::string::npos);
+  EXPECT_NE(refusal("<machine/>").find("not a URDF"), std::string::npos);
   EXPECT_NE(refusal(good, "hand").find("\"hand\": the URDF has no link of this name"), std::string::npos);
   EXPECT_NE(refusal(with("<axis xyz=\"0 0 1\"", "<axis xyz=\"${a}\"")).find("xacro"), std::string::npos);
   EXPECT_NE(refusal(with("<axis xyz=\"0 0 1\"", "<axis xyz=\"0 0 0\"")).find("no direction"),

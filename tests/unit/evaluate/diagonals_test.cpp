@@ -77,8 +77,9 @@ TEST(Diagonals, WhatIsNoneIsRefused) {
             std::string::npos);
   EXPECT_NE(refused("X[mm],Y[mm]\n0,0\n").find("this column is missing"), std::string::npos);
   EXPECT_NE(refused("X[mm],displacement[mm]\n0,0\n").find("two linear axes"), std::string::npos);
-  EXPECT_NE(refused("X[mm],Y[mm],displacement[mm]\n0,0,0\n10,10,14.1\n20,0,3\n").find("no line"),
-            std::string::npos);
+  EXPECT_NE(
+      refused("X[mm],Y[mm],displacement[mm]\n0,0,0\n10,10,14.1\n20,0,3\n").find("not on a straight line"),
+      std::string::npos);
   EXPECT_NE(refused("X[mm],Y[mm],displacement[deg]\n0,0,0\n").find("unit of length"), std::string::npos);
 }
 

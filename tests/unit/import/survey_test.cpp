@@ -121,7 +121,7 @@ TEST(Tracker, ErrorsNameFileLineAndWord) {
   EXPECT_TRUE(has(message_of(map, "1,2\n# c\n1,2,3\n"), "data.txt:3: \"1,2,3\""));
   EXPECT_TRUE(has(message_of(map, "1;2,5\n"), "\"2,5\""));  // decimal comma not asked for
   EXPECT_TRUE(has(message_of(map, "1,nan\n"), "\"nan\""));
-  EXPECT_TRUE(has(message_of(map, "1\n"), "\"2\": no such column"));
+  EXPECT_TRUE(has(message_of(map, "1\n"), "\"2\": this column does not exist"));
   EXPECT_TRUE(has(message_of(map, "# nothing\n"), "no rows"));
   EXPECT_TRUE(has(message_of(map, std::string("1,2\0\n", 5)), "zero byte"));
   EXPECT_TRUE(has(message_of(map, "1,\"2\n"), "quote"));
@@ -191,7 +191,8 @@ TEST(Probe, RefusesAnIncompleteTouch) {
             std::string::npos);
   EXPECT_NE(message(with_d, "0,0,1,2,3,0,,1,5\n").find("empty cell"), std::string::npos);
   EXPECT_NE(message(kTouch, "0,0,1,2,3,0,0,1,5\n").find("neither"), std::string::npos);
-  EXPECT_NE(message(std::string(kTouch) + "column 9 = d\n", "0,0,1,2,3,0,0,1,5\n").find("unit like mm"),
+  EXPECT_NE(message(std::string(kTouch) + "column 9 = d\n", "0,0,1,2,3,0,0,1,5\n")
+                .find("needs a unit, for example mm"),
             std::string::npos);
   EXPECT_NE(message("column 1 = d[mm]\n", "1\n").find("normal"), std::string::npos);
 }

@@ -95,7 +95,7 @@ TEST(MachineLint, OddMeaningsAreWarnings) {
   some_line_has(lines, "\"Celsius\": unknown unit");
   some_line_has(lines, "\"T\": no transform uses this input");
   some_line_has(lines, "stations outside the travel");
-  some_line_has(lines, "\"BaseShift\": missing");
+  some_line_has(lines, "BaseShift is missing");
 }
 
 TEST(MachineLint, ReferenceMachinesHaveNothingWorseThanARemark) {

@@ -101,7 +101,8 @@ TEST(Distances, AreBetweenTheToolPointsOfTwoRows) {
     return i == 0 ? std::string(",,") : fmt::format("100,{},{}", 1 + (i * 7) % i, i % 3 == 0 ? "second" : "");
   })));
   EXPECT_NE(error_of("X[mm],Y[mm],B[deg],distance[mm],from\n0,0,0,1,a\n").find("\"a\""), std::string::npos);
-  EXPECT_NE(error_of("X[mm],Y[mm],B[deg],distance[mm],from\n0,0,0,1,1\n").find("both"), std::string::npos);
+  EXPECT_NE(error_of("X[mm],Y[mm],B[deg],distance[mm],from\n0,0,0,1,1\n").find("the row itself"),
+            std::string::npos);
 }
 
 TEST(Inclinations, AreTheToolsAxesAgainstTheHorizontal) {

@@ -61,7 +61,7 @@ TEST(GroupTable, UnknownColumnIsNamedWithThoseThatAreThere) {
     by("X[mm],x[mm],tool\n0,0.001,T1\n1,1.001,T1\n", "operator");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("there are run, tool"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("its columns are run, tool"), std::string::npos) << error.what();
   }
 }
 

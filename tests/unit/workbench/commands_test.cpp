@@ -123,7 +123,7 @@ TEST(WorkbenchCommand, ThePageGetsWhatTheProgramDeclaresOfAllowedOptionsOnly) {
       if (one["name"] == name) return one;
     return nlohmann::ordered_json();
   };
-  EXPECT_EQ(option("fit", "loss")["words"], json({"squared", "huber", "cauchy"}));
+  EXPECT_EQ(option("fit", "loss")["words"], nlohmann::ordered_json({"squared", "huber", "cauchy"}));
   EXPECT_EQ(option("fit", "loss")["default"], "squared");
   EXPECT_EQ(option("diagnose", "most")["low"], 1);
   EXPECT_EQ(option("diagnose", "most")["high"], 10);
