@@ -34,7 +34,7 @@ Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
       runner_(cycle_, board_.clock, options_.upload.tick, board_.sync, options_.sync_patience,
               options_.overruns),
       link_(exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.identity),
-      gate_(options_.upload.identity, options_.nonce, board_.identity) {
+      gate_(options_.upload.identity, options_.nonce, options_.seed, board_.identity) {
   if (board_.probe != nullptr) probing_.emplace(*board_.probe, probe_settings(options_), board_.actual);
   if (options_.in_controller) runner_.follow_caller();
 }
@@ -217,6 +217,7 @@ void Service::look_after_programs() noexcept {
 
 HalFault Service::serve(CommandLink& link, TimeUs wait, const LinkRights& rights) noexcept {
   rights_ = rights;
+  caller_ = {reinterpret_cast<std::uintptr_t>(&link), 0};
   if (options_.store_beside) return link.serve(*this, wait);
   look_after_programs();
   const HalFault fault = link.serve(*this, wait);
@@ -225,8 +226,9 @@ HalFault Service::serve(CommandLink& link, TimeUs wait, const LinkRights& rights
 }
 
 std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) {
+  signed_ = false;
   if (Gate::is_challenge(request, size)) {
-    const ChallengeReply challenge = gate_.challenge(rights_.access, now());
+    const ChallengeReply challenge = gate_.challenge(rights_.access, caller_, now());
     std::memcpy(reply + kReplyHeaderBytes, &challenge, sizeof(challenge));
     return Link::answer_with(LinkStatus::kDone, request, reply) +
            static_cast<std::uint32_t>(sizeof(challenge));
@@ -243,7 +245,8 @@ std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, s
   // not yet used.
   const bool may_need_store = options_.store_beside && Link::may_need_store(request, size);
   if (may_need_store && !desk_.free()) return Link::answer_busy(request, reply);
-  const Gate::Opened opened = gate_.open(request, size, rights_.access, now());
+  const Gate::Opened opened = gate_.open(request, size, rights_.access, caller_, now());
+  signed_ = opened.is_signed;
   if (opened.status != LinkStatus::kDone) return Link::answer_with(opened.status, request, reply);
   if (!may_need_store || !Link::needs_store(opened.request, opened.size)) {
     const std::uint32_t answered = link_.answer(opened.request, opened.size, reply, now());

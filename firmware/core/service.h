@@ -26,6 +26,7 @@ struct ServiceOptions {
   Uploader::Options upload;
   OverrunLimits overruns;
   Nonce nonce{};              // of this start of the board; must not be predictable
+  ChallengeSeed seed{};       // of this start, random and secret
   TimeUs sync_patience;       // beyond a tick's time, until the clock takes the place of the sync
   ProbeSettings probe;        // where the board has one; axes are filled in from the wiring
   bool store_beside = false;  // look_after_store() has a separate context: links never wait for the medium
@@ -105,6 +106,9 @@ class Service : private CommandHandler {
   static constexpr std::uint32_t kTicksPerEquation = 100;
 
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;
+  void comes_over(std::uint64_t connection) override { caller_.connection = connection; }
+  void ends(std::uint64_t connection) override { gate_.forget({caller_.link, connection}); }
+  bool was_signed() const override { return signed_; }
   std::uint32_t ticket() const override { return ticket_; }
   std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override {
     return desk_.collect(ticket, reply);
@@ -130,7 +134,9 @@ class Service : private CommandHandler {
   Runner runner_;
   Link link_;
   Gate gate_;
-  LinkRights rights_;  // of the link that is being served
+  LinkRights rights_;    // of the link that is being served
+  Caller caller_;        // of the request that is being answered
+  bool signed_ = false;  // the last request
   std::optional<Probing> probing_;
   StoreDesk desk_;
   std::uint32_t ticket_ = 0;  // the links'

@@ -261,8 +261,10 @@ int run_board(const Arguments& arguments) {
     std::vector<std::uint32_t> memory(kWordsBeyondCaches);
     file.service.upload.budget = measured_work_budget(devices.clock(), file.service.upload.tick, memory);
   }
-  if (::getrandom(file.service.nonce.data(), file.service.nonce.size(), 0) !=
-      static_cast<ssize_t>(file.service.nonce.size())) {
+  const auto fill = [](auto& bytes) {
+    return ::getrandom(bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size());
+  };
+  if (!fill(file.service.nonce) || !fill(file.service.seed)) {
     std::fputs("vernierd: the system gives no random numbers: signed requests are not possible\n", stderr);
     return kAnswerIsNo;
   }

@@ -79,6 +79,17 @@ class FlakyDevices : public AxisReader, public InputReader, public CorrectionWri
   SimPlant& plant_;
 };
 
+/// The link of the world: one link, over which the operator and a stranger have connections of their own.
+class Line : public CommandLink {
+ public:
+  void carries(ModbusConversation& talk, InstantNs now) { talk_ = &talk, now_ = now; }
+  HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
+
+ private:
+  ModbusConversation* talk_ = nullptr;
+  InstantNs now_;
+};
+
 /// The world. Everything that happens to the board happens in run().
 class World {
  public:
@@ -107,6 +118,7 @@ class World {
 
  private:
   void start();
+  void connect();
   void die();
   void tick();
   void hurt_before_tick();
@@ -128,6 +140,8 @@ class World {
   SimSlotStore store_{kStoreBytes};
   std::unique_ptr<Service> service_;
   std::unique_ptr<ModbusConversation> talk_;
+  Line line_;
+  std::uint64_t connections_ = 0;
   std::unique_ptr<SignOfLife> life_;
   std::set<std::uint64_t> signed_;
   struct Seen {

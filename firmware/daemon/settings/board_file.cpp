@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kMostCounts = 1e15;
 constexpr double kMostDelayUs = 40'000;  // of a probe: memory of the latch at 1 kHz, minus its settling time
+constexpr double kTicksToLargest = 200;  // of the max_step that a message proposes: 0.2 s at 1 kHz
 
 const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link", "key"};
 
@@ -38,6 +39,13 @@ toml::table read_toml(const std::string& path) {
     throw BoardError{path + ":" + std::to_string(error.source().begin.line) + ": " +
                      std::string(error.description())};
   }
+}
+
+std::string number_text(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
 }
 
 /// Reads the settings of one table and records which of them were not read.
@@ -82,12 +90,6 @@ class Table {
     for (const auto& [key, node] : table_)
       if (!asked_.contains(std::string(key.str()))) fail("unknown setting " + std::string(key.str()), &node);
   }
-  static std::string number_text(double value) {
-    std::string text = std::to_string(value);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text;
-  }
 
  private:
   const toml::table& table_;
@@ -128,6 +130,9 @@ AxisSetting setting_of(Table& settings, bool rotary, TimeUs tick) {
     setting.limits.step = std::max<std::int64_t>(counts(speed * tick_s * scale), 1);
     setting.motion.slew = std::clamp<std::int64_t>(counts(share * speed * tick_s * scale), 1, INT32_MAX);
   }
+  const double step = settings.number("max_step", 0, 1e-9, 1e3);
+  if (step > 0)
+    setting.motion.slew = std::min(setting.motion.slew, std::max<std::int64_t>(counts(step * scale), 1));
   if (acceleration > 0)
     setting.motion.acceleration =
         std::clamp<std::int64_t>(counts(share * acceleration * tick_s * tick_s * scale), 1, INT32_MAX);
@@ -159,8 +164,9 @@ void apply_calibration(const std::string& board_path, SignalSource& output) {
   settings.nothing_else();
 }
 
-/// The limits of a real output are set by the board, outside of every image.
-void require_limits(const Table& settings, const SignalSource& output, bool rotary) {
+/// The limits of a real output are set by the board, outside of every image: an image without a slew limit
+/// moves it no faster.
+void require_limits(Table& settings, const SignalSource& output, bool rotary) {
   if (output.kind.empty() || output.kind == "sim") return;
   const std::string unit = rotary ? "deg" : "mm";
   const auto require = [&](const char* name, const std::string& mend) {
@@ -172,6 +178,11 @@ void require_limits(const Table& settings, const SignalSource& output, bool rota
           "max_correction = 0.1  # " + unit + ", the most that is ever added to the command");
   require("max_speed",
           "max_speed = 500  # " + unit + "/s of the axis; correction_share of it moves a correction");
+  if (settings.has("max_step") || settings.has("max_acceleration")) return;
+  const double step = std::max(settings.number("max_correction", 0, 1e-6, 1e3) / kTicksToLargest, 1e-6);
+  settings.fail("max_step or max_acceleration is missing: an output of kind " + output.kind +
+                " needs one of them; add max_step = " + number_text(step) + "  # " + unit +
+                ", the most that a correction changes in one tick");
 }
 
 void read_axis(BoardFile& board, const std::string& name, const toml::table& table) {
