@@ -172,7 +172,7 @@ Dual Translator::lag(const Dual& u, const Dual& tau) {
 
 // Products of such values, which derivatives and bounds need, stay finite; no fixed-point number holds them.
 void Translator::refuse_beyond_numbers(NodeId id) const {
-  constexpr double kLargest = 1e100;
+  constexpr double kLargest = 1e100;  // its cube is finite in double precision (at most 1.8e308)
   if (!(g_[id].range.magnitude() <= kLargest))
     throw std::domain_error("a value that can exceed 1e100 over the ranges of the axes");
 }

@@ -204,7 +204,7 @@ class GatewayPublisher {
       auto payload = decode(record.payload);
       // A machine's name is a level of a topic (MQTT 5.0, 4.7).
       if (!payload || record.machine.empty() || record.machine.find_first_of("+#/") != std::string::npos) {
-        desk_.with_spool([&](Spool& spool) { spool.set_aside(record.number); });
+        desk_.with_spool([&](Spool& spool) { spool.set_aside({record.number}); });
         continue;
       }
       const bool old = record.time_ms + kFreshMs < wall_ms();

@@ -9,13 +9,14 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tools/registry/cells.h"
 #include "tools/registry/digest.h"
 #include "tools/registry/open_database.h"
 #include "tools/text/error.h"
+#include "tools/text/files.h"
 
 namespace vernier::fleet {
 namespace {
@@ -112,34 +113,39 @@ void Spool::take(std::vector<SpoolRecord>& records) {
 std::vector<SpoolRecord> Spool::after(std::uint64_t number, std::size_t most) {
   std::vector<SpoolRecord> records;
   for (bool damaged = true; damaged && records.empty();) {
-    damaged = false;
+    std::vector<std::uint64_t> away;
     for (const registry::Row& row : database_->run("SELECT number, machine, time_ms, payload FROM record "
                                                    "WHERE number > $1 ORDER BY number LIMIT $2",
-                                                   {counted(number), counted(most)})) {
-      if (auto record = record_of(row)) {
+                                                   {counted(number), counted(most)}))
+      if (auto record = record_of(row))
         records.push_back(std::move(*record));
-      } else {
-        set_aside(count(row[0]));
-        damaged = true;
-      }
-    }
+      else
+        away.push_back(count(row[0]));
+    set_aside(away);
+    damaged = !away.empty();
   }
   return records;
 }
 
-void Spool::set_aside(std::uint64_t number) {
-  for (const registry::Row& row :
-       database_->run("SELECT machine, time_ms, payload FROM record WHERE number = $1", {counted(number)})) {
-    const nlohmann::json line = {{"number", number},
-                                 {"machine", registry::words(row[0])},
-                                 {"time_ms", registry::words(row[1])},
-                                 {"payload", registry::words(row[2])}};
-    std::ofstream file(aside_, std::ios::app);
-    file << line.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) << '\n' << std::flush;
-    if (!file) throw registry::DatabaseError(aside_ + ": a damaged record cannot be written");
+void Spool::set_aside(const std::vector<std::uint64_t>& numbers) {
+  if (numbers.empty()) return;
+  std::string lines = std::filesystem::exists(aside_) ? text::read_file(aside_) : "";
+  registry::Transaction transaction(*database_);
+  for (const std::uint64_t number : numbers) {
+    for (const registry::Row& row : database_->run(
+             "SELECT machine, time_ms, payload FROM record WHERE number = $1", {counted(number)})) {
+      const nlohmann::json line = {{"number", number},
+                                   {"machine", registry::words(row[0])},
+                                   {"time_ms", registry::words(row[1])},
+                                   {"payload", registry::words(row[2])}};
+      lines += line.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) + "\n";
+    }
+    database_->run("DELETE FROM record WHERE number = $1", {counted(number)});
   }
-  database_->run("DELETE FROM record WHERE number = $1", {counted(number)});
-  ++count_aside_;
+  // Before the records leave the store: after a power failure a record may be in both, never in none.
+  text::write_file(aside_, lines);
+  transaction.commit();
+  count_aside_ += numbers.size();
 }
 
 void Spool::stored(std::uint64_t number) { stored_ = std::max(stored_, std::min(number, last_)); }

@@ -32,12 +32,11 @@ class Spool {
   /// Writes records with numbers, and removes the records up to stored(), in one transaction. Throws
   /// DatabaseError.
   void take(std::vector<SpoolRecord>& records);
-  /// The records after `number`, at most `most`, in order. Damaged records are set aside. Throws
-  /// DatabaseError.
+  /// The records after `number`, at most `most`, in order. Damaged records are set aside (set_aside()).
   std::vector<SpoolRecord> after(std::uint64_t number, std::size_t most);
-  /// Moves a record that cannot be read to the file aside(), so that it does not stop later records. Throws
-  /// DatabaseError if that file cannot be written; the record then stays.
-  void set_aside(std::uint64_t number);
+  /// Moves records that cannot be read to the file aside(), so that they do not stop later records. Throws
+  /// InputError if that file cannot be written; the records then stay. Throws DatabaseError.
+  void set_aside(const std::vector<std::uint64_t>& numbers);
   /// Returns the number of records that were set aside since the spool was opened, and their file (one JSON
   /// object a line, with the cells as they were).
   std::uint64_t count_aside() const { return count_aside_; }

@@ -68,7 +68,7 @@ TEST_F(SpoolFile, DamagedRecordsAreSetAsideAndTheOthersGoThrough) {
   EXPECT_EQ(records[0].number, 3u);
   EXPECT_EQ(spool.after(0, 10).size(), 3u);
   EXPECT_EQ(spool.count_aside(), 3u);
-  spool.set_aside(5);  // its payload says nothing to the gateway
+  spool.set_aside({5});  // its payload says nothing to the gateway
   records = spool.after(0, 10);
   ASSERT_EQ(records.size(), 2u);
   EXPECT_EQ(records[1].number, 6u);
