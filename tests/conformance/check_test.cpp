@@ -260,7 +260,12 @@ TEST_F(Check, SaysTheMostThatACorrectionChangesInATick) {
   const std::pair<const char*, const char*> kSteps[] = {
       {"max_step = 0.001\n", "; at most 1 um a tick"},
       {"max_step = 0.5\n", "; at most 10 um a tick"},  // a tenth of 100 mm/s
-      {"max_acceleration = 5000\n", "; at most 10 um a tick, 0.5 more in each"}};
+      {"max_acceleration = 5000\n", "; at most 10 um a tick, 0.5 more in each"},
+      {"max_acceleration = 5000\n",
+       "default  axis.X: not set; a default is max_step = 0.001  # mm in one tick\n"},
+      // Ten times 0.4 mm over 800 mm, at 0.1 mm in a tick.
+      {"max_acceleration = 5000\nhigh = 800\n",
+       "axis.X: not set; a default is max_step = 0.0005  # mm in one tick\n"}};
   for (const auto& [setting, said_of_it] : kSteps) {
     write(replaced(kBoard, "max_step = 0.001\n", setting));
     const Said said = run("--check");

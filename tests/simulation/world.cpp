@@ -119,6 +119,9 @@ void World::connect() {
 
 void World::die() {
   ++counts.deaths;
+  out_since_death_ = pending_out_ = sure_out_;
+  if (looks_with_fault_ > 2) out_since_death_ = kAllAxes;
+  looks_with_fault_ = 0;
   service_ = nullptr;
   start();
 }
@@ -166,6 +169,9 @@ void World::check_drives() {
     const AxisTravel now = plant_->written(axis);
     need(std::abs((now - before_[axis]).count) <= kSlew[axis], "no drive moves faster than its slew limit");
     need(std::abs(now.count) <= kBoardLimit, "no drive goes beyond the board's limit");
+    const bool out = (out_since_death_ >> axis & 1) != 0;
+    need(!out || now == AxisTravel{}, "after a death, what was taken out waits for an operator");
+    counts.kept_out += out ? 1 : 0;
     before_[axis] = now;
   }
 }
@@ -219,6 +225,15 @@ void World::serve() {
     return;
   }
   service_->look_after_store();
+  note_out();
+}
+
+// A setting counts as stored when the store has looked after it twice since: once may have been before the
+// tick that took the command.
+void World::note_out() {
+  if (store_.dead()) return;
+  looks_with_fault_ = service_->cycle().latched() != Fault::kNone ? looks_with_fault_ + 1 : 0;
+  if (++looks_since_ > 2 && !service_->operator_memory().refused()) sure_out_ |= pending_out_;
 }
 
 void World::tick() {
@@ -278,8 +293,7 @@ std::vector<std::uint8_t> World::exchange_frame(const std::vector<std::uint8_t>&
     }
     if (talk_->broken(clock_.now()) || times == 0) break;
   }
-  if (reply.empty() && death == counts.deaths)
-    connect();
+  if (reply.empty() && death == counts.deaths) connect();
   return reply;
 }
 

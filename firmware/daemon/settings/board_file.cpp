@@ -24,7 +24,10 @@ namespace {
 
 constexpr double kMostCounts = 1e15;
 constexpr double kMostDelayUs = 40'000;  // of a probe: memory of the latch at 1 kHz, minus its settling time
-constexpr double kTicksToLargest = 200;  // of the max_step that a message proposes: 0.2 s at 1 kHz
+constexpr double kTicksToLargest = 200;  // of a default max_step without a known travel: 0.2 s at 1 kHz
+// Of a default max_step: a correction that goes from one end of its range to the other in a tenth of the
+// travel.
+constexpr double kSteepness = 10;
 
 const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link", "key"};
 
@@ -164,11 +167,23 @@ void apply_calibration(const std::string& board_path, SignalSource& output) {
   settings.nothing_else();
 }
 
+/// Default of max_step, mm or deg: the change of a steep correction in one tick at max_speed. Without a known
+/// travel, a share of max_correction.
+double default_step(Table& settings, const AxisEntry& axis, TimeUs tick) {
+  const double largest = settings.number("max_correction", 0, 1e-6, 1e3);
+  const double speed = settings.number("max_speed", 0, 1e-6, 1e6);
+  const double travel = axis.wiring.rotary && axis.wiring.rollover ? 360 : axis.high - axis.low;
+  const double in_a_tick = speed * static_cast<double>(tick.count) * 1e-6;
+  const double step = travel > 0 ? kSteepness * 2 * largest / travel * in_a_tick : largest / kTicksToLargest;
+  return std::max(step, 1e-6);
+}
+
 /// The limits of a real output are set by the board, outside of every image: an image without a slew limit
 /// moves it no faster.
-void require_limits(Table& settings, const SignalSource& output, bool rotary) {
+void require_limits(Table& settings, AxisEntry& axis, TimeUs tick) {
+  const SignalSource& output = axis.output;
   if (output.kind.empty() || output.kind == "sim") return;
-  const std::string unit = rotary ? "deg" : "mm";
+  const std::string unit = axis.wiring.rotary ? "deg" : "mm";
   const auto require = [&](const char* name, const std::string& mend) {
     if (!settings.has(name))
       settings.fail(std::string(name) + " is missing: an output of kind " + output.kind + " needs it; add " +
@@ -178,10 +193,12 @@ void require_limits(Table& settings, const SignalSource& output, bool rotary) {
           "max_correction = 0.1  # " + unit + ", the most that is ever added to the command");
   require("max_speed",
           "max_speed = 500  # " + unit + "/s of the axis; correction_share of it moves a correction");
-  if (settings.has("max_step") || settings.has("max_acceleration")) return;
-  const double step = std::max(settings.number("max_correction", 0, 1e-6, 1e3) / kTicksToLargest, 1e-6);
+  if (settings.has("max_step")) return;
+  const std::string step = number_text(default_step(settings, axis, tick));
+  axis.default_step = "max_step = " + step + "  # " + unit + " in one tick";
+  if (settings.has("max_acceleration")) return;
   settings.fail("max_step or max_acceleration is missing: an output of kind " + output.kind +
-                " needs one of them; add max_step = " + number_text(step) + "  # " + unit +
+                " needs one of them; add max_step = " + step + "  # " + unit +
                 ", the most that a correction changes in one tick");
 }
 
@@ -204,7 +221,7 @@ void read_axis(BoardFile& board, const std::string& name, const toml::table& tab
   axis.position = source_of(settings.table("position"), board.path, "axis." + name + ".position");
   axis.output = source_of(settings.table("output"), board.path, "axis." + name + ".output");
   if (axis.position.kind.empty()) settings.fail("position is missing");
-  require_limits(settings, axis.output, axis.wiring.rotary);
+  require_limits(settings, axis, board.service.upload.tick);
   apply_calibration(board.path, axis.output);
   settings.nothing_else();
   board.service.wiring.axes.push_back(axis.wiring);
