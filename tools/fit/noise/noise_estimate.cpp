@@ -20,9 +20,9 @@ namespace {
 class Likelihood {
  public:
   Likelihood(const NoiseLayout& layout, const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted,
-             bool own_from_u)
+             double least_own)
       : layout_(layout),
-        own_from_u_(own_from_u),
+        least_variance_(least_own * least_own),
         freedom_(static_cast<double>(residual.size() - fitted.cols())) {
     const auto n = static_cast<double>(residual.size()), k = static_cast<double>(fitted.cols());
     const bool whole = n * k * k < kMostNoiseProducts;
@@ -45,15 +45,14 @@ class Likelihood {
       squares -= moment.dot(factor.solve(moment));
       value += 2 * factor.matrixLLT().diagonal().array().log().sum();
     }
-    double variance = std::max(squares, 1e-300) / freedom_;
-    if (own_from_u_) variance = std::max(variance, 1.0);
+    const double variance = std::max(std::max(squares, 1e-300) / freedom_, least_variance_);
     if (own != nullptr) *own = std::sqrt(variance);
     return value + freedom_ * std::log(variance) + squares / variance;
   }
 
  private:
   const NoiseLayout& layout_;
-  bool own_from_u_;  // it is at least 1
+  double least_variance_;  // of the independent part
   double freedom_;
   Eigen::MatrixXd readings_;
 };
@@ -161,14 +160,14 @@ Eigen::VectorXd held(const Eigen::VectorXd& residual, double spreads) {
 }
 
 NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd& residual,
-                               const Eigen::MatrixXd& fitted, bool own_from_u,
+                               const Eigen::MatrixXd& fitted, double least_own,
                                const NoiseThresholds& limits) {
   NoiseModel model;
   model.in_time = layout.in_time;
   if (residual.size() - fitted.cols() < static_cast<Eigen::Index>(limits.least_freedom) ||
       residual.squaredNorm() <= 0)
     return model;
-  const Likelihood likelihood(layout, held(residual, limits.held), fitted, own_from_u);
+  const Likelihood likelihood(layout, held(residual, limits.held), fitted, least_own);
   const double least_log_time = std::log(layout.step), most_log_time = std::log(10 * layout.span);
   NoiseParts parts;
   parts.in_time = layout.in_time;
@@ -259,8 +258,8 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
 
 /// Returns independent noise of the size of the residual.
 NoiseModel white_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
-                       const Eigen::MatrixXd& fitted, bool own_from_u, const NoiseThresholds& limits) {
-  const Likelihood likelihood(layout, held(residual, limits.held), fitted, own_from_u);
+                       const Eigen::MatrixXd& fitted, double least_own, const NoiseThresholds& limits) {
+  const Likelihood likelihood(layout, held(residual, limits.held), fitted, least_own);
   NoiseModel model;
   model.in_time = layout.in_time;
   model.log_likelihood = -likelihood({}, &model.own) / 2;
@@ -276,12 +275,14 @@ std::optional<NoiseModel> estimate_beside(const NoiseLayout& layout, const Eigen
   // Readings without noise: a likelihood would fit their rounding.
   const double scatter =
       residual.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(1, residual.size())));
-  if (with_u && scatter < limits.far_below_u) return white_noise(layout, residual, fitted, true, limits);
-  NoiseModel free = estimate_components(layout, residual, fitted, false, limits);
+  if (with_u && scatter < limits.far_below_u) return white_noise(layout, residual, fitted, 1, limits);
+  // Exact copies of a reading have no independent noise, and no ratio to it.
+  const double least_own = with_u ? limits.far_below_u : 0;
+  NoiseModel free = estimate_components(layout, residual, fitted, least_own, limits);
   if (!with_u) return free.own < limits.least_own_part * free.shared() ? std::nullopt : std::optional(free);
   if (free.log_likelihood == 0) return free;  // too few readings, or no residual
-  if (free.independent()) return white_noise(layout, residual, fitted, true, limits);
-  if (free.total() < limits.near_u) return estimate_components(layout, residual, fitted, true, limits);
+  if (free.independent()) return white_noise(layout, residual, fitted, 1, limits);
+  if (free.total() < limits.near_u) return estimate_components(layout, residual, fitted, 1, limits);
   const double scale = std::max(1.0, 1 / free.total());
   for (double* part : {&free.own, &free.pose, &free.run, &free.drift}) *part *= scale;
   return free;
@@ -292,7 +293,7 @@ std::optional<NoiseModel> estimate_beside(const NoiseLayout& layout, const Eigen
 NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                           const Eigen::MatrixXd& fitted, bool with_u, const NoiseThresholds& limits) {
   const std::optional<NoiseModel> alone = estimate_beside(layout, residual, fitted, with_u, limits);
-  if (!alone) return white_noise(layout, residual, fitted, false, limits);
+  if (!alone) return white_noise(layout, residual, fitted, 0, limits);
   const NoiseModel& without = *alone;
   // Adds steps of the instrument one after the other. Each must explain more than chance at that
   // number of rows. They are accepted only if the whole is better than a drift without them.
