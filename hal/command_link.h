@@ -11,12 +11,19 @@ namespace vernier {
 class CommandHandler {
  public:
   virtual ~CommandHandler() = default;
+  /// Names the connection of the next requests: a number that the link uses for no other connection later. A
+  /// link without connections does not call this function. setup.
+  virtual void comes_over(std::uint64_t connection) { static_cast<void>(connection); }
+  /// Reports that a connection has ended. setup.
+  virtual void ends(std::uint64_t connection) { static_cast<void>(connection); }
   /// Returned by answer() if the reply takes longer because a medium is at work.
   static constexpr std::uint32_t kLater = UINT32_MAX;
 
   /// request: any bytes; reply: room for the longest. answer() returns the bytes of the reply, 0: no reply,
   /// or kLater: the link then calls later() for the reply, and serves other clients meanwhile. setup.
   virtual std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) = 0;
+  /// True if the request of the last answer() had a valid signature. setup.
+  virtual bool was_signed() const { return false; }
   /// Argument for later(), valid right after answer() returned kLater. setup.
   virtual std::uint32_t ticket() const { return 0; }
   /// Fetches the deferred reply. Returns its bytes, kLater while the reply is being made, 0 if no reply is

@@ -12,7 +12,7 @@
 /// the reply repeats the number.
 namespace vernier {
 
-constexpr std::uint16_t kLinkVersion = 2;
+constexpr std::uint16_t kLinkVersion = 3;
 constexpr std::uint32_t kMaxRequestBytes = 240;
 constexpr std::uint32_t kMaxReplyBytes = 244;
 constexpr std::uint32_t kRequestHeaderBytes = 2, kReplyHeaderBytes = 3;
@@ -55,7 +55,7 @@ enum class LinkStatus : std::uint8_t {
   kNotAllowed = 6,    // not over this link
   kUnsigned = 7,      // only in a signed request
   kBadSignature = 8,  // it does not fit, or its key is not trusted for that
-  kStale = 9,         // of another nonce, or of a challenge that is used up or too old: ask for another
+  kStale = 9,         // of no open challenge of this connection (used up, too old): ask for another
 };
 constexpr std::uint8_t kLinkStatusCount = static_cast<std::uint8_t>(LinkStatus::kStale) + 1;
 
@@ -94,10 +94,11 @@ struct HelloReply {
   char board[kBoardNameBytes], board_class[kBoardNameBytes];
 };
 struct ChallengeReply {
-  std::uint8_t nonce[16];
-  std::uint32_t counter;  // of this challenge: for one request in the next ten seconds
-  std::uint8_t access;    // LinkAccess of the link that it came over
-  std::uint8_t keys;      // that the board trusts; 0: no request needs a signature
+  std::uint8_t nonce[16];      // of this start of the board
+  std::uint8_t challenge[16];  // random: for one request over the same connection in the next ten seconds;
+                               // zeros over a link on which no request needs a signature
+  std::uint8_t access;         // LinkAccess of the link that it came over
+  std::uint8_t keys;           // that the board trusts; 0: no request needs a signature
   std::uint8_t reserved[2];
 };
 /// Proved identity of a board: the signature is over IdentityHead with the name in HelloReply.
@@ -107,8 +108,8 @@ struct IdentifyReply {
   std::uint8_t signature[64];    // Ed25519ph
 };
 struct SignedRequest {
-  std::uint8_t key[8];  // first bytes of the public key
-  std::uint32_t counter;
+  std::uint8_t key[8];         // first bytes of the public key
+  std::uint8_t challenge[16];  // of the ChallengeReply that it answers
   std::uint8_t signature[64];
 };
 struct LinkTick {
@@ -169,16 +170,16 @@ struct LinkTouchAxis {
   std::uint32_t uncertainty;           // standard, counts; the largest value: at least that
 };
 #pragma pack(pop)
-static_assert(sizeof(ChallengeReply) == 24);
-static_assert(offsetof(ChallengeReply, nonce) == 0 && offsetof(ChallengeReply, counter) == 16 &&
-              offsetof(ChallengeReply, access) == 20 && offsetof(ChallengeReply, keys) == 21 &&
-              offsetof(ChallengeReply, reserved) == 22);
+static_assert(sizeof(ChallengeReply) == 36);
+static_assert(offsetof(ChallengeReply, nonce) == 0 && offsetof(ChallengeReply, challenge) == 16 &&
+              offsetof(ChallengeReply, access) == 32 && offsetof(ChallengeReply, keys) == 33 &&
+              offsetof(ChallengeReply, reserved) == 34);
 static_assert(sizeof(IdentifyReply) == 112);
 static_assert(offsetof(IdentifyReply, start_nonce) == 0 && offsetof(IdentifyReply, key) == 16 &&
               offsetof(IdentifyReply, signature) == 48);
-static_assert(sizeof(SignedRequest) == 76);
-static_assert(offsetof(SignedRequest, key) == 0 && offsetof(SignedRequest, counter) == 8 &&
-              offsetof(SignedRequest, signature) == 12);
+static_assert(sizeof(SignedRequest) == 88);
+static_assert(offsetof(SignedRequest, key) == 0 && offsetof(SignedRequest, challenge) == 8 &&
+              offsetof(SignedRequest, signature) == 24);
 static_assert(sizeof(HelloReply) == 87);
 static_assert(offsetof(HelloReply, link_version) == 0 && offsetof(HelloReply, image_version) == 2 &&
               offsetof(HelloReply, tick_us) == 4 && offsetof(HelloReply, capacity) == 8 &&

@@ -59,15 +59,15 @@ constexpr std::uint32_t kSignedHeaderBytesV1 = 64;
 
 /// Head of a signed request. The signature (Ed25519ph) covers this head, the op and the payload.
 struct SignedRequestHead {
-  std::uint8_t magic[8];   // kRequestMagic
-  std::uint8_t nonce[16];  // of the board, new with each start
-  std::uint32_t counter;   // of a challenge of the last ten seconds, which is used up by it
+  std::uint8_t magic[8];       // kRequestMagic
+  std::uint8_t nonce[16];      // of the board, new with each start
+  std::uint8_t challenge[16];  // of the last ten seconds over this connection, which is used up by it
   char board[kBoardNameBytes];
 };
-static_assert(sizeof(SignedRequestHead) == 52);
+static_assert(sizeof(SignedRequestHead) == 64);
 static_assert(offsetof(SignedRequestHead, magic) == 0 && offsetof(SignedRequestHead, nonce) == 8 &&
-              offsetof(SignedRequestHead, counter) == 24 && offsetof(SignedRequestHead, board) == 28);
-constexpr std::uint8_t kRequestMagic[8] = {'V', 'E', 'R', 'N', 'C', 'M', 'D', '1'};
+              offsetof(SignedRequestHead, challenge) == 24 && offsetof(SignedRequestHead, board) == 40);
+constexpr std::uint8_t kRequestMagic[8] = {'V', 'E', 'R', 'N', 'C', 'M', 'D', '2'};
 
 constexpr std::uint32_t kPublicKeyBytes = 32;
 

@@ -30,11 +30,12 @@ Service::Service(ServiceOptions options, const Board& board, SlotStore& store)
       board_(board),
       exchange_(options_.ticks_kept, options_.touches_kept),
       uploader_(store, options_.wiring, exchange_, options_.upload),
+      operator_(store, options_.wiring, exchange_),
       cycle_(options_.wiring, options_.upload.tick, board_, options_.limits),
       runner_(cycle_, board_.clock, options_.upload.tick, board_.sync, options_.sync_patience,
               options_.overruns),
       link_(exchange_, uploader_, options_.wiring, options_.upload.tick, options_.upload.identity),
-      gate_(options_.upload.identity, options_.nonce, board_.identity) {
+      gate_(options_.upload.identity, options_.nonce, options_.seed, board_.identity) {
   if (board_.probe != nullptr) probing_.emplace(*board_.probe, probe_settings(options_), board_.actual);
   if (options_.in_controller) runner_.follow_caller();
 }
@@ -52,7 +53,7 @@ void Service::read_enable() noexcept {
   bool on = false;
   const bool before = enabled_;
   enabled_ = board_.enable->read_line(on) == HalFault::kNone && on;
-  if (enabled_ && !before) activated_ = taken_out_ = false, to_clear_ = options_.clear_on_enable;
+  if (enabled_ && !before) activated_ = false, to_clear_ = options_.clear_on_enable;
 }
 
 void Service::tell_health(const TickReport& report) noexcept {
@@ -95,7 +96,7 @@ Command Service::next_command() noexcept {
   if (to_clear_ && asked == Command::kNone && cycle_.latched() != Fault::kNone)
     return cycle_.mode() == Mode::kFaulted ? Command::kClearFault : Command::kNone;
   to_clear_ = false;
-  if (asked != Command::kNone || !options_.activate || activated_) return asked;
+  if (asked != Command::kNone || !options_.activate || activated_ || taken_out_) return asked;
   if (cycle_.mode() != Mode::kReady) return Command::kNone;
   activated_ = true;
   return Command::kActivate;
@@ -111,6 +112,7 @@ TickReport Service::tick() noexcept {
   const TimeUs time = runner_.time();
   const TickReport report =
       runner_.step(next_command(), uploader_.image_lost() ? Fault::kImageLost : Fault::kNone);
+  publish_operator();
   if (probing_) probing_->after_tick(cycle_, report, runner_.woke(), time, exchange_);
   tell_health(report);
   publish(report);
@@ -186,20 +188,41 @@ void Service::publish_health() noexcept {
   exchange_.health.publish(r);
 }
 
+// The values that a hold kept are lost: a start after a hold waits for an operator, as after a deactivation.
+void Service::restore() noexcept {
+  const OperatorState state = operator_.load();
+  const bool known = state.fault < kFaultCount;
+  taken_out_ = state.out != 0 || state.holding != 0 || !known;
+  if (known && state.fault != 0) {
+    cycle_.restore(static_cast<Fault>(state.fault));
+    activated_ = true;  // before the fault: clearing the fault does not activate
+  }
+  publish_operator();
+}
+
+void Service::publish_operator() noexcept {
+  const std::uint32_t out = taken_out_ ? 1u : 0u, holding = cycle_.holding() ? 1u << 8 : 0u;
+  exchange_.operator_said.store(out | holding | static_cast<std::uint32_t>(cycle_.latched()) << 16,
+                                std::memory_order_release);
+}
+
 UploadResult Service::boot() {
   const UploadResult result = uploader_.boot();
+  restore();
   guard();
   return result;
 }
 
 UploadResult Service::boot_with(std::span<const std::uint8_t> image) {
   const UploadResult result = uploader_.boot_with(image);
+  restore();
   guard();
   return result;
 }
 
 bool Service::look_after_store() noexcept {
   uploader_.look_after_store();
+  operator_.save();
   if (!desk_.asked()) return false;
   if (!answered_) answer_size_ = link_.answer(desk_.request(), desk_.size(), desk_.reply(), now());
   // An image is reverted when the tick has been offered another one, shortly after the command.
@@ -217,6 +240,7 @@ void Service::look_after_programs() noexcept {
 
 HalFault Service::serve(CommandLink& link, TimeUs wait, const LinkRights& rights) noexcept {
   rights_ = rights;
+  caller_ = {reinterpret_cast<std::uintptr_t>(&link), 0};
   if (options_.store_beside) return link.serve(*this, wait);
   look_after_programs();
   const HalFault fault = link.serve(*this, wait);
@@ -225,8 +249,9 @@ HalFault Service::serve(CommandLink& link, TimeUs wait, const LinkRights& rights
 }
 
 std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) {
+  signed_ = false;
   if (Gate::is_challenge(request, size)) {
-    const ChallengeReply challenge = gate_.challenge(rights_.access, now());
+    const ChallengeReply challenge = gate_.challenge(rights_.access, caller_, now());
     std::memcpy(reply + kReplyHeaderBytes, &challenge, sizeof(challenge));
     return Link::answer_with(LinkStatus::kDone, request, reply) +
            static_cast<std::uint32_t>(sizeof(challenge));
@@ -243,7 +268,8 @@ std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, s
   // not yet used.
   const bool may_need_store = options_.store_beside && Link::may_need_store(request, size);
   if (may_need_store && !desk_.free()) return Link::answer_busy(request, reply);
-  const Gate::Opened opened = gate_.open(request, size, rights_.access, now());
+  const Gate::Opened opened = gate_.open(request, size, rights_.access, caller_, now());
+  signed_ = opened.is_signed;
   if (opened.status != LinkStatus::kDone) return Link::answer_with(opened.status, request, reply);
   if (!may_need_store || !Link::needs_store(opened.request, opened.size)) {
     const std::uint32_t answered = link_.answer(opened.request, opened.size, reply, now());

@@ -12,6 +12,7 @@
 #include "firmware/core/link/link.h"
 #include "firmware/core/link/store_desk.h"
 #include "firmware/core/link/uploader.h"
+#include "firmware/core/operator_memory.h"
 #include "firmware/core/probing.h"
 #include "hal/board.h"
 #include "hal/command_link.h"
@@ -26,12 +27,14 @@ struct ServiceOptions {
   Uploader::Options upload;
   OverrunLimits overruns;
   Nonce nonce{};              // of this start of the board; must not be predictable
+  ChallengeSeed seed{};       // of this start, random and secret
   TimeUs sync_patience;       // beyond a tick's time, until the clock takes the place of the sync
   ProbeSettings probe;        // where the board has one; axes are filled in from the wiring
   bool store_beside = false;  // look_after_store() has a separate context: links never wait for the medium
   std::uint32_t healthy_toggle =
       0;                         // ticks between two edges of the healthy line while all is well; 0: it is on
-  bool activate = false;         // bring the correction in when the board becomes ready, once for each enable
+  bool activate = false;         // bring the correction in when the board becomes ready, once for each
+                                 // enable, unless the operator deactivated or held the correction
   bool clear_on_enable = false;  // switching the enable line on clears a fault that is latched; with
                                  // `activate` the correction then comes in, as after every clearing
   bool in_controller = false;    // tick() is called in the controller's own cycle (Runner::follow_caller)
@@ -54,7 +57,8 @@ class Service : private CommandHandler {
   /// board, store: outlive the service. setup.
   Service(ServiceOptions options, const Board& board, SlotStore& store);
 
-  /// Checks the image of the store and gives it to the first tick. setup.
+  /// Checks the image of the store and gives it to the first tick. Restores the last settings of the operator
+  /// and the latched fault. setup.
   UploadResult boot();
   /// Starts like boot(), but runs an unsigned image given at the start of the board; the store is not
   /// changed. setup.
@@ -92,6 +96,11 @@ class Service : private CommandHandler {
   /// Does the duties of the guardian and of the store in one context, one after the other. setup.
   void look_after_programs() noexcept;
 
+  /// True if an operator deactivated the correction, or held it before this start. For the context of boot().
+  bool deactivated() const noexcept { return taken_out_; }
+  /// The stored state of the operator.
+  const OperatorMemory& operator_memory() const noexcept { return operator_; }
+
   const Cycle& cycle() const noexcept { return cycle_; }
   const Runner& runner() const noexcept { return runner_; }
   Cycle& cycle() noexcept { return cycle_; }
@@ -105,6 +114,9 @@ class Service : private CommandHandler {
   static constexpr std::uint32_t kTicksPerEquation = 100;
 
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;
+  void comes_over(std::uint64_t connection) override { caller_.connection = connection; }
+  void ends(std::uint64_t connection) override { gate_.forget({caller_.link, connection}); }
+  bool was_signed() const override { return signed_; }
   std::uint32_t ticket() const override { return ticket_; }
   std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override {
     return desk_.collect(ticket, reply);
@@ -113,6 +125,8 @@ class Service : private CommandHandler {
   bool give(std::uint16_t command) override;
   TimeUs now() noexcept { return TimeUs(board_.clock.now().count / 1000); }
   void take_over() noexcept;
+  void restore() noexcept;
+  void publish_operator() noexcept;
   Command next_command() noexcept;
   void read_enable() noexcept;
   void tell_health(const TickReport& report) noexcept;
@@ -126,11 +140,14 @@ class Service : private CommandHandler {
   Board board_;
   Exchange exchange_;
   Uploader uploader_;
+  OperatorMemory operator_;
   Cycle cycle_;
   Runner runner_;
   Link link_;
   Gate gate_;
-  LinkRights rights_;  // of the link that is being served
+  LinkRights rights_;    // of the link that is being served
+  Caller caller_;        // of the request that is being answered
+  bool signed_ = false;  // the last request
   std::optional<Probing> probing_;
   StoreDesk desk_;
   std::uint32_t ticket_ = 0;  // the links'
@@ -144,7 +161,7 @@ class Service : private CommandHandler {
   EquationRecord equation_;
   WeightQ16 weight_ = kFullWeight;
   bool activated_ = false, ending_ = false, enabled_ = true, to_clear_ = false;
-  bool taken_out_ = false;  // by a command, since the line was switched on
+  bool taken_out_ = false;  // by a command, also one before this start; only a command activates again
   std::uint32_t until_edge_ = 0;
   bool line_ = false;
   enum class Told : std::uint8_t { kNothing, kUnwell, kWell } told_ = Told::kNothing;

@@ -23,6 +23,7 @@
 #include "hal/linux/file_lock.h"
 #include "hal/linux/hardware_watchdog.h"
 #include "hal/linux/iio/iio_buffer.h"
+#include "hal/linux/modbus/modbus_input.h"
 #include "hal/linux/monotonic_clock.h"
 #include "hal/linux/sampled_input.h"
 #include "hal/linux/wake_up.h"
@@ -443,13 +444,18 @@ std::vector<std::string> Devices::output_budget() const {
         text, sizeof text, "axis.%s.output: %.6g to %.6g %s, step %.4g, error at most %.4g (rms %.4g)",
         axis.wiring.name.c_str(), std::min(of(scale.low), of(scale.high)),
         std::max(of(scale.low), of(scale.high)), name, step, step / 2, step / std::sqrt(12.0));
+    const MotionBounds& motion = parts_->file.service.limits.axis[output.axis].motion;
+    const double slew = static_cast<double>(motion.slew) / unit;
+    const auto add = [&](const char* form, auto... values) {
+      used += std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used), form, values...);
+    };
+    add("; at most %.4g %s a tick", slew, name);
+    if (motion.acceleration != kAnyAcceleration)
+      add(", %.4g more in each", static_cast<double>(motion.acceleration) / unit);
     if (const double delay_ms = axis.output.number("delay_ms", 0); delay_ms > 0) {
       const double tick_ms = static_cast<double>(parts_->file.service.upload.tick.count) * 1e-3;
-      const auto slew =
-          static_cast<double>(parts_->file.service.limits.axis[output.axis].motion.slew) / unit / tick_ms;
-      std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used),
-                    "; %.4g ms late: at most %.4g more at the correction's fastest", delay_ms,
-                    slew * delay_ms);
+      add("; %.4g ms late: at most %.4g more at the correction's fastest", delay_ms,
+          slew / tick_ms * delay_ms);
     }
     lines.emplace_back(text);
   }
@@ -462,6 +468,10 @@ void Devices::say_held() const {
       std::fprintf(stderr, "vernierd: axis.%s.output was held at the end of its range in %llu ticks\n",
                    parts_->file.axes[output.axis].wiring.name.c_str(),
                    static_cast<unsigned long long>(output.device->held_at_end()));
+  for (const auto& [place, line] : parts_->lines)
+    if (line && line->wrong_answers() > 0)
+      std::fprintf(stderr, "vernierd: Modbus at %s: %llu answers were damaged or not to the request\n",
+                   place.c_str(), static_cast<unsigned long long>(line->wrong_answers()));
   for (const auto& [device, buffer] : parts_->buffers) {
     const IioBufferCounts& counts = buffer->counts();
     if (counts.skipped + counts.missing + counts.malformed + counts.broken == 0) continue;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/daemon/duties.h"
 
+#include <cstdio>
+
 #include "firmware/core/sign_of_life.h"
 #include "hal/linux/realtime.h"
 
@@ -9,7 +11,7 @@ namespace {
 
 constexpr TimeUs kGuardPeriod(5'000);
 constexpr TimeUs kServeWait(20'000);
-constexpr TimeUs kStoreWait(50'000);   // latest time to record the actions of the guardian
+constexpr TimeUs kStoreWait(10'000);   // latest time to record the actions of guardian and operator
 constexpr TimeUs kSampleWait(10'000);  // between two samples of the sensors
 
 }  // namespace
@@ -55,9 +57,17 @@ void Duties::serve_links() {
 }
 
 void Duties::look_after_store() {
+  bool refused = false;
   while (!stop_) {
     store_.wait(service_.store_is_asked() ? kGuardPeriod : kStoreWait);
     if (service_.look_after_store()) links_.wake();
+    if (const bool now = service_.operator_memory().refused(); now != refused) {
+      refused = now;
+      std::fputs(now ? "vernierd: the store refuses the operator's last setting: a start restores an older "
+                       "setting\n"
+                     : "vernierd: the store has the operator's last setting again\n",
+                 stderr);
+    }
   }
 }
 

@@ -115,7 +115,7 @@ int run_image(const Arguments& arguments) {
 
 // ---- a board
 
-int check_devices(Devices& devices) {
+int check_devices(Devices& devices, const BoardFile& file) {
   int missing = 0, missing_files = 0;
   const auto files = static_cast<std::size_t>(std::count_if(
       devices.findings().begin(), devices.findings().end(), [](const auto& one) { return one.is_file; }));
@@ -127,6 +127,10 @@ int check_devices(Devices& devices) {
     (finding.is_file ? missing_files : missing) += there ? 0 : 1;
   }
   for (const std::string& line : devices.output_budget()) std::printf("budget   %s\n", line.c_str());
+  for (const AxisEntry& axis : file.axes)
+    if (!axis.default_step.empty())
+      std::printf("default  axis.%s: not set; a default is %s\n", axis.wiring.name.c_str(),
+                  axis.default_step.c_str());
   for (const std::string& line : devices.not_looked_at()) std::printf("not looked at  %s\n", line.c_str());
   const auto total = [](std::size_t count, const char* what, int away) {
     std::printf(away == 0 ? "%zu %s: all there\n" : "%zu %s: %d missing\n", count, what, away);
@@ -170,6 +174,19 @@ void say_image(const UploadResult& result, const Service& service) {
   else
     std::fprintf(stderr, "vernierd: image %016llx\n",
                  static_cast<unsigned long long>(service.uploader().record().confirmed_fingerprint));
+}
+
+void say_operator(const Service& service, const BoardFile& file) {
+  if (service.operator_memory().lost())
+    std::fputs(
+        "vernierd: no stored setting of the operator is readable: the correction stays deactivated until an "
+        "operator activates it\n",
+        stderr);
+  else if (service.cycle().latched() != Fault::kNone)
+    std::fprintf(stderr, "vernierd: the fault %s from before the start is latched; clear it\n",
+                 name_of(service.cycle().latched()));
+  else if (file.service.activate && service.deactivated())
+    std::fputs("vernierd: the correction was deactivated or held before the start; activate it\n", stderr);
 }
 
 /// A board without a key corrects its machine as well; it only cannot prove its identity.
@@ -250,7 +267,7 @@ int run_board(const Arguments& arguments) {
   BoardFile file = read_board_file(arguments.board);
   if (!arguments.calibrate.empty()) return calibrate(arguments, file);
   Devices devices(file, arguments.seed);
-  if (arguments.check) return check_devices(devices);
+  if (arguments.check) return check_devices(devices, file);
   if (arguments.zero) return take_to_zero(devices);
   if (!all_there(devices)) return kAnswerIsNo;
   devices.sample();
@@ -261,8 +278,10 @@ int run_board(const Arguments& arguments) {
     std::vector<std::uint32_t> memory(kWordsBeyondCaches);
     file.service.upload.budget = measured_work_budget(devices.clock(), file.service.upload.tick, memory);
   }
-  if (::getrandom(file.service.nonce.data(), file.service.nonce.size(), 0) !=
-      static_cast<ssize_t>(file.service.nonce.size())) {
+  const auto fill = [](auto& bytes) {
+    return ::getrandom(bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size());
+  };
+  if (!fill(file.service.nonce) || !fill(file.service.seed)) {
     std::fputs("vernierd: the system gives no random numbers: signed requests are not possible\n", stderr);
     return kAnswerIsNo;
   }
@@ -270,6 +289,7 @@ int run_board(const Arguments& arguments) {
   board.identity = own_key.get();
   const auto service = std::make_unique<Service>(file.service, board, store);
   say_image(service->boot(), *service);
+  say_operator(*service, file);
   ServiceManager manager;
   keep_stacks_small();
   const GrantReport grant = ask_for_realtime(arguments.realtime, file.priority);

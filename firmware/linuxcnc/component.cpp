@@ -221,6 +221,7 @@ std::unique_ptr<Service> Component::make_service(const Introduction& introductio
   for (std::uint32_t i = 0; i < introduction.keys; ++i)
     options.upload.identity.keys.push_back({introduction.key[i], "public-key"});
   options.nonce = introduction.nonce;
+  options.seed = introduction.seed;
   // The pin is read once per tick: a contact that opens for a few ticks bounces.
   options.probe.settle = instant_ns(TimeUs(kSettleTicks * tick.count));
   options.store_beside = true;

@@ -17,6 +17,7 @@ struct Call {
   std::atomic<std::uint32_t> turn{0};
   std::uint32_t op = 0, place = 0, offset = 0, size = 0;
   std::int32_t result = 0;
+  std::uint64_t connection = 0;
   std::uint8_t bytes[kMostBytes] = {};
 };
 
@@ -43,7 +44,7 @@ enum class StoreOp : std::uint32_t {
   kReadGiven
 };
 /// Requests of vernier-hal's links to the component (hal/command_link.h). place: the link's access.
-enum class LinkCall : std::uint32_t { kAnswer, kLater, kRegisters, kCommand };
+enum class LinkCall : std::uint32_t { kAnswer, kLater, kRegisters, kCommand, kEnds };
 
 /// Data that vernier-hal sends about itself when it connects.
 struct Introduction {
@@ -54,6 +55,7 @@ struct Introduction {
   PublicKey key[BoardIdentity::kMostKeys] = {};
   Name board, board_class;
   Nonce nonce{};
+  ChallengeSeed seed{};
   char store[512] = {};
 };
 static_assert(sizeof(Introduction) <= Call::kMostBytes);
@@ -71,7 +73,7 @@ enum class Attached : std::int32_t {
 /// data of the tick are in private memory.
 struct Hatch {
   static constexpr int kKey = 0x5645524e;              // "VERN", as HAL's keys are: one component a machine
-  static constexpr std::uint32_t kMagic = 0x31544148;  // "HAT1", written when the rest is there
+  static constexpr std::uint32_t kMagic = 0x32544148;  // "HAT2", written when the rest is there
   std::atomic<std::uint32_t> magic{0};
   std::int32_t component = 0;  // process
   std::atomic<std::int32_t> helper{0};

@@ -21,8 +21,10 @@ HalFault HatchLink::serve(CommandHandler& handler, TimeUs wait) noexcept {
   std::uint32_t size = 0;
   switch (static_cast<LinkCall>(call_.op)) {
     case LinkCall::kAnswer:
+      handler.comes_over(call_.connection);
       size = handler.answer(call_.bytes, std::min(call_.size, Call::kMostBytes), reply);
       if (size == CommandHandler::kLater) call_.offset = handler.ticket();
+      call_.result = handler.was_signed() ? 1 : 0;
       break;
     case LinkCall::kLater:
       size = handler.later(call_.offset, reply);
@@ -33,6 +35,9 @@ HalFault HatchLink::serve(CommandHandler& handler, TimeUs wait) noexcept {
       break;
     case LinkCall::kCommand:
       call_.result = handler.give(static_cast<std::uint16_t>(call_.offset)) ? 1 : 0;
+      break;
+    case LinkCall::kEnds:
+      handler.ends(call_.connection);
       break;
   }
   call_.size = size;
@@ -45,13 +50,15 @@ bool HatchHandler::ask(LinkCall op, std::uint32_t offset, const std::uint8_t* by
   Call& link = hatch_.link;
   link.op = static_cast<std::uint32_t>(op);
   link.place = static_cast<std::uint32_t>(access_);
-  link.offset = offset, link.size = size, link.result = 0;
+  link.offset = offset, link.size = size, link.result = 0, link.connection = connection_;
   std::copy_n(bytes, size, link.bytes);
   return make_call(link, hatch_.component, stop_);
 }
 
 std::uint32_t HatchHandler::answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) {
+  signed_ = false;
   if (size > Call::kMostBytes || !ask(LinkCall::kAnswer, 0, request, size)) return 0;
+  signed_ = hatch_.link.result == 1;
   if (hatch_.link.size == kLater) return ticket_ = hatch_.link.offset, kLater;
   std::copy_n(hatch_.link.bytes, std::min(hatch_.link.size, kMaxReplyBytes), reply);
   return hatch_.link.size;
@@ -68,6 +75,11 @@ void HatchHandler::fill_registers(std::uint16_t* values) {
   std::fill_n(values, int{kLiveRegisters}, std::uint16_t{0});
   if (ask(LinkCall::kRegisters, 0, nullptr, 0))
     std::memcpy(values, hatch_.link.bytes, kLiveRegisters * sizeof(std::uint16_t));
+}
+
+void HatchHandler::ends(std::uint64_t connection) {
+  connection_ = connection;
+  ask(LinkCall::kEnds, 0, nullptr, 0);
 }
 
 bool HatchHandler::give(std::uint16_t command) {

@@ -24,7 +24,10 @@ class HatchHandler : public CommandHandler {
   /// hatch, stop: outlive the handler. setup.
   HatchHandler(Hatch& hatch, LinkAccess access, const std::atomic<bool>& stop) noexcept
       : hatch_(hatch), access_(access), stop_(stop) {}
+  void comes_over(std::uint64_t connection) override { connection_ = connection; }
+  void ends(std::uint64_t connection) override;
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override;
+  bool was_signed() const override { return signed_; }
   std::uint32_t ticket() const override { return ticket_; }
   std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override;
   void fill_registers(std::uint16_t* values) override;
@@ -37,6 +40,8 @@ class HatchHandler : public CommandHandler {
   LinkAccess access_;
   const std::atomic<bool>& stop_;
   std::uint32_t ticket_ = 0;
+  std::uint64_t connection_ = 0;
+  bool signed_ = false;
 };
 
 }  // namespace vernier

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tables/operator_record.h"
 #include "tables/slots.h"
 
 namespace vernier {
@@ -19,9 +20,9 @@ HalFault StoreServer::run() noexcept {
     return call_.place < kSlotCount ? store_.finish_image(call_.place, call_.size) : HalFault::kNoDevice;
   if (call_.size > Call::kMostBytes) return HalFault::kRefused;
   if (op == StoreOp::kReadGiven) return read_given();
-  // Records and slots are two each.
-  static_assert(kSlotCount == kSlotRecordCount);
-  if (call_.place >= kSlotCount) return HalFault::kNoDevice;
+  const bool record = op == StoreOp::kReadRecord || op == StoreOp::kWriteRecord;
+  if (call_.place >= (record ? kSlotRecordCount + kOperatorRecordCount : kSlotCount))
+    return HalFault::kNoDevice;
   switch (op) {
     case StoreOp::kReadRecord:
       return store_.read_record(call_.place, call_.bytes, call_.size);

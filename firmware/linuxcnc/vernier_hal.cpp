@@ -82,8 +82,10 @@ Introduction introduction_of(const HelperArguments& arguments, std::size_t given
   }
   introduction.board = Name(arguments.board);
   introduction.board_class = Name(arguments.board_class);
-  if (::getrandom(introduction.nonce.data(), introduction.nonce.size(), 0) !=
-      static_cast<ssize_t>(introduction.nonce.size()))
+  const auto fill = [](auto& bytes) {
+    return ::getrandom(bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size());
+  };
+  if (!fill(introduction.nonce) || !fill(introduction.seed))
     throw BoardError{"the system gives no random numbers: signed requests are not possible"};
   const std::string store = std::filesystem::canonical(arguments.store).string();
   if (store.size() >= sizeof(introduction.store)) throw BoardError{store + ": too long a path"};

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <iterator>
 
 namespace vernier {
 namespace {
@@ -64,14 +65,14 @@ bool sync_directory(const std::string& directory) noexcept {
 
 FileSlotStore::FileSlotStore(std::string directory, std::uint32_t capacity)
     : directory_(std::move(directory)), capacity_(capacity) {
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < std::size(records_); ++i)
     records_[i] = directory_ + "/record" + std::to_string(i);
+  for (std::size_t i = 0; i < std::size(slots_); ++i)
     slots_[i] = directory_ + "/slot" + std::to_string(i) + ".vup";
-  }
 }
 
 HalFault FileSlotStore::read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept {
-  if (place >= 2) return HalFault::kNoDevice;
+  if (place >= std::size(records_)) return HalFault::kNoDevice;
   const HalFault fault = read_at(records_[place], 0, bytes, size);
   // A file that is there and too short was written once.
   return fault == HalFault::kNoReading && ::access(records_[place].c_str(), F_OK) == 0 ? HalFault::kRefused
@@ -80,7 +81,7 @@ HalFault FileSlotStore::read_record(std::uint32_t place, std::uint8_t* bytes, st
 
 HalFault FileSlotStore::write_record(std::uint32_t place, const std::uint8_t* bytes,
                                      std::uint32_t size) noexcept {
-  if (place >= 2) return HalFault::kNoDevice;
+  if (place >= std::size(records_)) return HalFault::kNoDevice;
   File file(records_[place], O_WRONLY | O_CREAT);
   if (!file.opened() || !write_all(file.fd(), 0, bytes, size)) return HalFault::kRefused;
   if (::fsync(file.fd()) != 0 || !file.close()) return HalFault::kRefused;

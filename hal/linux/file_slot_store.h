@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// Slots as files of a directory: slot0.vup, slot1.vup, record0, record1; every finished write is synced.
+/// Slots as files of a directory: slot0.vup, slot1.vup, record0 to record3; every finished write is synced.
 class FileSlotStore : public SlotStore {
  public:
   /// directory: exists and may be written; capacity: most bytes of a slot. setup.
@@ -23,7 +23,7 @@ class FileSlotStore : public SlotStore {
 
  private:
   std::string directory_;
-  std::string records_[2], slots_[2];
+  std::string records_[4], slots_[2];
   std::uint32_t capacity_;
 };
 

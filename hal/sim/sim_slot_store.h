@@ -29,11 +29,11 @@ class SimSlotStore : public SlotStore {
 
   std::uint32_t capacity() const noexcept override { return capacity_; }
   HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override {
-    return place < 2 ? read(records_[place], 0, bytes, size) : HalFault::kNoDevice;
+    return place < 4 ? read(records_[place], 0, bytes, size) : HalFault::kNoDevice;
   }
   HalFault write_record(std::uint32_t place, const std::uint8_t* bytes,
                         std::uint32_t size) noexcept override {
-    return place < 2 ? write(records_[place], 0, bytes, size) : HalFault::kNoDevice;
+    return place < 4 ? write(records_[place], 0, bytes, size) : HalFault::kNoDevice;
   }
   HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
                       std::uint32_t size) noexcept override {
@@ -79,7 +79,7 @@ class SimSlotStore : public SlotStore {
 
   std::uint32_t capacity_;
   std::uint32_t room_ = UINT32_MAX;
-  std::vector<std::uint8_t> records_[2], slots_[2];
+  std::vector<std::uint8_t> records_[4], slots_[2];
   std::uint64_t left_ = 0, written_ = 0;
   bool limited_ = false, dead_ = false;
 };

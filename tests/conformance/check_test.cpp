@@ -24,11 +24,13 @@ store = "store"
 [axis.X]
 max_speed = 100
 max_correction = 0.2
+max_step = 0.001
 position = { kind = "sim" }
 output = { kind = "pwm", path = "ROOT/pwm0", period_ns = 50000, span = 0.25 }
 [axis.Y]
 max_speed = 100
 max_correction = 0.2
+max_step = 0.001
 position = { kind = "sim" }
 output = { kind = "iio-dac", root = "ROOT", device = "mcp4922", channel = 1, codes = 255, span = 0.25, zero = 127, high = 254 }
 [input.T]
@@ -42,6 +44,7 @@ store = "store"
 [axis.X]
 max_speed = 20
 max_correction = 0.2
+max_step = 0.001
 correction_share = 0.01
 position = { kind = "sim" }
 output = { kind = "iio-dac", root = "ROOT", device = "mcp4922", channel = 1, codes = 255, span = 0.25, zero = 127, high = 254, delay_ms = 83.3 }
@@ -94,7 +97,7 @@ TEST_F(Check, SaysWhatThePublishedChainAddsToTheError) {
   EXPECT_EQ(said.status, 0) << said.text;
   // 250 um over 255 codes; 0.2 mm/s for 83.3 ms.
   EXPECT_NE(said.text.find("budget   axis.X.output: -124.51 to 124.51 um, step 0.9804, error at most 0.4902 "
-                           "(rms 0.283); 83.3 ms "
+                           "(rms 0.283); at most 0.2 um a tick; 83.3 ms "
                            "late: at most 16.66 more at the correction's fastest\n"),
             std::string::npos)
       << said.text;
@@ -240,11 +243,33 @@ TEST_F(Check, RealOutputsNeedLimitsOfTheBoardsOwn) {
   const std::pair<const char*, const char*> kLimits[] = {
       {"max_correction = 0.2\n",
        "board.toml:3: axis.X: max_correction is missing: an output of kind pwm needs it"},
-      {"max_speed = 100\n", "board.toml:3: axis.X: max_speed is missing: an output of kind pwm needs it"}};
+      {"max_speed = 100\n", "board.toml:3: axis.X: max_speed is missing: an output of kind pwm needs it"},
+      {"max_step = 0.001\n",
+       "board.toml:3: axis.X: max_step or max_acceleration is missing: an output of kind pwm needs one of "
+       "them; add max_step = 0.001  # mm"}};
   for (const auto& [setting, said_of_it] : kLimits) {
     write(replaced(kBoard, setting, ""));
     const Said said = run("--check");
     EXPECT_EQ(said.status, 1) << said.text;
+    EXPECT_NE(said.text.find(said_of_it), std::string::npos) << said.text;
+  }
+}
+
+// With max_speed = 500 alone a tenth of it, 50 um, was allowed in each tick.
+TEST_F(Check, SaysTheMostThatACorrectionChangesInATick) {
+  const std::pair<const char*, const char*> kSteps[] = {
+      {"max_step = 0.001\n", "; at most 1 um a tick"},
+      {"max_step = 0.5\n", "; at most 10 um a tick"},  // a tenth of 100 mm/s
+      {"max_acceleration = 5000\n", "; at most 10 um a tick, 0.5 more in each"},
+      {"max_acceleration = 5000\n",
+       "default  axis.X: not set; a default is max_step = 0.001  # mm in one tick\n"},
+      // Ten times 0.4 mm over 800 mm, at 0.1 mm in a tick.
+      {"max_acceleration = 5000\nhigh = 800\n",
+       "axis.X: not set; a default is max_step = 0.0005  # mm in one tick\n"}};
+  for (const auto& [setting, said_of_it] : kSteps) {
+    write(replaced(kBoard, "max_step = 0.001\n", setting));
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 0) << said.text;
     EXPECT_NE(said.text.find(said_of_it), std::string::npos) << said.text;
   }
 }

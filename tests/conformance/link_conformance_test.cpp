@@ -11,11 +11,14 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <random>
 #include <thread>
+#include <vector>
 
 #include "hal/linux/modbus/modbus_server.h"
 #include "tables/link_format.h"
@@ -32,6 +35,7 @@ class Mirror : public CommandHandler {
  public:
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) override {
     ++requests;
+    signed_ = request[0] == kSignedByte;
     for (std::uint32_t i = 0; i < size; ++i) reply[i] = request[size - 1 - i];
     reply[size] = 0x5a;
     return size + 1;
@@ -44,7 +48,12 @@ class Mirror : public CommandHandler {
     ++commands;
     return true;
   }
+  bool was_signed() const override { return signed_; }
+  static constexpr std::uint8_t kSignedByte = 0x77;
   std::atomic<int> requests{0}, commands{0};
+
+ private:
+  bool signed_ = false;
 };
 
 constexpr ModbusLayout kLayout{kMailboxRegister, kMailboxRegisters, kLiveRegisters};
@@ -71,6 +80,7 @@ class Serving {
 std::vector<std::uint8_t> request_of(std::mt19937_64& random, std::size_t size) {
   std::vector<std::uint8_t> request(size);
   for (std::uint8_t& byte : request) byte = static_cast<std::uint8_t>(random());
+  if (request[0] == Mirror::kSignedByte) ++request[0];
   return request;
 }
 
@@ -93,10 +103,12 @@ class ModbusTcp : public testing::Test {
   std::unique_ptr<Transport> transport() const {
     return open_transport(parse_url("tcp://127.0.0.1:" + std::to_string(port_)));
   }
-  int raw() const {
+  int raw(std::uint32_t from = INADDR_LOOPBACK) const {
     const int fd = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in name{};
     name.sin_family = AF_INET;
+    name.sin_addr.s_addr = htonl(from);
+    EXPECT_EQ(::bind(fd, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
     name.sin_port = htons(static_cast<std::uint16_t>(port_));
     name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     EXPECT_EQ(::connect(fd, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
@@ -161,6 +173,120 @@ TEST_F(ModbusTcp, StalledPeersDoNotLockOthersOut) {
   const auto client = transport();
   for (int i = 0; i < 10; ++i) expect_mirrored(*client, random, 50);
   for (const int fd : stalled) ::close(fd);
+}
+
+using Seconds = std::chrono::duration<double>;
+
+/// Clients that ask for a register now and then, and come again when they are closed.
+class Readers {
+ public:
+  Readers(std::function<int()> connect, int count, std::chrono::milliseconds pause) {
+    for (int i = 0; i < count; ++i) {
+      threads_.emplace_back([this, connect, pause] { run(connect, pause); });
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));  // one after the other
+    }
+  }
+  ~Readers() {
+    stop_ = true;
+    for (std::thread& thread : threads_) thread.join();
+  }
+  int answered() const { return answered_; }
+  int closed() const { return closed_; }
+
+ private:
+  void run(const std::function<int()>& connect, std::chrono::milliseconds pause) {
+    const std::uint8_t request[] = {0, 1, 0, 0, 0, 6, 1, 4, 0, 0, 0, 1};
+    while (!stop_) {
+      const int fd = connect();
+      const timeval patience{0, 100'000};
+      ::setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
+      bool open = true;
+      for (bool asked = false; open && !stop_;) {
+        if (!asked) open = ::send(fd, request, sizeof(request), MSG_NOSIGNAL) == sizeof(request);
+        std::uint8_t reply[64];
+        const ssize_t got = ::recv(fd, reply, sizeof(reply), 0);
+        asked = got < 0 && errno == EAGAIN;
+        open = open && (got > 0 || asked);
+        if (got > 0) ++answered_, std::this_thread::sleep_for(pause);
+      }
+      if (!stop_) ++closed_;
+      ::close(fd);
+    }
+  }
+  std::atomic<bool> stop_{false};
+  std::atomic<int> answered_{0}, closed_{0};
+  std::vector<std::thread> threads_;
+};
+
+double seconds_for(const std::function<void()>& work) {
+  const auto begun = std::chrono::steady_clock::now();
+  work();
+  return Seconds(std::chrono::steady_clock::now() - begun).count();
+}
+
+// Sixteen that asked every 0.2 s kept the seventeenth out for as long as they liked.
+TEST_F(ModbusTcp, QuietClientsDoNotKeepTheNextOneOut) {
+  const Readers readers([this] { return raw(); }, 16, std::chrono::milliseconds(200));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  std::mt19937_64 random(7);
+  const double took_s = seconds_for([&] {
+    const auto client = transport();
+    for (int i = 0; i < 10; ++i) expect_mirrored(*client, random, 50);
+  });
+  EXPECT_LT(took_s, 1);
+  EXPECT_EQ(readers.closed(), 0) << "who reads within the sixteen is left alone";
+  EXPECT_GT(readers.answered(), 16);
+}
+
+// Even where they fill the places to sign in, and come again at once.
+TEST_F(ModbusTcp, ManyClientsDoNotKeepTheNextOneOut) {
+  const Readers readers([this] { return raw(); }, 24, std::chrono::milliseconds(50));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  std::mt19937_64 random(8);
+  for (int i = 0; i < 3; ++i) {
+    const double took_s = seconds_for([&] {
+      const auto client = transport();
+      for (int k = 0; k < 10; ++k) expect_mirrored(*client, random, 50);
+    });
+    // Four come in in half a second; four wait before it.
+    EXPECT_LT(took_s, 3);
+  }
+  EXPECT_GT(readers.closed(), 3);
+}
+
+TEST_F(ModbusTcp, ClientThatSignedKeepsItsPlace) {
+  std::mt19937_64 random(9);
+  // A mailbox of two bytes, the first says that it is signed (Mirror).
+  const std::uint8_t request[] = {0, 1, 0, 0, 0, 11, 1, 16, 1, 0, 0, 2, 4, 0, 2, Mirror::kSignedByte, 1};
+  const int fd = raw();
+  std::uint8_t reply[64];
+  ASSERT_GT(::send(fd, request, sizeof(request), MSG_NOSIGNAL), 0);
+  ASSERT_GT(::recv(fd, reply, sizeof(reply), 0), 0);
+  {
+    // It is silent for longer than others may be, while far more clients come than there are places.
+    const Readers readers([this] { return raw(); }, 30, std::chrono::milliseconds(20));
+    std::this_thread::sleep_for(std::chrono::milliseconds(2600));
+    EXPECT_GT(readers.closed(), 10);
+  }
+  ASSERT_GT(::send(fd, request, sizeof(request), MSG_NOSIGNAL), 0);
+  EXPECT_GT(::recv(fd, reply, sizeof(reply), 0), 0) << "it was closed";
+  ::close(fd);
+}
+
+TEST_F(ModbusTcp, PeersShareThePlaces) {
+  constexpr std::uint32_t kOther = INADDR_LOOPBACK + 1;
+  const Readers greedy([this] { return raw(kOther); }, 40, std::chrono::milliseconds(20));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  const Readers modest([this] { return raw(); }, 3, std::chrono::milliseconds(20));
+  std::mt19937_64 random(10);
+  const double took_s = seconds_for([&] {
+    const auto client = transport();
+    for (int i = 0; i < 10; ++i) expect_mirrored(*client, random, 50);
+  });
+  EXPECT_LT(took_s, 0.5) << "no turn to be waited for";
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_EQ(modest.closed(), 0) << "they make no room for a peer that has more";
+  EXPECT_GT(greedy.closed(), 4);
 }
 
 std::uint64_t from_environment(const char* name, std::uint64_t value) {

@@ -275,6 +275,116 @@ TEST(ModbusTcpSensor, PeerThatIsNotThereIsTriedAgain) {
   ::close(listener);
 }
 
+/// A sensor over TCP: answers each request of 12 bytes with what `answer` makes of it, to one client after
+/// the other.
+class FarServer {
+ public:
+  using Answer = std::function<Bytes(const Bytes&)>;
+  FarServer() : listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    EXPECT_EQ(::bind(listener_, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    EXPECT_EQ(::listen(listener_, 4), 0);
+    port_ = ntohs(address.sin_port);
+    thread_ = std::thread([this] { serve(); });
+  }
+  ~FarServer() {
+    stop_ = true;
+    thread_.join();
+    ::close(listener_);
+  }
+  int port() const { return port_; }
+  void set(Answer answer) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    answer_ = std::move(answer);
+  }
+
+ private:
+  void serve() {
+    int fd = -1;
+    while (!stop_) {
+      pollfd waiting{fd < 0 ? listener_ : fd, POLLIN, 0};
+      if (::poll(&waiting, 1, 5) <= 0) continue;
+      if (fd < 0) {
+        fd = ::accept(listener_, nullptr, nullptr);
+        continue;
+      }
+      Bytes request(12);
+      if (::recv(fd, request.data(), request.size(), MSG_WAITALL) != 12) {
+        ::close(fd), fd = -1;
+        continue;
+      }
+      const std::lock_guard<std::mutex> lock(mutex_);
+      const Bytes reply = answer_(request);
+      EXPECT_EQ(::send(fd, reply.data(), reply.size(), MSG_NOSIGNAL), static_cast<ssize_t>(reply.size()));
+    }
+    if (fd >= 0) ::close(fd);
+  }
+
+  std::mutex mutex_;
+  Answer answer_;
+  int listener_, port_ = 0;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+TEST(ModbusTcpSensor, AnswerToSomethingElseIsNoReadingAndCounted) {
+  // GIVEN a sensor, unit 3, that holds 215
+  const auto truth = [](const Bytes& q) {
+    EXPECT_EQ(Bytes(q.begin() + 2, q.end()), (Bytes{0, 0, 0, 6, 3, 4, 0, 7, 0, 1}));
+    return Bytes{q[0], q[1], 0, 0, 0, 5, 3, 4, 2, 0, 215};
+  };
+  const auto changed = [&](std::size_t byte, std::uint8_t to) {
+    return [=](const Bytes& q) {
+      Bytes reply = truth(q);
+      reply[byte] = to;
+      return reply;
+    };
+  };
+  const std::pair<const char*, FarServer::Answer> kLies[] = {
+      {"another unit", changed(6, 4)},
+      {"unit 0", changed(6, 0)},
+      {"unit 255", changed(6, 255)},
+      {"another function", changed(7, 3)},
+      {"another protocol", changed(3, 1)},
+      {"a wrong length", changed(5, 6)},
+      {"an earlier transaction",
+       [&](const Bytes& q) {
+         Bytes reply = truth(q);
+         --reply[1];
+         return reply;
+       }},
+      {"an exception of another unit",
+       [](const Bytes& q) { return Bytes{q[0], q[1], 0, 0, 0, 3, 4, 0x84, 2}; }},
+      {"more registers",
+       [](const Bytes& q) { return Bytes{q[0], q[1], 0, 0, 0, 7, 3, 4, 4, 0, 215, 0, 215}; }}};
+  FarServer far;
+  std::string error;
+  const std::shared_ptr<ModbusLine> line = ModbusLine::tcp("127.0.0.1", far.port(), kWait, error);
+  ModbusInput input(line, {.unit = 3, .address = 7, .scale = 0.1}, 3);
+  std::uint64_t wrong = 0;
+  for (const auto& [what, lie] : kLies) {
+    // WHEN an answer belongs to something else
+    far.set(lie);
+    EXPECT_EQ(input.sample(), HalFault::kNoReading) << what;
+    InputMicro micro;
+    EXPECT_EQ(input.read_input(0, micro), HalFault::kNoReading) << what;
+    // THEN it is counted, and the next right one is a reading
+    EXPECT_EQ(line->wrong_answers(), ++wrong) << what;
+    far.set(truth);
+    EXPECT_EQ(input.sample(), HalFault::kNone) << "recovers from " << what;
+    EXPECT_EQ(input.read_input(0, micro), HalFault::kNone);
+    EXPECT_EQ(micro, InputMicro(21'500'000));
+  }
+  // An exception of the right unit is an answer, though not a reading.
+  far.set([](const Bytes& q) { return Bytes{q[0], q[1], 0, 0, 0, 3, 3, 0x84, 2}; });
+  EXPECT_EQ(input.sample(), HalFault::kNoReading);
+  EXPECT_EQ(line->wrong_answers(), wrong);
+}
+
 TEST(ModbusLineSetUp, MissingDeviceIsNamed) {
   std::string error;
   EXPECT_EQ(ModbusLine::rtu("/dev/no_such_line", 9600, 'E', kWait, error), nullptr);

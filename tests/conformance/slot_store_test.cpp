@@ -82,8 +82,8 @@ TEST_P(SlotStoreConformance, RefusesWhatItDoesNotHave) {
   EXPECT_EQ(store_->write_image(2, 0, bytes, 10), HalFault::kNoDevice);
   EXPECT_EQ(store_->write_image(0, kCapacity - 99, bytes, 100), HalFault::kNoDevice);
   EXPECT_EQ(store_->write_image(0, UINT32_MAX, bytes, 100), HalFault::kNoDevice);
-  EXPECT_EQ(store_->write_record(2, bytes, 32), HalFault::kNoDevice);
-  EXPECT_EQ(store_->read_record(2, bytes, 32), HalFault::kNoDevice);
+  EXPECT_EQ(store_->write_record(4, bytes, 32), HalFault::kNoDevice);
+  EXPECT_EQ(store_->read_record(4, bytes, 32), HalFault::kNoDevice);
   EXPECT_EQ(store_->read_image(2, 0, bytes, 1), HalFault::kNoDevice);
 }
 

@@ -44,14 +44,16 @@ class Operator {
       Client client(std::make_unique<Wire>(world_));
       client.sign_with(world_.key());
       clear(client);
-      const std::uint64_t what = world_.any() % 10;
+      if (client.newest().mode == Mode::kReady && world_.one_in(2)) activate(client);
+      const std::uint64_t what = world_.any() % 11;
       if (what < 5)
         upload(client);
       else if (what == 5)
-        client.weight(static_cast<std::uint8_t>(world_.any() % 2),
-                      1e-3 * static_cast<double>(world_.any() % 1001));
+        weight(client);
       else if (what == 6)
-        client.command(Command::kHold), world_.run(50), client.command(Command::kRelease);
+        hold(client);
+      else if (what == 10)
+        client.command(Command::kDeactivate), world_.took_out(kAllAxes);
       else if (what == 7)
         client.confirmed([](double) {});
       else
@@ -68,7 +70,27 @@ class Operator {
   void clear(Client& client) {
     if (client.newest().mode != Mode::kFaulted) return;
     ++world_.counts.faults;
+    world_.may_bring_in(kAllAxes);
     client.command(Command::kClearFault);
+  }
+  void activate(Client& client) {
+    world_.may_bring_in(kAllAxes);
+    client.command(Command::kActivate);
+  }
+  void weight(Client& client) {
+    const auto axis = static_cast<std::uint8_t>(world_.any() % 2);
+    const std::uint64_t share = world_.one_in(3) ? 0 : world_.any() % 1001;
+    world_.may_bring_in(1u << axis);
+    client.weight(axis, 1e-3 * static_cast<double>(share));
+    if (share == 0) world_.took_out(1u << axis);
+  }
+  void hold(Client& client) {
+    client.command(Command::kHold);
+    world_.run(50);
+    if (client.newest().holding) world_.took_out(kAllAxes);
+    world_.run(static_cast<std::int64_t>(world_.any() % 1000));
+    world_.may_bring_in(kAllAxes);
+    client.command(Command::kRelease);
   }
   void upload(Client& client) {
     const SlotsReply slots = client.slots();
@@ -115,12 +137,14 @@ void print(const Counts& c, double hours) {
       "%llu forged, "
       "%llu replayed, %llu silent axes, %llu refused writes\n%llu uploads, %llu confirmed, %llu given up, "
       "%llu timed out, "
-      "%llu images lost and told, %llu faults cleared, %llu signs of life\nno invariant broken\n",
+      "%llu images lost and told, %llu faults cleared, %llu signs of life, %llu ticks of axes kept out after "
+      "a death\nno invariant broken\n",
       hours, c.ticks + 0ull, c.active + 0ull, c.injected() + 0ull, c.late_ticks + 0ull, c.stops + 0ull,
       c.deaths + 0ull, c.torn_writes + 0ull, c.flips + 0ull, c.slow_media + 0ull, c.lost_frames + 0ull,
       c.doubled_frames + 0ull, c.changed_frames + 0ull, c.late_frames + 0ull, c.forged + 0ull,
       c.replayed + 0ull, c.silent_axes + 0ull, c.refused_writes + 0ull, c.uploads + 0ull, c.confirmed + 0ull,
-      c.given_up + 0ull, c.timed_out + 0ull, c.images_lost + 0ull, c.faults + 0ull, c.signs + 0ull);
+      c.given_up + 0ull, c.timed_out + 0ull, c.images_lost + 0ull, c.faults + 0ull, c.signs + 0ull,
+      c.kept_out + 0ull);
 }
 
 }  // namespace

@@ -9,25 +9,16 @@ namespace vernier::simulation {
 
 using namespace vernier::compile;
 using namespace vernier::model;
+HalFault Line::serve(CommandHandler& handler, TimeUs) noexcept {
+  talk_->work(handler, now_);
+  return HalFault::kNone;
+}
+
 namespace {
 
 // At 50 Hz the small machine's 0.5 and 2 mm/s.
 constexpr std::int64_t kSlew[2] = {10'000, 40'000};
 constexpr ModbusLayout kLayout{kMailboxRegister, kMailboxRegisters, kLiveRegisters};
-
-/// The link of the world: hands what came over the line to the conversation's handler.
-class Line : public CommandLink {
- public:
-  explicit Line(ModbusConversation& talk, InstantNs now) : talk_(talk), now_(now) {}
-  HalFault serve(CommandHandler& handler, TimeUs) noexcept override {
-    talk_.work(handler, now_);
-    return HalFault::kNone;
-  }
-
- private:
-  ModbusConversation& talk_;
-  InstantNs now_;
-};
 
 std::vector<std::uint8_t> frame_of(const std::vector<std::uint8_t>& pdu) {
   const std::size_t length = pdu.size() + 1;
@@ -87,6 +78,7 @@ void World::start() {
   options.activate = true;
   options.ticks_kept = 64, options.touches_kept = 8;
   for (auto& byte : options.nonce) byte = static_cast<std::uint8_t>(random_());
+  for (auto& byte : options.seed) byte = static_cast<std::uint8_t>(~options.nonce[0]);
   for (int i = 0; i < 2; ++i) {
     options.limits.axis[i].own = true;
     options.limits.axis[i].limits = options.limits.linear;
@@ -100,7 +92,7 @@ void World::start() {
   }
   service_ = std::make_unique<Service>(options, Board{clock_, *devices_, *devices_, *devices_}, store_);
   const UploadResult boot = service_->boot();
-  talk_ = std::make_unique<ModbusConversation>(kLayout, 0, InstantNs(500'000'000));
+  connect();
   life_ = std::make_unique<SignOfLife>(clock_.now());
   medium_busy_ = 0;
   trial_seen_ = 0;
@@ -120,8 +112,16 @@ void World::start() {
   }
 }
 
+void World::connect() {
+  talk_ = std::make_unique<ModbusConversation>(kLayout, 0, InstantNs(500'000'000));
+  talk_->begin(clock_.now(), ++connections_);
+}
+
 void World::die() {
   ++counts.deaths;
+  out_since_death_ = pending_out_ = sure_out_;
+  if (looks_with_fault_ > 2) out_since_death_ = kAllAxes;
+  looks_with_fault_ = 0;
   service_ = nullptr;
   start();
 }
@@ -169,6 +169,9 @@ void World::check_drives() {
     const AxisTravel now = plant_->written(axis);
     need(std::abs((now - before_[axis]).count) <= kSlew[axis], "no drive moves faster than its slew limit");
     need(std::abs(now.count) <= kBoardLimit, "no drive goes beyond the board's limit");
+    const bool out = (out_since_death_ >> axis & 1) != 0;
+    need(!out || now == AxisTravel{}, "after a death, what was taken out waits for an operator");
+    counts.kept_out += out ? 1 : 0;
     before_[axis] = now;
   }
 }
@@ -214,14 +217,23 @@ void World::check_life() {
 }
 
 void World::serve() {
-  Line line(*talk_, clock_.now());
-  service_->serve(line, TimeUs(0));
+  line_.carries(*talk_, clock_.now());
+  service_->serve(line_, TimeUs(0));
   // The store's own context: it comes when its medium lets it.
   if (medium_busy_ > 0) {
     --medium_busy_;
     return;
   }
   service_->look_after_store();
+  note_out();
+}
+
+// A setting counts as stored when the store has looked after it twice since: once may have been before the
+// tick that took the command.
+void World::note_out() {
+  if (store_.dead()) return;
+  looks_with_fault_ = service_->cycle().latched() != Fault::kNone ? looks_with_fault_ + 1 : 0;
+  if (++looks_since_ > 2 && !service_->operator_memory().refused()) sure_out_ |= pending_out_;
 }
 
 void World::tick() {
@@ -281,8 +293,7 @@ std::vector<std::uint8_t> World::exchange_frame(const std::vector<std::uint8_t>&
     }
     if (talk_->broken(clock_.now()) || times == 0) break;
   }
-  if (reply.empty() && death == counts.deaths)
-    talk_ = std::make_unique<ModbusConversation>(kLayout, 0, InstantNs(500'000'000));
+  if (reply.empty() && death == counts.deaths) connect();
   return reply;
 }
 
@@ -312,6 +323,7 @@ void World::attack() {
     ++counts.forged;
   }
   ModbusConversation stranger(kLayout, 0, InstantNs(500'000'000));
+  stranger.begin(clock_.now(), ++connections_);
   std::memcpy(stranger.space(), frame.data(), frame.size());
   stranger.took(static_cast<std::uint32_t>(frame.size()), clock_.now());
   const Trial trial = service_->uploader().programs().trial();
@@ -319,8 +331,8 @@ void World::attack() {
   std::int32_t weight[2];
   for (int i = 0; i < 2; ++i) weight[i] = service_->exchange().axis_weight[i].load();
   const Command command = service_->exchange().command.load();
-  Line line(stranger, clock_.now());
-  service_->serve(line, TimeUs(0));
+  line_.carries(stranger, clock_.now());
+  service_->serve(line_, TimeUs(0));
   need(service_->uploader().programs().trial() == trial && service_->uploader().slots().issued() == issued,
        "no image changes without a signature");
   for (int i = 0; i < 2; ++i)

@@ -24,6 +24,7 @@ using namespace vernier::upload;
 constexpr TimeUs kTick(20'000);
 constexpr TimeUs kTrialTime(60'000'000);
 constexpr std::int64_t kBoardLimit = 25'000;  // nm, below what the image allows
+constexpr std::uint32_t kAllAxes = 3;
 constexpr std::uint32_t kStoreBytes = 1 << 14;
 
 /// An invariant that did not hold: what, and when.
@@ -50,7 +51,7 @@ struct Counts {
   std::uint64_t ticks = 0, late_ticks = 0, stops = 0, deaths = 0, torn_writes = 0, flips = 0, slow_media = 0,
                 lost_frames = 0, doubled_frames = 0, changed_frames = 0, late_frames = 0, forged = 0,
                 replayed = 0, silent_axes = 0, refused_writes = 0, uploads = 0, confirmed = 0, given_up = 0,
-                timed_out = 0, images_lost = 0, faults = 0, active = 0, signs = 0;
+                timed_out = 0, images_lost = 0, faults = 0, active = 0, signs = 0, kept_out = 0;
   std::uint64_t injected() const {
     return late_ticks + stops + deaths + torn_writes + flips + slow_media + lost_frames + doubled_frames +
            changed_frames + late_frames + forged + replayed + silent_axes + refused_writes;
@@ -79,6 +80,17 @@ class FlakyDevices : public AxisReader, public InputReader, public CorrectionWri
   SimPlant& plant_;
 };
 
+/// The link of the world: one link, over which the operator and a stranger have connections of their own.
+class Line : public CommandLink {
+ public:
+  void carries(ModbusConversation& talk, InstantNs now) { talk_ = &talk, now_ = now; }
+  HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
+
+ private:
+  ModbusConversation* talk_ = nullptr;
+  InstantNs now_;
+};
+
 /// The world. Everything that happens to the board happens in run().
 class World {
  public:
@@ -99,6 +111,12 @@ class World {
   void signed_image(std::uint64_t fingerprint) { signed_.insert(fingerprint); }
   void asked_to_confirm(std::uint64_t issued) { in_flight_.insert(issued); }
   void knows_confirmed(std::uint64_t issued) { confirmed_ = issued, in_flight_.clear(); }
+  /// The operator has taken the correction of these axes out (bits), and has an answer.
+  void took_out(std::uint32_t axes) { pending_out_ |= axes, looks_since_ = 0; }
+  /// The operator is about to say something that may bring the correction of these axes in again.
+  void may_bring_in(std::uint32_t axes) {
+    pending_out_ &= ~axes, sure_out_ &= ~axes, out_since_death_ &= ~axes;
+  }
   std::uint64_t confirmed() const { return confirmed_; }
   std::uint64_t deaths() const { return counts.deaths; }
   /// Nothing fails for a while: for what must succeed in the end.
@@ -107,6 +125,7 @@ class World {
 
  private:
   void start();
+  void connect();
   void die();
   void tick();
   void hurt_before_tick();
@@ -116,6 +135,7 @@ class World {
   void check_image();
   void check_trial();
   void check_life();
+  void note_out();
   std::vector<std::uint8_t> exchange_frame(const std::vector<std::uint8_t>& frame, bool trusted);
   void need(bool holds, const char* what) const;
 
@@ -128,6 +148,8 @@ class World {
   SimSlotStore store_{kStoreBytes};
   std::unique_ptr<Service> service_;
   std::unique_ptr<ModbusConversation> talk_;
+  Line line_;
+  std::uint64_t connections_ = 0;
   std::unique_ptr<SignOfLife> life_;
   std::set<std::uint64_t> signed_;
   struct Seen {
@@ -144,6 +166,10 @@ class World {
   InstantNs trial_until_;
   std::uint64_t trial_seen_ = 0;
   std::uint8_t before_axis_weights_ = 0;
+  // Axes whose correction the operator or a fault took out: answered; stored too; stored before the last
+  // death.
+  std::uint32_t pending_out_ = 0, sure_out_ = 0, out_since_death_ = 0;
+  int looks_since_ = 0, looks_with_fault_ = 0;
   bool torn_ = false, slot_bad_ = false;
 };
 

@@ -170,6 +170,13 @@ Dual Translator::lag(const Dual& u, const Dual& tau) {
   return {at_nominal, g_.subtract(g_.lag(actual(u), *nominal + *change), at_nominal)};
 }
 
+// Products of such values, which derivatives and bounds need, stay finite; no fixed-point number holds them.
+void Translator::refuse_beyond_numbers(NodeId id) const {
+  constexpr double kLargest = 1e100;  // its cube is finite in double precision (at most 1.8e308)
+  if (!(g_[id].range.magnitude() <= kLargest))
+    throw std::domain_error("a value that can exceed 1e100 over the ranges of the axes");
+}
+
 // An even power is a square, whose range is not negative.
 NodeId Translator::whole_power(NodeId base, int n) {
   if (n == 0) return g_.constant(1);
@@ -183,6 +190,7 @@ NodeId Translator::power(NodeId base, NodeId exponent) {
   if (const auto b = g_.constant_value(base); n && b) return g_.constant(std::pow(*b, *n));
   if (n && *n == std::round(*n) && std::abs(*n) <= 16) {
     const NodeId result = whole_power(base, std::abs(static_cast<int>(*n)));
+    refuse_beyond_numbers(result);
     return *n < 0 ? g_.function(Function::kReciprocal, result) : result;
   }
   if (n && *n == 0.5) return g_.function(Function::kSqrt, base);
@@ -278,7 +286,9 @@ Dual Translator::visit(const model::Expr& expr) {
 
 Dual Translator::translate(const model::Expr& expr, const std::string& text, std::size_t line) {
   try {
-    return visit(expr);
+    const Dual value = visit(expr);
+    for (const NodeId id : {value.nominal, value.delta}) refuse_beyond_numbers(id);
+    return value;
   } catch (const std::domain_error& reason) {
     throw text::InputError({machine_.file, line}, text,
                            std::string("cannot be compiled: it has ") + reason.what());

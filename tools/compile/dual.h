@@ -40,6 +40,7 @@ class Translator {
   Dual lag(const Dual& u, const Dual& tau);
   NodeId apply_to(model::Op op, NodeId a, NodeId b);
   NodeId power(NodeId base, NodeId exponent);
+  void refuse_beyond_numbers(NodeId id) const;
   NodeId whole_power(NodeId base, int n);
   NodeId angle_of(NodeId y, NodeId x);
   NodeId table_value(std::size_t index);

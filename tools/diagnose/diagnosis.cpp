@@ -291,9 +291,8 @@ Diagnosis searched(const std::string& text, const model::Machine& machine,
                    const model::Measurement& measurement, const DiagnoseOptions& options) {
   Diagnosis all = Diagnoser(text, machine, measurement, options).run();
   if (!all.base.mistake.empty()) return all;
-  // Outliers beside found effects are not the whole cause either.
-  const bool more_than_outliers =
-      all.verdict == Verdict::kInstrument && all.ladder.size() > 1 && !all.time_base.found;
+  // A drift of the instrument, or outliers beside found effects, need not be the whole cause either.
+  const bool more_than_outliers = all.verdict == Verdict::kInstrument && !all.time_base.found;
   // Without u, no limit defines an outlier. Outliers are therefore searched in every case.
   const bool by_spread = !fit::has_uncertainty(measurement) && !all.time_base.found;
   if (all.verdict != Verdict::kUnexplained && !more_than_outliers && !by_spread) return all;

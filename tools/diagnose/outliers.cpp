@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -15,23 +16,35 @@
 namespace vernier::diagnose {
 namespace {
 
+/// Returns 1 for a reading of a check row, 0 for one of a fit row.
+std::size_t role_of(const model::Measurement& rows, const model::Observation& one) {
+  return rows.check[one.row] != 0 ? 1 : 0;
+}
+
 /// Returns rows with a reading more than `far` standard deviations from the fit. The standard
-/// deviation is that of most rows, and at least u.
+/// deviation is that of most readings of the same role (fit or check row), and at least u. Check
+/// rows that fail as a whole are therefore no outliers.
 std::vector<std::size_t> far_rows(const model::Measurement& rows, const Eigen::VectorXd& residual,
                                   double far) {
-  const Eigen::VectorXd weights = fit::fit_weights(rows);
-  std::vector<double> sizes;
-  for (Eigen::Index i = 0; i < weights.size(); ++i)
-    if (weights[i] > 0) sizes.push_back(std::abs(weights[i] * residual[i]));
-  if (sizes.empty()) return {};
-  double spread = maths::robust_spread(std::move(sizes));
-  if (fit::has_uncertainty(rows)) spread = std::max(spread, 1.0);
+  const bool with_u = fit::has_uncertainty(rows);
+  std::array<std::vector<double>, 2> sizes;  // of fit rows and of check rows
+  std::vector<double> all;
+  for (std::size_t i = 0; i < rows.observations.size(); ++i) {
+    const model::Observation& one = rows.observations[i];
+    const double u = with_u ? model::uncertainty_of(rows, one) : 1;
+    all.push_back(u > 0 ? std::abs(residual[static_cast<Eigen::Index>(i)]) / u : 0);
+    sizes.at(role_of(rows, one)).push_back(all.back());
+  }
+  std::array<double, 2> spread{};
+  for (std::size_t role = 0; role < sizes.size(); ++role)
+    if (!sizes[role].empty())
+      spread[role] = std::max(maths::robust_spread(std::move(sizes[role])), with_u ? 1.0 : 0.0);
   std::vector<std::size_t> found;
-  for (Eigen::Index i = 0; i < weights.size(); ++i)
-    if (std::abs(weights[i] * residual[i]) > far * spread) {
-      const std::size_t row = rows.observations[static_cast<std::size_t>(i)].row;
-      if (found.empty() || found.back() != row) found.push_back(row);
-    }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const model::Observation& one = rows.observations[i];
+    if (all[i] > far * spread.at(role_of(rows, one)) && (found.empty() || found.back() != one.row))
+      found.push_back(one.row);
+  }
   return found;
 }
 
@@ -42,8 +55,8 @@ struct Peeled {
   fit::FitResult fit;              // to the remaining rows
 };
 
-/// Excludes outlying rows and fits again until there are no more. Returns nullopt if there were no
-/// outliers, or more than `most`.
+/// Excludes outlying rows and fits again, until there are no more or the next round would exceed `most`
+/// rows. Returns nullopt if no row was excluded.
 std::optional<Peeled> peel(const model::Machine& machine, const model::Measurement& all,
                            const Eigen::VectorXd& of_all, double far, double most) {
   Peeled peeled{all, {}, {}, {}};
@@ -52,13 +65,17 @@ std::optional<Peeled> peel(const model::Machine& machine, const model::Measureme
   peeled.fit.residual = of_all;
   constexpr int kMostRounds = 5;  // rounds of excluding outliers, at most
   for (int round = 0; round < kMostRounds; ++round) {
-    const std::vector<std::size_t> found = far_rows(peeled.rows, peeled.fit.residual, far);
-    if (found.empty()) break;
+    // Too many rows are the tails of an effect that is not yet found: only the farthest are outliers.
+    std::vector<std::size_t> found = far_rows(peeled.rows, peeled.fit.residual, far);
+    const double left = most - static_cast<double>(peeled.lines.size());
+    for (double farther = 2 * far; peeled.lines.empty() && static_cast<double>(found.size()) > left;
+         farther *= 2)
+      found = far_rows(peeled.rows, peeled.fit.residual, farther);
+    if (found.empty() || static_cast<double>(found.size()) > left) break;
     std::vector<std::size_t> keep;
     for (std::size_t row = 0; row < peeled.rows.rows(); ++row)
       if (std::find(found.begin(), found.end(), row) == found.end()) keep.push_back(row);
     for (const std::size_t row : found) peeled.lines.push_back(peeled.rows.line[row]);
-    if (static_cast<double>(peeled.lines.size()) > most) return std::nullopt;
     peeled.rows = model::select_rows(peeled.rows, keep);
     for (std::size_t i = 0; i < keep.size(); ++i) peeled.kept[i] = peeled.kept[keep[i]];
     peeled.kept.resize(keep.size());

@@ -202,7 +202,11 @@ class GatewayPublisher {
     });
     for (const SpoolRecord& record : records) {
       auto payload = decode(record.payload);
-      if (!payload) throw registry::DatabaseError("a record of the spool is damaged");
+      // A machine's name is a level of a topic (MQTT 5.0, 4.7).
+      if (!payload || record.machine.empty() || record.machine.find_first_of("+#/") != std::string::npos) {
+        desk_.with_spool([&](Spool& spool) { spool.set_aside({record.number}); });
+        continue;
+      }
       const bool old = record.time_ms + kFreshMs < wall_ms();
       for (Metric& metric : payload->metrics) metric.historical = old;
       payload->metrics.push_back({std::string(kSpoolMetric), id, record.time_ms, old});
@@ -211,10 +215,20 @@ class GatewayPublisher {
       if (!node.data(record.machine, std::move(*payload))) return false;
       sent_ = record.number;
     }
+    tell_aside();
     if (!records.empty()) return true;
     for (const std::string& machine : desk_.away())
       if (!node.death(machine)) return false;
     return true;
+  }
+
+  void tell_aside() {
+    const auto [count, file] =
+        desk_.with_spool([](Spool& spool) { return std::pair(spool.count_aside(), spool.aside()); });
+    if (count > told_aside_)
+      say_(std::to_string(count) + " damaged records of the store are set aside in " + file +
+           "; the other records are sent");
+    told_aside_ = count;
   }
 
   const GatewayFile& file_;
@@ -223,6 +237,7 @@ class GatewayPublisher {
   bool host_ = false;
   std::uint64_t sent_ = 0;  // the last number that went out on this connection, or is stored
   Clock::time_point progress_{};
+  std::uint64_t told_aside_ = 0;
 };
 
 }  // namespace

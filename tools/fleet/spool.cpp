@@ -9,11 +9,14 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "tools/registry/cells.h"
 #include "tools/registry/digest.h"
 #include "tools/registry/open_database.h"
 #include "tools/text/error.h"
+#include "tools/text/files.h"
 
 namespace vernier::fleet {
 namespace {
@@ -27,17 +30,27 @@ std::string hex_of(const std::string& bytes) {
   return text;
 }
 
-std::string bytes_of(const std::string& hex) {
+std::optional<std::string> bytes_of(const std::string& hex) {
   std::string bytes(hex.size() / 2, '\0');
   std::size_t size = 0;
   if (sodium_hex2bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), hex.data(), hex.size(),
                      nullptr, &size, nullptr) != 0 ||
       2 * size != hex.size())
-    throw registry::DatabaseError("a record of the spool is damaged");
+    return std::nullopt;
   return bytes;
 }
 
 std::uint64_t count(const registry::Cell& cell) { return static_cast<std::uint64_t>(registry::whole(cell)); }
+std::optional<SpoolRecord> record_of(const registry::Row& row) {
+  const auto payload = bytes_of(registry::words(row[3]));
+  try {
+    if (payload) return SpoolRecord{count(row[0]), registry::words(row[1]), count(row[2]), *payload};
+  } catch (const registry::DatabaseError&) {
+    // A cell that must be a number is not one.
+  }
+  return std::nullopt;
+}
+
 registry::Cell counted(std::uint64_t value) { return registry::cell(static_cast<std::int64_t>(value)); }
 
 }  // namespace
@@ -52,7 +65,10 @@ Spool::Lock::Lock(const std::string& file) : fd_(::open(file.c_str(), O_CREAT | 
 Spool::Lock::~Lock() { ::close(fd_); }
 
 Spool::Spool(const std::string& file, const std::string& owner, std::uint64_t most)
-    : lock_(file + ".lock"), database_(registry::open_database(file)), most_(most) {
+    : lock_(file + ".lock"),
+      database_(registry::open_database(file)),
+      aside_(file + ".damaged"),
+      most_(most) {
   registry::refuse_foreign(*database_, "about");
   {
     registry::Transaction transaction(*database_);
@@ -96,12 +112,40 @@ void Spool::take(std::vector<SpoolRecord>& records) {
 
 std::vector<SpoolRecord> Spool::after(std::uint64_t number, std::size_t most) {
   std::vector<SpoolRecord> records;
-  for (const registry::Row& row : database_->run(
-           "SELECT number, machine, time_ms, payload FROM record WHERE number > $1 ORDER BY number LIMIT $2",
-           {counted(number), counted(most)}))
-    records.push_back(
-        {count(row[0]), registry::words(row[1]), count(row[2]), bytes_of(registry::words(row[3]))});
+  for (bool damaged = true; damaged && records.empty();) {
+    std::vector<std::uint64_t> away;
+    for (const registry::Row& row : database_->run("SELECT number, machine, time_ms, payload FROM record "
+                                                   "WHERE number > $1 ORDER BY number LIMIT $2",
+                                                   {counted(number), counted(most)}))
+      if (auto record = record_of(row))
+        records.push_back(std::move(*record));
+      else
+        away.push_back(count(row[0]));
+    set_aside(away);
+    damaged = !away.empty();
+  }
   return records;
+}
+
+void Spool::set_aside(const std::vector<std::uint64_t>& numbers) {
+  if (numbers.empty()) return;
+  std::string lines = std::filesystem::exists(aside_) ? text::read_file(aside_) : "";
+  registry::Transaction transaction(*database_);
+  for (const std::uint64_t number : numbers) {
+    for (const registry::Row& row : database_->run(
+             "SELECT machine, time_ms, payload FROM record WHERE number = $1", {counted(number)})) {
+      const nlohmann::json line = {{"number", number},
+                                   {"machine", registry::words(row[0])},
+                                   {"time_ms", registry::words(row[1])},
+                                   {"payload", registry::words(row[2])}};
+      lines += line.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) + "\n";
+    }
+    database_->run("DELETE FROM record WHERE number = $1", {counted(number)});
+  }
+  // Before the records leave the store: after a power failure a record may be in both, never in none.
+  text::write_file(aside_, lines);
+  transaction.commit();
+  count_aside_ += numbers.size();
 }
 
 void Spool::stored(std::uint64_t number) { stored_ = std::max(stored_, std::min(number, last_)); }

@@ -32,8 +32,15 @@ class Spool {
   /// Writes records with numbers, and removes the records up to stored(), in one transaction. Throws
   /// DatabaseError.
   void take(std::vector<SpoolRecord>& records);
-  /// The records after `number`, at most `most`, in order.
+  /// The records after `number`, at most `most`, in order. Damaged records are set aside (set_aside()).
   std::vector<SpoolRecord> after(std::uint64_t number, std::size_t most);
+  /// Moves records that cannot be read to the file aside(), so that they do not stop later records. Throws
+  /// InputError if that file cannot be written; the records then stay. Throws DatabaseError.
+  void set_aside(const std::vector<std::uint64_t>& numbers);
+  /// Returns the number of records that were set aside since the spool was opened, and their file (one JSON
+  /// object a line, with the cells as they were).
+  std::uint64_t count_aside() const { return count_aside_; }
+  const std::string& aside() const { return aside_; }
   /// The registry has all up to here.
   void stored(std::uint64_t number);
   std::uint64_t stored() const { return stored_; }
@@ -64,8 +71,8 @@ class Spool {
 
   Lock lock_;
   std::unique_ptr<registry::Database> database_;
-  std::string id_;
-  std::uint64_t most_, last_ = 0, stored_ = 0, gone_ = 0, dropped_ = 0;
+  std::string id_, aside_;
+  std::uint64_t most_, last_ = 0, stored_ = 0, gone_ = 0, dropped_ = 0, count_aside_ = 0;
 };
 
 }  // namespace vernier::fleet

@@ -2,8 +2,55 @@
 #include "tools/text/words.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace vernier::text {
+namespace {
+
+struct CodePoint {
+  std::uint32_t value = 0;
+  std::size_t bytes = 0;  // 0: not UTF-8
+};
+
+// The first code point of a text that is not empty (RFC 3629, section 4).
+CodePoint first_of(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return static_cast<std::uint32_t>(static_cast<std::uint8_t>(text[i]));
+  };
+  const std::uint32_t lead = byte(0);
+  if (lead < 0x80) return {lead, 1};
+  const std::size_t bytes = lead >= 0xc2 && lead < 0xe0 ? 2 : lead >= 0xe0 && lead < 0xf0 ? 3 : 4;
+  if (lead < 0xc2 || lead > 0xf4 || bytes > text.size()) return {};
+  std::uint32_t value = lead & (0x7fu >> bytes);
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return {};
+    value = value << 6 | (byte(i) & 0x3f);
+  }
+  const bool shortest = value >= (bytes == 3 ? 0x800u : bytes == 4 ? 0x10000u : 0x80u);
+  const bool surrogate = value >= 0xd800 && value < 0xe000;
+  return shortest && !surrogate && value < 0x110000 ? CodePoint{value, bytes} : CodePoint{};
+}
+
+// Control characters C0 and C1, line and paragraph separators, and marks of the writing direction.
+bool is_control(std::uint32_t point) {
+  return point < 0x20 || (point >= 0x7f && point < 0xa0) || point == 0x61c || point == 0x200e ||
+         point == 0x200f || (point >= 0x2028 && point <= 0x202e) || (point >= 0x2066 && point <= 0x2069);
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string shown;
+  while (!text.empty()) {
+    const CodePoint point = first_of(text);
+    if (point.bytes == 0 || is_control(point.value))
+      shown += '?';
+    else
+      shown += text.substr(0, point.bytes);
+    text.remove_prefix(std::max<std::size_t>(point.bytes, 1));
+  }
+  return shown;
+}
 
 std::string trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n";

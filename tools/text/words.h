@@ -21,6 +21,11 @@ std::vector<std::string> parts_of(std::string_view text, char separator);
 /// Returns the words in one text with a separator between them: "a,b". tool.
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
 
+/// Returns a text from outside as it may be shown on a terminal and written to JSON. Control characters,
+/// marks that change the writing direction and bytes that are not UTF-8 become "?". upload::Client passes all
+/// texts of a board through this function. tool.
+std::string printable(std::string_view text);
+
 /// True if the brackets of a JSON text nest deeper than `most`. Text in strings does not count. Call
 /// nests_deeper_than before the parser for any text from outside. Deep nesting would exhaust the stack of the
 /// parser, or of code that walks its tree.

@@ -14,6 +14,7 @@
 #include "firmware/core/link/uploader.h"
 #include "tools/maths/factors.h"
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace vernier::upload {
 namespace {
@@ -43,6 +44,11 @@ T get(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
   return value;
 }
 
+// A name of a fixed length, which a zero may end.
+std::string shown_name(const char* bytes, std::size_t most) {
+  return text::printable({bytes, strnlen(bytes, most)});
+}
+
 [[noreturn]] void refused(const std::vector<std::uint8_t>& payload) {
   UploadResult result;
   const auto fault = get<std::uint8_t>(payload, 0), image = get<std::uint8_t>(payload, 1),
@@ -52,7 +58,7 @@ T get(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
   result.image = static_cast<ImageFault>(image);
   result.bind = static_cast<BindFault>(binding);
   for (std::size_t i = 3; i < payload.size(); ++i) result.offender.add(static_cast<char>(payload[i]));
-  throw text::LimitNotMet(std::string("the board refuses: ") + describe(result).c_str());
+  throw text::LimitNotMet("the board refuses: " + text::printable(describe(result).c_str()));
 }
 
 }  // namespace
@@ -78,7 +84,7 @@ std::vector<std::uint8_t> Client::request_of(LinkOp op, const std::vector<std::u
   SignedRequestHead head{};
   std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
   std::memcpy(head.nonce, challenge.nonce, sizeof(head.nonce));
-  head.counter = challenge.counter;
+  std::memcpy(head.challenge, challenge.challenge, sizeof(head.challenge));
   std::memcpy(head.board, info_.hello.board, sizeof(head.board));
   std::vector<std::uint8_t> rest;
   put(rest, static_cast<std::uint8_t>(op));
@@ -180,8 +186,7 @@ Client::Client(std::unique_ptr<Transport> transport) : transport_(std::move(tran
     const auto reply = ask(LinkOp::kName, {kind, index});
     if (reply.size() != kImageNameBytes + 1) throw text::InputError("the board's reply is of the wrong size");
     flags = reply[kImageNameBytes];
-    const auto* const text = reinterpret_cast<const char*>(reply.data());
-    return std::string(text, strnlen(text, kImageNameBytes));
+    return shown_name(reinterpret_cast<const char*>(reply.data()), kImageNameBytes);
   };
   std::uint8_t flags = 0;
   for (std::uint8_t i = 0; i < info_.hello.axes; ++i) {
@@ -201,7 +206,7 @@ void Client::read_hello() {
     throw text::InputError(
         fmt::format("the board uses version {} of the link, this tool version {}", version, kLinkVersion));
   info_.hello = get<HelloReply>(hello, 0);
-  info_.board = std::string(info_.hello.board, strnlen(info_.hello.board, sizeof(info_.hello.board)));
+  info_.board = shown_name(info_.hello.board, sizeof(info_.hello.board));
   if (info_.hello.axes > kMaxAxes || info_.hello.inputs > kMaxInputs)
     throw text::InputError("the board reports more axes or inputs than possible");
 }
@@ -326,7 +331,7 @@ std::string Client::share_name(std::uint16_t index, std::uint32_t programs) {
   put(payload, index);
   put(payload, programs);
   const auto name = get<ShareName>(ask(LinkOp::kShareName, payload), 0);
-  return {name.text, strnlen(name.text, sizeof(name.text))};
+  return shown_name(name.text, sizeof(name.text));
 }
 
 std::vector<BoardShare> Client::shares() {

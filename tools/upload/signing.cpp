@@ -159,7 +159,7 @@ SignedRequest sign_request(const SigningKey& key, const SignedRequestHead& head,
   start_sodium();
   SignedRequest request{};
   std::memcpy(request.key, key.public_part().data(), sizeof(request.key));
-  request.counter = head.counter;
+  std::memcpy(request.challenge, head.challenge, sizeof(request.challenge));
   crypto_sign_state state;
   crypto_sign_init(&state);
   crypto_sign_update(&state, reinterpret_cast<const std::uint8_t*>(&head), sizeof(head));

@@ -72,6 +72,9 @@ class Cycle {
   void set_axis_weight(std::uint32_t axis, WeightQ16 weight) noexcept { axis_weight_[axis] = weight; }
   WeightQ16 axis_weight(std::uint32_t axis) const noexcept { return axis_weight_[axis]; }
 
+  /// Starts with a fault that was latched before the start. Call before the first tick. setup.
+  void restore(Fault fault) noexcept { mode_.restore(fault); }
+
   Mode mode() const noexcept { return mode_.mode(); }
   bool holding() const noexcept { return mode_.holding(); }
   Fault latched() const noexcept { return mode_.latched(); }

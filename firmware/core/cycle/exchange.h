@@ -154,6 +154,9 @@ struct Exchange {
   Published<WorkpieceFrame> workpiece;           // written by the links
   std::atomic<Command> command{Command::kNone};  // taken by the tick
   std::atomic<std::int32_t> axis_weight[kMaxAxes];
+  // State of the mode as the store keeps it (OperatorState): bit 0 out, bit 8 holding, from bit 16 the
+  // latched fault.
+  std::atomic<std::uint32_t> operator_said{0};
   std::atomic<BoundProgram*> offered{nullptr};  // to be taken over by the next tick
   std::atomic<BoundProgram*> retired{nullptr};  // was taken out; the owner may free it
 

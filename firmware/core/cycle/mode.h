@@ -24,6 +24,12 @@ class ModeControl {
   /// its target. realtime.
   void after(Fault fault, bool at_zero, bool settled, Health& health) noexcept;
 
+  /// Starts with a fault that was latched before the start; a command clears it. Call before the first tick.
+  /// setup.
+  void restore(Fault fault) noexcept {
+    if (fault != Fault::kNone) latched_ = fault, mode_ = Mode::kFaulted;
+  }
+
   Mode mode() const noexcept { return mode_; }
   WeightQ16 weight() const noexcept { return weight_; }
   /// True if the corrections keep their present values. Only the mode Active can hold corrections.

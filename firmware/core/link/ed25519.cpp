@@ -153,7 +153,7 @@ void pack(const Point& p, std::uint8_t* bytes) noexcept {
   bytes[31] = static_cast<std::uint8_t>(bytes[31] ^ (is_odd(times(p.x, z)) ? 0x80 : 0));
 }
 
-// The negative of a packed point (section 5.1.3); false if the point does not exist. y is taken modulo p.
+// The negative of a packed point (section 5.1.3); false if the point does not exist.
 bool unpack_negative(const std::uint8_t* bytes, Point& p) noexcept {
   p.y = unpack(bytes);
   p.z = kOne;
@@ -168,6 +168,21 @@ bool unpack_negative(const std::uint8_t* bytes, Point& p) noexcept {
   carry(p.x);
   p.t = times(p.x, p.y);
   return true;
+}
+
+// True if eight times the point is the neutral one: with such a key or R one signature fits many messages.
+bool has_small_order(const Point& p) noexcept {
+  Point multiple = p;
+  for (int i = 0; i < 3; ++i) multiple = sum_of(multiple, multiple);
+  return equal(multiple.x, kZero) && equal(multiple.y, multiple.z);
+}
+
+// True if y is below p, as section 5.1.3 demands.
+bool is_canonical(const std::uint8_t* bytes) noexcept {
+  std::uint8_t reduced[32];
+  pack(unpack(bytes), reduced);
+  reduced[31] = static_cast<std::uint8_t>(reduced[31] | (bytes[31] & 0x80));
+  return same_bytes(bytes, reduced);
 }
 
 bool below_order(const std::uint8_t* scalar) noexcept {
@@ -202,7 +217,9 @@ bool ed25519ph_fits(const std::uint8_t* first, std::uint32_t first_bytes, const 
                     std::uint32_t second_bytes, const std::uint8_t* signature,
                     const std::uint8_t* key) noexcept {
   Point negative;
-  if (!below_order(signature + 32) || !unpack_negative(key, negative)) return false;
+  if (!below_order(signature + 32) || !is_canonical(key) || !unpack_negative(key, negative) ||
+      has_small_order(negative))
+    return false;
   std::uint8_t digest[Sha512::kBytes], scalar[32], expected[32];
   Sha512 message;
   message.add(first, first_bytes);
@@ -219,8 +236,9 @@ bool ed25519ph_fits(const std::uint8_t* first, std::uint32_t first_bytes, const 
   reduce(digest, scalar);
   // R = S B - h A.
   const Point base = {kBaseX, kBaseY, kOne, times(kBaseX, kBaseY)};
-  pack(sum_of(multiple(negative, scalar), multiple(base, signature + 32)), expected);
-  return same_bytes(expected, signature);
+  const Point r = sum_of(multiple(negative, scalar), multiple(base, signature + 32));
+  pack(r, expected);
+  return same_bytes(expected, signature) && !has_small_order(r);
 }
 
 }  // namespace vernier

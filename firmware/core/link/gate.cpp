@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "firmware/core/link/sha512.h"
+
 namespace vernier {
 
 LinkAccess access_needed(LinkOp op) noexcept {
@@ -32,12 +34,52 @@ bool Gate::is_challenge(const std::uint8_t* request, std::uint32_t size) noexcep
   return size == kRequestHeaderBytes && request[0] == static_cast<std::uint8_t>(LinkOp::kChallenge);
 }
 
-ChallengeReply Gate::challenge(LinkAccess access, TimeUs now) noexcept {
+// The first bits of SHA-512 over seed, nonce and a counter of 64 bits: without the seed they are random.
+ChallengeBytes Gate::fresh() noexcept {
+  std::uint8_t counted[8], digest[Sha512::kBytes];
   ++counter_;
-  open_[counter_ % kMostOpen] = {counter_, now};
+  for (int i = 0; i < 8; ++i) counted[i] = static_cast<std::uint8_t>(counter_ >> (8 * i));
+  Sha512 hash;
+  hash.add(seed_.data(), static_cast<std::uint32_t>(seed_.size()));
+  hash.add(nonce_.data(), static_cast<std::uint32_t>(nonce_.size()));
+  hash.add(counted, sizeof(counted));
+  hash.finish(digest);
+  ChallengeBytes bytes;
+  std::memcpy(bytes.data(), digest, bytes.size());
+  return bytes;
+}
+
+Gate::Challenge* Gate::of(const Caller& from) noexcept {
+  for (Challenge& challenge : open_)
+    if (challenge.open && challenge.from == from) return &challenge;
+  return nullptr;
+}
+
+Gate::Challenge& Gate::place_for(const Caller& from) noexcept {
+  if (Challenge* const own = of(from); own != nullptr) return *own;
+  Challenge* oldest = nullptr;
+  for (Challenge& challenge : open_) {
+    if (!challenge.open) return challenge;
+    if (oldest == nullptr) oldest = &challenge;
+    const bool same = challenge.from.link == from.link, found = oldest->from.link == from.link;
+    if (same != found ? same : challenge.given < oldest->given) oldest = &challenge;
+  }
+  return *oldest;
+}
+
+void Gate::forget(const Caller& from) noexcept {
+  if (Challenge* const own = of(from); own != nullptr) own->open = false;
+}
+
+ChallengeReply Gate::challenge(LinkAccess access, const Caller& from, TimeUs now) noexcept {
   ChallengeReply reply{};
   std::memcpy(reply.nonce, nonce_.data(), nonce_.size());
-  reply.counter = counter_;
+  // No request over a link that only reads is signed: it takes no place in the table.
+  if (access != LinkAccess::kRead) {
+    const ChallengeBytes bytes = fresh();
+    place_for(from) = {true, from, bytes, now};
+    std::memcpy(reply.challenge, bytes.data(), bytes.size());
+  }
   reply.access = static_cast<std::uint8_t>(access);
   reply.keys = static_cast<std::uint8_t>(identity_.keys.size());
   return reply;
@@ -62,14 +104,9 @@ LinkStatus Gate::identify(const std::uint8_t* request, std::uint32_t size, Ident
   return LinkStatus::kDone;
 }
 
-Gate::Challenge* Gate::find(std::uint32_t counter, TimeUs now) noexcept {
-  Challenge& challenge = open_[counter % kMostOpen];
-  const bool good = counter != 0 && challenge.counter == counter && now - challenge.given <= kOpenFor;
-  return good ? &challenge : nullptr;
-}
-
 // request: a signed one, whole.
-LinkStatus Gate::check(const std::uint8_t* request, std::uint32_t size, TimeUs now) noexcept {
+LinkStatus Gate::check(const std::uint8_t* request, std::uint32_t size, const Caller& from,
+                       TimeUs now) noexcept {
   SignedRequest head;
   std::memcpy(&head, request + kRequestHeaderBytes, sizeof(head));
   const std::uint8_t* const rest = request + kRequestHeaderBytes + sizeof(head);
@@ -77,33 +114,34 @@ LinkStatus Gate::check(const std::uint8_t* request, std::uint32_t size, TimeUs n
   const bool for_upload = access_needed(static_cast<LinkOp>(rest[0])) == LinkAccess::kUpload;
   if (key == nullptr || key->retired || !(for_upload ? key->upload : key->command))
     return LinkStatus::kBadSignature;
-  Challenge* const challenge = find(head.counter, now);
-  if (challenge == nullptr) return LinkStatus::kStale;
+  Challenge* const challenge = of(from);
+  if (challenge == nullptr || now - challenge->given > kOpenFor ||
+      std::memcmp(challenge->bytes.data(), head.challenge, sizeof(head.challenge)) != 0)
+    return LinkStatus::kStale;
   SignedRequestHead over{};
   std::memcpy(over.magic, kRequestMagic, sizeof(over.magic));
   std::memcpy(over.nonce, nonce_.data(), nonce_.size());
-  over.counter = head.counter;
+  std::memcpy(over.challenge, head.challenge, sizeof(over.challenge));
   std::memcpy(over.board, identity_.board.c_str(), identity_.board.size());
   const std::uint32_t rest_bytes = size - kRequestHeaderBytes - static_cast<std::uint32_t>(sizeof(head));
   if (!signature_fits(bytes_of_head(over), {rest, rest_bytes}, head.signature, key->key))
     return LinkStatus::kBadSignature;
-  challenge->counter = 0;
+  challenge->open = false;
   return LinkStatus::kDone;
 }
 
 Gate::Opened Gate::open(const std::uint8_t* request, std::uint32_t size, LinkAccess access,
-                        TimeUs now) noexcept {
+                        const Caller& from, TimeUs now) noexcept {
   Opened opened{LinkStatus::kDone, request, size};
   if (size < kRequestHeaderBytes || size > kMaxRequestBytes) return opened;
-  bool is_signed = false;
   if (request[0] == static_cast<std::uint8_t>(LinkOp::kSigned)) {
     constexpr std::uint32_t kHead = kRequestHeaderBytes + static_cast<std::uint32_t>(sizeof(SignedRequest));
     if (size <= kHead) return {LinkStatus::kBadLength, request, size};
     const auto inner = static_cast<LinkOp>(request[kHead]);
     if (access_needed(inner) > access) return {LinkStatus::kNotAllowed, request, size};
-    if (const LinkStatus status = check(request, size, now); status != LinkStatus::kDone)
+    if (const LinkStatus status = check(request, size, from, now); status != LinkStatus::kDone)
       return {status, request, size};
-    is_signed = true;
+    opened.is_signed = true;
     inner_[0] = request[kHead];
     inner_[1] = request[1];
     opened.size = kRequestHeaderBytes + size - kHead - 1;
@@ -113,7 +151,7 @@ Gate::Opened Gate::open(const std::uint8_t* request, std::uint32_t size, LinkAcc
   const auto op = static_cast<LinkOp>(opened.request[0]);
   if (access_needed(op) > access)
     opened.status = LinkStatus::kNotAllowed;
-  else if (signature_needed(op) && !is_signed && !identity_.keys.empty())
+  else if (signature_needed(op) && !opened.is_signed && !identity_.keys.empty())
     opened.status = LinkStatus::kUnsigned;
   return opened;
 }

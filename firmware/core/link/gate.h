@@ -10,29 +10,48 @@
 namespace vernier {
 
 using Nonce = std::array<std::uint8_t, sizeof(ChallengeReply::nonce)>;
+using ChallengeBytes = std::array<std::uint8_t, sizeof(ChallengeReply::challenge)>;
+/// Random bytes of one start of a board that never leave it: challenges are made from them.
+using ChallengeSeed = std::array<std::uint8_t, 32>;
+
+/// Where a request comes from. link: any value that differs between the links of a board; connection: a
+/// number that the link uses once (hal/command_link.h), 0 for a link without connections.
+struct Caller {
+  std::uintptr_t link = 0;
+  std::uint64_t connection = 0;
+  friend bool operator==(const Caller&, const Caller&) = default;
+};
 
 /// Decides which requests of a link are executed. The rights of the link count. If the board has keys, only
 /// requests signed with one of them are executed. A signed request is accepted once: the request contains the
-/// nonce of this start of the board and the number of a challenge from the last seconds. A request that was
-/// delayed on its way is therefore not valid later.
+/// nonce of this start of the board and a challenge of 128 random bits that its own connection got in the
+/// last seconds. A request that was delayed on its way, or repeated over another connection, is not valid.
 class Gate {
  public:
-  /// identity, own_key: outlive this object; own_key null: the board has no key; nonce: must not be
-  /// predictable. setup.
-  Gate(const BoardIdentity& identity, const Nonce& nonce, IdentityKey* own_key = nullptr) noexcept
-      : identity_(identity), nonce_(nonce), own_key_(own_key) {}
+  /// identity, own_key: outlive this object; own_key null: the board has no key; nonce, seed: new
+  /// with each start, from a source of random numbers; the seed must stay secret. setup.
+  Gate(const BoardIdentity& identity, const Nonce& nonce, const ChallengeSeed& seed,
+       IdentityKey* own_key = nullptr) noexcept
+      : identity_(identity), nonce_(nonce), seed_(seed), own_key_(own_key) {}
 
   /// The request that may be executed, or the reason of a refusal. It lives until the next call.
   struct Opened {
     LinkStatus status;
     const std::uint8_t* request;
     std::uint32_t size;
+    bool is_signed = false;  // with a valid signature
   };
-  /// Checks a request. now: of the clock that challenge() uses.
-  Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, TimeUs now) noexcept;
+  /// Checks a request. from: the caller of the request; now: of the clock that challenge() uses. setup.
+  Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, const Caller& from,
+              TimeUs now) noexcept;
   /// True for a request for a challenge. A challenge can be used once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
-  ChallengeReply challenge(LinkAccess access, TimeUs now) noexcept;
+  /// Gives the challenge of one connection. The challenge replaces the previous one of the connection. If the
+  /// table is full, the oldest challenge of the same link is removed. If the link has no challenge, the
+  /// oldest of all links is removed. setup.
+  ChallengeReply challenge(LinkAccess access, const Caller& from, TimeUs now) noexcept;
+  /// Removes the challenge of a connection that has ended. setup.
+  void forget(const Caller& from) noexcept;
   /// True for the request to prove the identity of the board. Every caller may send an identify request.
   static bool is_identify(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// Signs the asker's nonce, the nonce of this start and the board's name with the key of the board.
@@ -45,20 +64,25 @@ class Gate {
   }
 
  private:
-  /// Largest number of open challenges; a further challenge removes the oldest, whose client must sign again.
-  static constexpr std::uint32_t kMostOpen = 32;
+  /// Open challenges: one for each connection of two TCP links and of links without connections.
+  static constexpr std::uint32_t kMostOpen = 48;
   static constexpr TimeUs kOpenFor{10'000'000};
   struct Challenge {
-    std::uint32_t counter = 0;  // 0: no challenge
+    bool open = false;
+    Caller from;
+    ChallengeBytes bytes{};
     TimeUs given;
   };
-  Challenge* find(std::uint32_t counter, TimeUs now) noexcept;
-  LinkStatus check(const std::uint8_t* request, std::uint32_t size, TimeUs now) noexcept;
+  ChallengeBytes fresh() noexcept;
+  Challenge* of(const Caller& from) noexcept;
+  Challenge& place_for(const Caller& from) noexcept;
+  LinkStatus check(const std::uint8_t* request, std::uint32_t size, const Caller& from, TimeUs now) noexcept;
 
   const BoardIdentity& identity_;
   Nonce nonce_;
+  ChallengeSeed seed_;
   IdentityKey* own_key_;
-  std::uint32_t counter_ = 0;  // of the newest challenge
+  std::uint64_t counter_ = 0;  // of the newest challenge
   Challenge open_[kMostOpen];
   std::uint8_t inner_[kMaxRequestBytes] = {};
 };

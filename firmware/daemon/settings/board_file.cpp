@@ -24,6 +24,10 @@ namespace {
 
 constexpr double kMostCounts = 1e15;
 constexpr double kMostDelayUs = 40'000;  // of a probe: memory of the latch at 1 kHz, minus its settling time
+constexpr double kTicksToLargest = 200;  // of a default max_step without a known travel: 0.2 s at 1 kHz
+// Of a default max_step: a correction that goes from one end of its range to the other in a tenth of the
+// travel.
+constexpr double kSteepness = 10;
 
 const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link", "key"};
 
@@ -38,6 +42,13 @@ toml::table read_toml(const std::string& path) {
     throw BoardError{path + ":" + std::to_string(error.source().begin.line) + ": " +
                      std::string(error.description())};
   }
+}
+
+std::string number_text(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
 }
 
 /// Reads the settings of one table and records which of them were not read.
@@ -82,12 +93,6 @@ class Table {
     for (const auto& [key, node] : table_)
       if (!asked_.contains(std::string(key.str()))) fail("unknown setting " + std::string(key.str()), &node);
   }
-  static std::string number_text(double value) {
-    std::string text = std::to_string(value);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text;
-  }
 
  private:
   const toml::table& table_;
@@ -128,6 +133,9 @@ AxisSetting setting_of(Table& settings, bool rotary, TimeUs tick) {
     setting.limits.step = std::max<std::int64_t>(counts(speed * tick_s * scale), 1);
     setting.motion.slew = std::clamp<std::int64_t>(counts(share * speed * tick_s * scale), 1, INT32_MAX);
   }
+  const double step = settings.number("max_step", 0, 1e-9, 1e3);
+  if (step > 0)
+    setting.motion.slew = std::min(setting.motion.slew, std::max<std::int64_t>(counts(step * scale), 1));
   if (acceleration > 0)
     setting.motion.acceleration =
         std::clamp<std::int64_t>(counts(share * acceleration * tick_s * tick_s * scale), 1, INT32_MAX);
@@ -159,10 +167,23 @@ void apply_calibration(const std::string& board_path, SignalSource& output) {
   settings.nothing_else();
 }
 
-/// The limits of a real output are set by the board, outside of every image.
-void require_limits(const Table& settings, const SignalSource& output, bool rotary) {
+/// Default of max_step, mm or deg: the change of a steep correction in one tick at max_speed. Without a known
+/// travel, a share of max_correction.
+double default_step(Table& settings, const AxisEntry& axis, TimeUs tick) {
+  const double largest = settings.number("max_correction", 0, 1e-6, 1e3);
+  const double speed = settings.number("max_speed", 0, 1e-6, 1e6);
+  const double travel = axis.wiring.rotary && axis.wiring.rollover ? 360 : axis.high - axis.low;
+  const double in_a_tick = speed * static_cast<double>(tick.count) * 1e-6;
+  const double step = travel > 0 ? kSteepness * 2 * largest / travel * in_a_tick : largest / kTicksToLargest;
+  return std::max(step, 1e-6);
+}
+
+/// The limits of a real output are set by the board, outside of every image: an image without a slew limit
+/// moves it no faster.
+void require_limits(Table& settings, AxisEntry& axis, TimeUs tick) {
+  const SignalSource& output = axis.output;
   if (output.kind.empty() || output.kind == "sim") return;
-  const std::string unit = rotary ? "deg" : "mm";
+  const std::string unit = axis.wiring.rotary ? "deg" : "mm";
   const auto require = [&](const char* name, const std::string& mend) {
     if (!settings.has(name))
       settings.fail(std::string(name) + " is missing: an output of kind " + output.kind + " needs it; add " +
@@ -172,6 +193,13 @@ void require_limits(const Table& settings, const SignalSource& output, bool rota
           "max_correction = 0.1  # " + unit + ", the most that is ever added to the command");
   require("max_speed",
           "max_speed = 500  # " + unit + "/s of the axis; correction_share of it moves a correction");
+  if (settings.has("max_step")) return;
+  const std::string step = number_text(default_step(settings, axis, tick));
+  axis.default_step = "max_step = " + step + "  # " + unit + " in one tick";
+  if (settings.has("max_acceleration")) return;
+  settings.fail("max_step or max_acceleration is missing: an output of kind " + output.kind +
+                " needs one of them; add max_step = " + step + "  # " + unit +
+                ", the most that a correction changes in one tick");
 }
 
 void read_axis(BoardFile& board, const std::string& name, const toml::table& table) {
@@ -193,7 +221,7 @@ void read_axis(BoardFile& board, const std::string& name, const toml::table& tab
   axis.position = source_of(settings.table("position"), board.path, "axis." + name + ".position");
   axis.output = source_of(settings.table("output"), board.path, "axis." + name + ".output");
   if (axis.position.kind.empty()) settings.fail("position is missing");
-  require_limits(settings, axis.output, axis.wiring.rotary);
+  require_limits(settings, axis, board.service.upload.tick);
   apply_calibration(board.path, axis.output);
   settings.nothing_else();
   board.service.wiring.axes.push_back(axis.wiring);

@@ -36,7 +36,8 @@ struct SignalSource {
 /// Entry of one axis or one input of the board file.
 struct AxisEntry {
   Wiring::Axis wiring;
-  double low = 0, high = 0;  // mm or deg; range of a simulated axis
+  double low = 0, high = 0;  // mm or deg; travel, and range of a simulated axis
+  std::string default_step;  // text of a default of max_step, if max_step is not given for a real output
   SignalSource position, output;
 };
 struct InputEntry {

@@ -114,7 +114,9 @@ void ModbusConversation::open_mailbox(CommandHandler& handler, const std::uint8_
   reply_size_ = 0;
   const auto request = static_cast<std::uint32_t>(word_at(mailbox_));
   if (request > size - 2) return;
+  handler.comes_over(connection_);
   const std::uint32_t answered = handler.answer(mailbox_ + 2, request, reply_);
+  signed_ = signed_ || handler.was_signed();
   waits_for_reply_ = answered == CommandHandler::kLater;
   if (waits_for_reply_)
     ticket_ = handler.ticket();

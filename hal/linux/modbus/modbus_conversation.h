@@ -32,8 +32,11 @@ class ModbusConversation {
   ModbusConversation(const ModbusLayout& layout, int unit, InstantNs frame_time) noexcept
       : layout_(layout), unit_(unit), frame_time_(frame_time) {}
 
-  /// Sets the time of the last request to `when`.
-  void begin(InstantNs when) noexcept { last_request_ = when; }
+  /// Sets the time of the last request to `when`. connection: number of CommandHandler::comes_over.
+  void begin(InstantNs when, std::uint64_t connection) noexcept {
+    last_request_ = when, connection_ = connection;
+  }
+  std::uint64_t connection() const noexcept { return connection_; }
 
   /// Returns the place for received bytes; room() is the number of bytes that fit now.
   std::uint8_t* space() noexcept { return in_ + used_; }
@@ -53,12 +56,13 @@ class ModbusConversation {
   /// True if the peer sends a wrong length, is too slow, or does not take its reply: a connection must then
   /// be closed. A serial line continues: the received bytes are discarded.
   bool broken(InstantNs now) noexcept;
-  /// Returns the priority of a client. If more clients connect than can be served, the client with the lowest
-  /// number is removed: first a client that does not take its reply, then the client whose last request is
-  /// oldest. A client that waits for the medium is never removed.
-  std::int64_t worth() const noexcept {
-    return waiting() > 0 ? -1 : waits_for_reply_ ? INT64_MAX : last_request_.count;
-  }
+  /// True if the client has not taken its reply.
+  bool has_reply() const noexcept { return waiting() > 0; }
+  /// True if the client waits for the medium.
+  bool waits_for_medium() const noexcept { return waits_for_reply_; }
+  /// True if a request of the client had a valid signature.
+  bool is_signed() const noexcept { return signed_; }
+  InstantNs last_request() const noexcept { return last_request_; }
 
  private:
   bool tcp() const noexcept { return unit_ == 0; }
@@ -75,13 +79,14 @@ class ModbusConversation {
 
   ModbusLayout layout_;
   int unit_;
+  std::uint64_t connection_ = 0;
   InstantNs frame_time_, frame_began_, reply_began_, last_request_, last_byte_;
   std::uint8_t in_[kMostFrame] = {}, out_[kMostFrame] = {};
   std::uint32_t used_ = 0, out_size_ = 0, sent_ = 0;
   std::uint8_t mailbox_[2 * kMostMailbox] = {};  // written by the peer
   std::uint8_t reply_[256] = {};
   std::uint32_t reply_size_ = 0, ticket_ = 0;
-  bool waits_for_reply_ = false, senseless_ = false;
+  bool waits_for_reply_ = false, senseless_ = false, signed_ = false;
 };
 
 /// Returns the CRC of an RTU frame (Modbus over Serial Line V1.02, 6.2.2).

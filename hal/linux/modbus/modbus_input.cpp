@@ -2,16 +2,24 @@
 #include "hal/linux/modbus/modbus_input.h"
 
 #include <modbus.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <bit>
 #include <cerrno>
 #include <cmath>
+#include <cstring>
 
 namespace vernier {
 namespace {
 
 constexpr std::int64_t kUsPerS = 1'000'000;
+constexpr std::uint8_t kAskHolding = 3, kAskInput = 4, kException = 0x80;
+constexpr int kMbap = 7;  // transaction, protocol, length: two bytes each; unit
+
+bool is_exception(int error) { return error >= EMBXILFUN && error <= EMBXGTAR; }
+std::uint8_t upper(int word) { return static_cast<std::uint8_t>(word >> 8); }
+std::uint8_t lower(int word) { return static_cast<std::uint8_t>(word); }
 
 }  // namespace
 
@@ -50,18 +58,49 @@ bool ModbusLine::connected() noexcept {
   return open_;
 }
 
+// libmodbus compares the unit of an answer on serial lines only, so a request over TCP and the comparison are
+// made here (Modbus Messaging on TCP/IP V1.0b, 4.2). -1 with errno of libmodbus: no values.
+int ModbusLine::ask_over_tcp(int unit, Registers kind, int address, int count,
+                             std::uint16_t* values) noexcept {
+  ++transaction_;
+  const std::uint8_t function = kind == Registers::kInput ? kAskInput : kAskHolding;
+  const std::uint8_t request[] = {
+      upper(transaction_), lower(transaction_), 0,           0, 0, 6, lower(unit), function, upper(address),
+      lower(address),      upper(count),        lower(count)};
+  std::uint8_t answer[MODBUS_TCP_MAX_ADU_LENGTH] = {};
+  const int fd = modbus_get_socket(context_);
+  if (::send(fd, request, sizeof(request), MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof(request))) return -1;
+  const int got = modbus_receive_confirmation(context_, answer);
+  if (got < 0) return -1;
+  errno = EMBBADDATA;
+  if (got < kMbap + 2 || std::memcmp(answer, request, 4) != 0) return -1;
+  if ((answer[4] << 8 | answer[5]) != got - (kMbap - 1)) return -1;
+  if (answer[6] != request[6]) return errno = EMBBADSLAVE, -1;
+  const std::uint8_t* const body = answer + kMbap;
+  if (got == kMbap + 2 && body[0] == (function | kException)) {
+    if (is_exception(MODBUS_ENOBASE + body[1])) errno = MODBUS_ENOBASE + body[1];
+    return -1;
+  }
+  if (body[0] != function || body[1] != 2 * count || got != kMbap + 2 + 2 * count) return -1;
+  for (int i = 0; i < count; ++i)
+    values[i] = static_cast<std::uint16_t>(body[2 + 2 * i] << 8 | body[3 + 2 * i]);
+  return count;
+}
+
 bool ModbusLine::read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept {
   if (!connected()) return false;
   if (after_silence_) ::usleep(static_cast<useconds_t>(wait_.count));
   after_silence_ = false;
   modbus_flush(context_);
   modbus_set_slave(context_, unit);
-  const int got = kind == Registers::kInput ? modbus_read_input_registers(context_, address, count, values)
-                                            : modbus_read_registers(context_, address, count, values);
+  const int got = !serial_                    ? ask_over_tcp(unit, kind, address, count, values)
+                  : kind == Registers::kInput ? modbus_read_input_registers(context_, address, count, values)
+                                              : modbus_read_registers(context_, address, count, values);
   if (got == count) return true;
   // An exception is a valid answer. After any other error the line must become quiet, and a connection is
   // opened again. (So is a serial device that was removed.)
-  const bool exception = errno >= EMBXILFUN && errno <= EMBXGTAR;
+  const bool exception = is_exception(errno);
+  if (errno == EMBBADDATA || errno == EMBBADSLAVE || errno == EMBBADCRC) ++wrong_answers_;
   after_silence_ = serial_ && !exception;
   if (exception || (serial_ && errno != EBADF && errno != EIO)) return false;
   modbus_close(context_);

@@ -27,17 +27,22 @@ class ModbusLine {
   ModbusLine& operator=(const ModbusLine&) = delete;
 
   enum class Registers { kInput, kHolding };
-  /// Reads `count` registers (1 or 2). False: no answer in time, an exception, or an answer to another
-  /// request. After a missing answer the line is not used for the same time again: a late answer is then not
-  /// taken for the answer to the next request. setup.
+  /// Reads `count` registers (1 or 2). False: no answer in time, an exception, or an answer of another
+  /// unit, transaction, function or length. After a missing answer the line is not used for the same time
+  /// again: a late answer is then not taken for the answer to the next request. setup.
   bool read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;
+  /// Answers so far that did not belong to their request or were damaged. For the thread that reads. setup.
+  std::uint64_t wrong_answers() const noexcept { return wrong_answers_; }
 
  private:
   ModbusLine(_modbus* context, bool serial, TimeUs wait);
   bool connected() noexcept;
+  int ask_over_tcp(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;
 
   _modbus* context_;
   bool serial_, open_ = false, after_silence_ = false;
+  std::uint16_t transaction_ = 0;  // of the newest request over TCP
+  std::uint64_t wrong_answers_ = 0;
   TimeUs wait_;
 };
 

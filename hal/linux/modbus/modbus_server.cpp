@@ -14,16 +14,25 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+#include <tuple>
 
 namespace vernier {
 namespace {
 
-constexpr std::size_t kMostClients = 16;
-constexpr int kMostAccepted = 16;     // in one round
-constexpr int kRequestsInARound = 4;  // of one client, before the others have their turn
+// Places of unsigned clients for as long as they ask, and further places, in which a client without a valid
+// signature stays only until the next one waits. A further client thus always gets a place to sign in.
+constexpr std::size_t kOrdinaryPlaces = 16, kPlacesToSign = 4;
+constexpr std::size_t kMostClients = kOrdinaryPlaces + kPlacesToSign;
+constexpr std::size_t kMostArrivals = 32;  // that wait for a place
+constexpr int kMostAccepted = 16;          // in one round
+constexpr int kBacklog = 64;               // of the socket, for what comes in one round
+constexpr int kRequestsInARound = 4;       // of one client, before the others have their turn
 constexpr InstantNs kFrameTime(500'000'000);
-constexpr InstantNs kIdle(2'000'000'000);        // a client without a request for this time may be removed
-constexpr InstantNs kIntroduction(200'000'000);  // and one that is new, after that
+constexpr InstantNs kIdle(2'000'000'000);         // a client without a request for this time may be removed
+constexpr InstantNs kIntroduction(200'000'000);   // and one that is new, after that
+constexpr InstantNs kTimeToSign(500'000'000);     // in a place to sign in: a command needs 50 ms on a LAN
+constexpr InstantNs kSignedIdle(30'000'000'000);  // as kIdle, of a client that signed
+constexpr std::size_t kUnfair = 2;  // unsigned clients more than the peer of an arrival has: one goes
 
 InstantNs now_ns() {
   timespec now{};
@@ -43,6 +52,7 @@ ModbusServer::~ModbusServer() {
     return;
   }
   for (const Client& client : clients_) ::close(client.fd);
+  for (const Arrival& arrival : arrivals_) ::close(arrival.fd);
 }
 
 std::unique_ptr<ModbusServer> ModbusServer::tcp(const std::string& address, int port,
@@ -61,8 +71,8 @@ std::unique_ptr<ModbusServer> ModbusServer::tcp(const std::string& address, int 
   name.sin_port = htons(static_cast<std::uint16_t>(port));
   socklen_t length = sizeof(name);
   if (fd < 0 || ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes)) != 0 ||
-      ::bind(fd, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0 || ::listen(fd, 4) != 0 ||
-      ::getsockname(fd, reinterpret_cast<sockaddr*>(&name), &length) != 0) {
+      ::bind(fd, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) != 0 ||
+      ::listen(fd, kBacklog) != 0 || ::getsockname(fd, reinterpret_cast<sockaddr*>(&name), &length) != 0) {
     error = last_error(address + ":" + std::to_string(port));
     if (fd >= 0) ::close(fd);
     return nullptr;
@@ -87,40 +97,90 @@ std::unique_ptr<ModbusServer> ModbusServer::rtu(const std::string& device, int b
   server->line_ = context;
   const int fd = modbus_get_socket(context);
   ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
-  server->clients_.push_back({fd, ModbusConversation(layout, unit, server->frame_time_)});
+  server->clients_.push_back({fd, ModbusConversation(layout, unit, server->frame_time_), 0, {}});
   return server;
 }
 
-// First a client that does not take its reply is removed, then the client that was idle longest; never a
-// client that is being served. A tool that ended without closing, or many idle clients, therefore cannot
-// block a working one.
-std::vector<ModbusServer::Client>::const_iterator ModbusServer::first_to_go() const noexcept {
-  return std::min_element(clients_.begin(), clients_.end(),
-                          [](const Client& a, const Client& b) { return a.talk.worth() < b.talk.worth(); });
+std::size_t ModbusServer::places_of(std::uint32_t peer) const noexcept {
+  return static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(), [&](const Client& client) {
+    return client.peer == peer && !client.talk.is_signed();
+  }));
 }
 
-// If no client can be removed now, a new client waits in the queue of the socket. It is not refused, because
-// an inactive client is removed soon.
-bool ModbusServer::has_room(InstantNs now) const noexcept {
-  return clients_.size() < kMostClients || first_to_go()->talk.worth() <= (now - kIdle).count;
+// A client that is being served never goes; a client that signed goes after a long pause only.
+bool ModbusServer::may_go(std::size_t index, std::size_t places, InstantNs now) const noexcept {
+  const Client& client = clients_[index];
+  const InstantNs idle = now - client.talk.last_request();
+  if (client.talk.waits_for_medium()) return false;
+  if (client.talk.has_reply()) return true;
+  if (client.talk.is_signed()) return idle >= kSignedIdle;
+  const auto before = std::count_if(clients_.begin(), clients_.begin() + static_cast<std::ptrdiff_t>(index),
+                                    [](const Client& other) { return !other.talk.is_signed(); });
+  const std::size_t held = places_of(client.peer);
+  const bool has_to_sign = static_cast<std::size_t>(before) >= kOrdinaryPlaces && held >= places;
+  return idle >= kIdle || (has_to_sign && now - client.since >= kTimeToSign) || held >= places + kUnfair;
 }
 
-void ModbusServer::accept_clients(InstantNs now) {
-  for (int i = 0; i < kMostAccepted && has_room(now); ++i) {
-    const int fd = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+// The client that makes room for one whose peer has `places`, or kMostClients: first one that does not take
+// its reply, then one of the peer with the most unsigned clients, then the one that was idle longest.
+std::size_t ModbusServer::first_to_go(std::size_t places, InstantNs now) const noexcept {
+  const auto rank = [&](const Client& client) {
+    const std::size_t held = client.talk.is_signed() ? 0 : places_of(client.peer);
+    return std::tuple(!client.talk.has_reply(), kMostClients - held, client.talk.last_request());
+  };
+  std::size_t first = kMostClients;
+  for (std::size_t i = 0; i < clients_.size(); ++i)
+    if (may_go(i, places, now) && (first == kMostClients || rank(clients_[i]) < rank(clients_[first])))
+      first = i;
+  return first;
+}
+
+void ModbusServer::remove(std::size_t client, CommandHandler& handler) noexcept {
+  handler.ends(clients_[client].talk.connection());
+  ::close(clients_[client].fd);
+  clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(client));
+}
+
+// An arrival waits for a place. If too many wait, one of the peer with the most of them is closed.
+void ModbusServer::accept_arrivals() {
+  for (int i = 0; i < kMostAccepted; ++i) {
+    sockaddr_in name{};
+    socklen_t length = sizeof(name);
+    const int fd =
+        ::accept4(listening_, reinterpret_cast<sockaddr*>(&name), &length, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd < 0) return;
+    arrivals_.push_back({fd, name.sin_addr.s_addr});
+    if (arrivals_.size() <= kMostArrivals) continue;
+    const auto waiting = [&](const Arrival& one) {
+      return std::count_if(arrivals_.begin(), arrivals_.end(),
+                           [&](const Arrival& other) { return other.peer == one.peer; });
+    };
+    const auto most = std::max_element(arrivals_.begin(), arrivals_.end(),
+                                       [&](const auto& a, const auto& b) { return waiting(a) < waiting(b); });
+    ::close(most->fd);
+    arrivals_.erase(most);
+  }
+}
+
+// The arrival whose peer has the fewest clients comes in first.
+void ModbusServer::admit_arrivals(CommandHandler& handler, InstantNs now) {
+  while (!arrivals_.empty()) {
+    const auto next = std::min_element(
+        arrivals_.begin(), arrivals_.end(),
+        [&](const Arrival& a, const Arrival& b) { return places_of(a.peer) < places_of(b.peer); });
+    if (clients_.size() >= kMostClients) {
+      const std::size_t first = first_to_go(places_of(next->peer), now);
+      if (first == kMostClients) return;
+      remove(first, handler);
+    }
     const int yes = 1;
     // A small buffer, so that a peer that does not take its replies shows soon.
     const int buffer = 4096;
-    ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
-    ::setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &buffer, sizeof(buffer));
-    if (clients_.size() >= kMostClients) {
-      const auto first = first_to_go();
-      ::close(first->fd);
-      clients_.erase(first);
-    }
-    clients_.push_back({fd, ModbusConversation(layout_, unit_, frame_time_)});
-    clients_.back().talk.begin(now - kIdle + kIntroduction);
+    ::setsockopt(next->fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
+    ::setsockopt(next->fd, SOL_SOCKET, SO_SNDBUF, &buffer, sizeof(buffer));
+    clients_.push_back({next->fd, ModbusConversation(layout_, unit_, frame_time_), next->peer, now});
+    clients_.back().talk.begin(now - kIdle + kIntroduction, ++connections_);
+    arrivals_.erase(next);
   }
 }
 
@@ -155,7 +215,7 @@ bool ModbusServer::serve_client(Client& client, CommandHandler& handler, Instant
 
 std::uint32_t ModbusServer::handles(int* handles, std::uint32_t room) const noexcept {
   std::uint32_t count = 0;
-  if (listening_ >= 0 && room > 0 && has_room(now_ns())) handles[count++] = listening_;
+  if (listening_ >= 0 && room > 0) handles[count++] = listening_;
   // A client that is not listened to wakes no thread.
   for (const Client& client : clients_)
     if (count < room && client.talk.room() > 0) handles[count++] = client.fd;
@@ -171,11 +231,12 @@ HalFault ModbusServer::serve(CommandHandler& handler, TimeUs wait) noexcept {
     return errno == EINTR ? HalFault::kNone : HalFault::kRefused;
   const InstantNs now = now_ns();
   for (std::size_t i = clients_.size(); i-- > 0;) {
-    if (serve_client(clients_[i], handler, now) || line_ != nullptr) continue;
-    ::close(clients_[i].fd);
-    clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(i));
+    if (!serve_client(clients_[i], handler, now) && line_ == nullptr) remove(i, handler);
   }
-  if (listening_ >= 0) accept_clients(now);
+  if (listening_ >= 0) {
+    accept_arrivals();
+    admit_arrivals(handler, now);
+  }
   return HalFault::kNone;
 }
 

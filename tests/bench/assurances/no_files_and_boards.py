@@ -999,13 +999,13 @@ def a_check(r, no, d):
     if what == "key": pub = "keys/none.pub"
     if what == "key dir": pub = "keys"
     if what == "key garbage": write(d, "bad.pub", "not a key\n"); pub = "bad.pub"
-    if what == "calibration": extra = '[axis.Q]\nhigh = 10\nmax_speed = 100\nmax_correction = 0.1\nposition = { kind = "sim" }\noutput = { kind = "iio-dac", root = "iio", device = "dac", codes = 255, span = 0.25, calibration = "q.toml" }\n'
-    if what == "calibration garbage": write(d, "q.toml", "span = \"abc\"\n"); extra = '[axis.Q]\nhigh = 10\nmax_speed = 100\nmax_correction = 0.1\nposition = { kind = "sim" }\noutput = { kind = "iio-dac", root = "iio", device = "dac", codes = 255, span = 0.25, calibration = "q.toml" }\n'
+    if what == "calibration": extra = '[axis.Q]\nhigh = 10\nmax_speed = 100\nmax_step = 0.001\nmax_correction = 0.1\nposition = { kind = "sim" }\noutput = { kind = "iio-dac", root = "iio", device = "dac", codes = 255, span = 0.25, calibration = "q.toml" }\n'
+    if what == "calibration garbage": write(d, "q.toml", "span = \"abc\"\n"); extra = '[axis.Q]\nhigh = 10\nmax_speed = 100\nmax_step = 0.001\nmax_correction = 0.1\nposition = { kind = "sim" }\noutput = { kind = "iio-dac", root = "iio", device = "dac", codes = 255, span = 0.25, calibration = "q.toml" }\n'
     if what.startswith("calibration"):
         write(d, "iio/iio:device0/name", "dac\n"); write(d, "iio/iio:device0/out_voltage0_raw", "127\n")
         if not no: write(d, "q.toml", "span = 0.2500\nzero = 127.0\npolarity = \"normal\"\n")
-    if what == "pwm": extra = '[axis.Q]\nhigh = 10\nmax_speed = 100\nmax_correction = 0.1\nposition = { kind = "sim" }\noutput = { kind = "pwm", path = "/nonexistent/pwm0", period_ns = 50000, span = 0.25 }\n'
-    if what == "iio": extra = '[axis.Q]\nhigh = 10\nmax_speed = 100\nmax_correction = 0.1\nposition = { kind = "sim" }\noutput = { kind = "iio-dac", device = "nodac", codes = 4095, span = 0.02 }\n'
+    if what == "pwm": extra = '[axis.Q]\nhigh = 10\nmax_speed = 100\nmax_step = 0.001\nmax_correction = 0.1\nposition = { kind = "sim" }\noutput = { kind = "pwm", path = "/nonexistent/pwm0", period_ns = 50000, span = 0.25 }\n'
+    if what == "iio": extra = '[axis.Q]\nhigh = 10\nmax_speed = 100\nmax_step = 0.001\nmax_correction = 0.1\nposition = { kind = "sim" }\noutput = { kind = "iio-dac", device = "nodac", codes = 4095, span = 0.02 }\n'
     if what == "gpio": extra = '[probe]\nline = { kind = "gpio", chip = "gpiochip77", line = 3 }\n'
     if what == "enable": extra = '[digital]\nenable = { kind = "gpio", chip = "gpiochip77", line = 3 }\n'
     if what == "key2": extra = '[[key]]\nname = "a"\nfile = "%s"\nrole = "all"\n' % ("none.pub" if no else "more/vernier.pub")

@@ -39,6 +39,9 @@ class Noting : public CommandHandler {
       note(reply + kReplyHeaderBytes);
     return bytes;
   }
+  void comes_over(std::uint64_t connection) override { handler_.comes_over(connection); }
+  void ends(std::uint64_t connection) override { handler_.ends(connection); }
+  bool was_signed() const override { return handler_.was_signed(); }
   std::uint32_t ticket() const override { return handler_.ticket(); }
   std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override {
     return handler_.later(ticket, reply);

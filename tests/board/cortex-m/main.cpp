@@ -7,6 +7,7 @@
 #include <new>
 
 #include "firmware/core/service.h"
+#include "tables/operator_record.h"
 #include "tables/serial_frame.h"
 #include "tests/bench/cortex-m/semihost.h"
 #include "tests/board/cortex-m/machine.h"
@@ -53,12 +54,12 @@ class RamStore : public SlotStore {
   }
   std::uint32_t capacity() const noexcept override { return kSlotBytes; }
   HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override {
-    if (place >= kSlotRecordCount || size > sizeof(records_[0])) return HalFault::kNoDevice;
+    if (place >= kRecords || size > sizeof(records_[0])) return HalFault::kNoDevice;
     return copy(bytes, records_[place], size), HalFault::kNone;
   }
   HalFault write_record(std::uint32_t place, const std::uint8_t* bytes,
                         std::uint32_t size) noexcept override {
-    if (place >= kSlotRecordCount || size > sizeof(records_[0])) return HalFault::kNoDevice;
+    if (place >= kRecords || size > sizeof(records_[0])) return HalFault::kNoDevice;
     return copy(records_[place], bytes, size), HalFault::kNone;
   }
   HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
@@ -77,7 +78,8 @@ class RamStore : public SlotStore {
   static bool fits(std::uint32_t slot, std::uint32_t offset, std::uint32_t size) {
     return slot < kSlotCount && offset <= kSlotBytes && size <= kSlotBytes - offset;
   }
-  std::uint8_t slots_[kSlotCount][kSlotBytes], records_[kSlotRecordCount][sizeof(SlotRecord)];
+  static constexpr std::uint32_t kRecords = kSlotRecordCount + kOperatorRecordCount;
+  std::uint8_t slots_[kSlotCount][kSlotBytes], records_[kRecords][sizeof(OperatorRecord)];
 };
 
 /// CMSDK UART 0 (Arm DDI 0479, section 4.3) with the framing of tables/serial_frame.h.

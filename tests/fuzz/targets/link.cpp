@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Requests as Modbus, ISO-TP and serial links hand them over, to a whole board of two axes: read, command,
 // upload, signed or not.
+#include <cstring>
 #include <memory>
 
 #include "firmware/core/service.h"
@@ -38,7 +39,7 @@ class Request : public CommandLink {
 };
 
 /// First byte: the link's access and whether the board has a key. Then requests, a tick after each; a signed
-/// one gets the counter of the last challenge.
+/// one gets the last challenge.
 void take(Bytes bytes) {
   Pieces pieces(bytes);
   const std::uint8_t kind = pieces.byte();
@@ -59,20 +60,20 @@ void take(Bytes bytes) {
   Request link;
   LinkRights rights;
   rights.access = static_cast<LinkAccess>(kind % 3);
-  std::uint32_t challenge = 0;
+  ChallengeBytes challenge{};
   for (Bytes piece; pieces.next(piece);) {
     std::vector<std::uint8_t> message(piece.begin(), piece.end());
-    constexpr std::size_t kCounterAt = kRequestHeaderBytes + offsetof(SignedRequest, counter);
-    if (message.size() >= kCounterAt + 4 && message[0] == static_cast<std::uint8_t>(LinkOp::kSigned))
-      for (std::size_t i = 0; i < 4; ++i)
-        message[kCounterAt + i] = static_cast<std::uint8_t>(challenge >> (8 * i));
+    constexpr std::size_t kAt = kRequestHeaderBytes + offsetof(SignedRequest, challenge);
+    if (message.size() >= kAt + challenge.size() && message[0] == static_cast<std::uint8_t>(LinkOp::kSigned))
+      std::memcpy(message.data() + kAt, challenge.data(), challenge.size());
     link.message = message;
     service->serve(link, TimeUs(0), rights);
     expect(link.size <= kMaxReplyBytes, "a reply longer than any");
     expect(message.size() < kRequestHeaderBytes || link.size >= kReplyHeaderBytes,
            "a request without a reply");
-    if (message.size() >= 2 && message[0] == static_cast<std::uint8_t>(LinkOp::kChallenge) && link.size > 20)
-      for (std::size_t i = 4; i-- > 0;) challenge = challenge << 8 | link.reply[kReplyHeaderBytes + 16 + i];
+    if (message.size() >= 2 && message[0] == static_cast<std::uint8_t>(LinkOp::kChallenge) && link.size > 35)
+      std::memcpy(challenge.data(), link.reply + kReplyHeaderBytes + offsetof(ChallengeReply, challenge),
+                  challenge.size());
     service->look_after_programs();
     plant.advance();
     service->tick();

@@ -39,7 +39,7 @@ void take(Bytes bytes) {
   ModbusConversation talk(kLayout, unit, InstantNs(500'000'000));
   Echo handler;
   std::int64_t now = 1'000'000'000;
-  talk.begin(InstantNs(now));
+  talk.begin(InstantNs(now), 1);
   for (Bytes piece; pieces.next(piece);) {
     std::vector<std::uint8_t> line(piece.begin(), piece.end());
     if (unit != 0 && line.size() >= 2) {

@@ -182,8 +182,8 @@ TEST_F(Instruments, LaserAndTurnedTrackerAreFittedTogether) {
   EXPECT_NE(said().find("tracker.csv has its own set-up BaseShift[tracker]"), std::string::npos) << said();
   EXPECT_NE(read_file(in("f.xml")).find("<BaseShift setup=\"tracker\""), std::string::npos);
   // The fitted machine knows the set-up of the file by its name.
-  ASSERT_EQ(run("vernier compare f.xml tracker.csv --limit max=1um"), 0) << said();
-  ASSERT_EQ(run("vernier compare f.xml laser.csv --limit max=1um"), 0) << said();
+  ASSERT_EQ(run("vernier compare f.xml tracker.csv --limit 1um"), 0) << said();
+  ASSERT_EQ(run("vernier compare f.xml laser.csv --limit 1um"), 0) << said();
 }
 
 }  // namespace

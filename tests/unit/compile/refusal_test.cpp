@@ -48,6 +48,10 @@ TEST(Compile, RefusesInOneLineWithTheReason) {
   expect_one_line(refusal("min=\"0\" max=\"600\"", "min=\"0\""), "X", "min and max");
   expect_one_line(refusal("BY*dirY", "BY*log(Y)"), "BY*log(Y)", "log");
   expect_one_line(refusal("BY*dirY", "BY/(Y-100)"), "BY/(Y-100)", "division");
+  // Up to 600^6561 mm: it was an internal error.
+  expect_one_line(refusal("BY*dirY", "BY*dirY+1e-3*(((X^9)^9)^9)^9"), "(((X^9)^9)^9)^9", "can exceed 1e100");
+  expect_one_line(refusal("BY*dirY", "BY*dirY+1e-3*(((X^9)^9)^9)^-9"), "(((X^9)^9)^9)^-9",
+                  "can exceed 1e100");
   expect_one_line(refusal("BY*dirY", "BY*atan2(Y-5,X-5)"), "atan2", "180 deg");
   expect_one_line(refusal("lag(T_column-20,600)", "lag(T_column-20,100+Y)"), "lag", "time constant");
   expect_one_line(refusal("Z=\"lYz\"", "Z=\"abs(X-100)\""), "X", "direction of motion with a step");

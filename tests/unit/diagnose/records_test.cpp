@@ -219,5 +219,50 @@ TEST(Records, EveryStepOfTheCheckRowsIsTold) {
         << answer.explanation;
 }
 
+/// 160 random positions with five readings each. Each position has an error of 1.5 um; its readings agree to
+/// 0.03 um. u is 1.5 um.
+std::string five_readings_of_each_visit(double wave_mm) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> noise(0, 0.0015);
+  std::uniform_real_distribution<double> place(0, 600);
+  std::string text = "X[mm],x[mm],u[um],run,role\n";
+  for (int visit = 0; visit < 160; ++visit) {
+    const double x = std::round(100 * place(random)) / 100, error = wave_mm * sine(x / 70) + noise(random);
+    for (int i = 0; i < 5; ++i)
+      text += fmt::format("{:.2f},{:.6f},1.5,r{},{}\n", x, x + error + 0.02 * noise(random), visit / 40,
+                          visit % 4 == 3 ? "check" : "fit");
+  }
+  return text;
+}
+
+TEST(Records, ReadingsOfAVisitMayAgreeBetterThanU) {
+  const Diagnosis nothing = diagnosed(kLinear, five_readings_of_each_visit(0));
+  EXPECT_EQ(nothing.verdict, Verdict::kConsistent) << nothing.explanation;
+
+  const Diagnosis wave = diagnosed(kLinear, five_readings_of_each_visit(0.006));
+  EXPECT_EQ(wave.verdict, Verdict::kMissingEffect) << wave.explanation;
+  EXPECT_EQ(wave.candidates.at(0).candidate.choice.effect->id, "cyclic-error");
+}
+
+TEST(Records, OutliersDoNotTurnAGrowthIntoADriftOfTheInstrument) {
+  // Six outliers of 0.3 mm raise the noise so far that the growth of 9 um looks like a drift.
+  std::string machine = kLinear;
+  machine.replace(machine.find("<machineaxes>"), 0, "<inputs><T unit=\"degC\"/></inputs>");
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::uniform_real_distribution<double> place(0, 500);
+  std::string text = "X[mm],x[mm],T[degC],t[s],u[um],run,role\n";
+  for (int row = 0; row < 570; ++row) {
+    const double t = 20.0 * row, warm = 3 * std::sin(t / 2300) + 1.5 * std::sin(t / 700);
+    const double x = std::round(place(random)), wild = row % 96 == 41 ? (row % 192 == 41 ? 0.3 : -0.4) : 0;
+    text += fmt::format("{:.2f},{:.6f},{:.4f},{},1,r{},{}\n", x, x + 11e-6 * warm * x + wild + noise(random),
+                        20 + warm, t, row / 114, row % 4 == 3 ? "check" : "fit");
+  }
+  const Diagnosis answer = diagnosed(machine, text);
+  EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
+  EXPECT_EQ(answer.candidates.at(0).candidate.choice.effect->id, "thermal-scale");
+  EXPECT_NE(answer.explanation.find("Left out:"), std::string::npos) << answer.explanation;
+}
+
 }  // namespace
 }  // namespace vernier::records_test

@@ -31,6 +31,44 @@ TEST_F(DaemonBoard, TakesAnImageKeepsItAndRunsItAfterAKill) {
   EXPECT_EQ(second.end(SIGTERM), 0) << "asked to end, it takes the correction out and ends well";
 }
 
+TEST_F(DaemonBoard, LastSettingOfTheOperatorOutlivesAKill) {
+  const auto corrects = [](Client& client) {
+    const BoardTick tick = client.newest();
+    return tick.mode == Mode::kActive || tick.correction[0] != 0 || tick.correction[1] != 0;
+  };
+  {
+    Daemon first(directory_);
+    Client client = first.client(key_);
+    client.upload(upload(2e-5, 1), [](double) {});
+    ASSERT_TRUE(wait_for([&] { return client.newest().mode == Mode::kActive; }));
+    client.confirm();
+    const auto stored = [&](const char* record) {
+      const std::string path = directory_ + "/store/" + record;
+      return wait_for([&] {
+        return std::filesystem::exists(path) && std::filesystem::file_size(path) == sizeof(OperatorRecord);
+      });
+    };
+    client.weight(1, 0.25);
+    ASSERT_TRUE(stored("record2"));
+    client.command(Command::kDeactivate);
+    ASSERT_TRUE(stored("record3"));
+    EXPECT_EQ(first.end(SIGKILL), -1);
+  }
+  Daemon second(directory_);
+  EXPECT_TRUE(wait_for([&] {
+    return second.log().find("was deactivated or held before the start") != std::string::npos;
+  })) << second.log();
+  Client client = second.client(key_);
+  ASSERT_TRUE(wait_for([&] { return client.newest().mode == Mode::kReady; }));
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_FALSE(corrects(client));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(client.state().axes[1].weight, 0.25);
+  client.command(Command::kActivate);
+  EXPECT_TRUE(wait_for([&] { return client.newest().mode == Mode::kActive; }));
+}
+
 TEST_F(DaemonBoard, KilledAtAnyMomentOfUploadsItRunsAConfirmedImage) {
   {
     Daemon daemon(directory_);

@@ -4,13 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <random>
+#include <set>
 
 #include "tests/unit/firmware/upload_rig.h"
+#include "tools/text/words.h"
 #include "tools/upload/client.h"
 
 namespace vernier::link_test {
@@ -74,6 +78,60 @@ TEST_F(LinkTest, WholeJourneyOfAnImage) {
   EXPECT_EQ(board.newest().mode, Mode::kReady);
 }
 
+TEST(Printable, ReplacesControlsDirectionMarksAndWhatIsNotUtf8) {
+  const std::pair<std::string, std::string> kCases[] = {
+      {"mill 7/A", "mill 7/A"},
+      {"Fr\u00e4se \u2116 7 \U0001f6e0", "Fr\u00e4se \u2116 7 \U0001f6e0"},
+      {"\x1b]0;owned\x07", "?]0;owned?"},
+      {"a\tb\r\nc\x7f", "a?b??c?"},
+      {"\u009b31m", "?31m"},  // a C1 control in UTF-8
+      {"\x9b\x33", "?3"},     // and as one byte
+      {"\u202egpj.exe", "?gpj.exe"},
+      {"\xc0\x9b|\xe0\x80\x9b|\xed\xa0\x80", "??|???|???"},  // too long, a surrogate
+      {"\xe2\x82", "??"}};
+  for (const auto& [text, shown] : kCases) EXPECT_EQ(printable(text), shown);
+}
+
+TEST_F(LinkTest, NamesOfABoardHaveNoControlCharacters) {
+  rig_.run(10);
+  identity_.board = Name(std::string_view("\x1b[2Jmill"));
+  const Wiring wiring{{{"X\x1b[31m"}, {"Y"}}, {"T\x9b\x07"}};
+  Link link(const_cast<Exchange&>(rig_.service().exchange()), rig_.uploader(), wiring, TimeUs(1000),
+            identity_);
+  Client board(std::make_unique<Direct>(link, rig_));
+  EXPECT_EQ(board.info().board, "?[2Jmill");
+  EXPECT_EQ(board.info().axes[0].name, "X?[31m");
+  EXPECT_EQ(board.info().inputs[0], "T??");
+}
+
+/// A board that refuses each upload and names what is wrong as it likes.
+struct Refuses : Direct {
+  using Direct::Direct;
+  std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
+    if (request[0] != static_cast<std::uint8_t>(LinkOp::kConfirm)) return Direct::ask(request);
+    std::vector<std::uint8_t> reply = {request[0],
+                                       request[1],
+                                       static_cast<std::uint8_t>(LinkStatus::kRefused),
+                                       static_cast<std::uint8_t>(UploadFault::kForeignMachine),
+                                       0,
+                                       static_cast<std::uint8_t>(BindFault::kUnknownAxis)};
+    for (const char c : {'Q', '\x1b', '[', 'A'}) reply.push_back(static_cast<std::uint8_t>(c));
+    return reply;
+  }
+};
+
+TEST_F(LinkTest, ReasonOfARefusalHasNoControlCharacters) {
+  rig_.run(10);
+  Client board(std::make_unique<Refuses>(link_, rig_));
+  try {
+    board.confirm();
+    FAIL() << "refused";
+  } catch (const LimitNotMet& refusal) {
+    EXPECT_NE(std::string(refusal.what()).find("Q?[A"), std::string::npos) << refusal.what();
+    EXPECT_EQ(printable(refusal.what()), refusal.what());
+  }
+}
+
 /// Goes through the service's own link.
 struct Through : Transport, CommandLink {
   Through(Service& s, UploadRig& r) : service(s), rig(r) {}
@@ -90,6 +148,7 @@ struct Through : Transport, CommandLink {
       return HalFault::kNone;
     }
     answer.resize(kMaxReplyBytes);
+    handler.comes_over(connection);
     answer.resize(handler.answer(pending.data(), static_cast<std::uint32_t>(pending.size()), answer.data()));
     return HalFault::kNone;
   }
@@ -102,6 +161,7 @@ struct Through : Transport, CommandLink {
   UploadRig& rig;
   LinkRights rights;
   std::uint16_t registers = 0;
+  std::uint64_t connection = 0;
   bool given = false;
   std::vector<std::uint8_t> pending, answer;
 };
@@ -209,13 +269,13 @@ TEST_F(GateTest, SignedRequestIsTakenOnceAndByThisStartOfThisBoardOnly) {
     return challenge;
   };
   const ChallengeReply challenge = challenge_of(*way_);
-  const auto request_with = [&](std::uint8_t nonce_bit, std::uint32_t counter, const char* board,
+  const auto request_with = [&](std::uint8_t nonce_bit, const ChallengeReply& answers, const char* board,
                                 Command command) {
     SignedRequestHead head{};
     std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
     std::memcpy(head.nonce, challenge.nonce, sizeof(head.nonce));
     head.nonce[3] = static_cast<std::uint8_t>(head.nonce[3] ^ nonce_bit);
-    head.counter = counter;
+    std::memcpy(head.challenge, answers.challenge, sizeof(head.challenge));
     std::memcpy(head.board, board, std::strlen(board));
     const std::vector<std::uint8_t> rest = {static_cast<std::uint8_t>(LinkOp::kCommand),
                                             static_cast<std::uint8_t>(command)};
@@ -229,21 +289,106 @@ TEST_F(GateTest, SignedRequestIsTakenOnceAndByThisStartOfThisBoardOnly) {
   const auto status = [&](const std::vector<std::uint8_t>& request) {
     return static_cast<LinkStatus>(way_->ask(request).at(2));
   };
-  const auto good = request_with(0, challenge.counter, "", Command::kHold);
-  EXPECT_EQ(status(request_with(1, challenge.counter, "", Command::kHold)), LinkStatus::kBadSignature);
-  EXPECT_EQ(status(request_with(0, challenge.counter, "mill-2", Command::kHold)), LinkStatus::kBadSignature);
+  const auto good = request_with(0, challenge, "", Command::kHold);
+  EXPECT_EQ(status(request_with(1, challenge, "", Command::kHold)), LinkStatus::kBadSignature);
+  EXPECT_EQ(status(request_with(0, challenge, "mill-2", Command::kHold)), LinkStatus::kBadSignature);
   std::vector<std::uint8_t> changed = good;
   changed.back() = static_cast<std::uint8_t>(Command::kActivate);
   EXPECT_EQ(status(changed), LinkStatus::kBadSignature);
   EXPECT_EQ(status(good), LinkStatus::kDone);
   EXPECT_EQ(status(good), LinkStatus::kStale) << "replayed";
-  EXPECT_EQ(status(request_with(0, challenge.counter + 5, "", Command::kHold)), LinkStatus::kStale)
-      << "of no challenge";
+  ChallengeReply guessed = challenge_of(*way_);
+  guessed.challenge[15] = static_cast<std::uint8_t>(guessed.challenge[15] ^ 1);
+  EXPECT_EQ(status(request_with(0, guessed, "", Command::kHold)), LinkStatus::kStale) << "of no challenge";
+  // A challenge belongs to its connection.
+  way_->connection = 1;
+  const auto of_first = request_with(0, challenge_of(*way_), "", Command::kHold);
+  way_->connection = 2;
+  const auto of_second = request_with(0, challenge_of(*way_), "", Command::kHold);
+  EXPECT_EQ(status(of_first), LinkStatus::kStale) << "over another connection";
+  EXPECT_EQ(status(of_second), LinkStatus::kDone) << "the attempt did not use it up";
+  way_->connection = 1;
+  EXPECT_EQ(status(of_first), LinkStatus::kDone);
   // What was held back on its way is worth nothing after ten seconds, though nothing else was signed since.
   const ChallengeReply later = challenge_of(*way_);
-  const auto held_back = request_with(0, later.counter, "", Command::kRelease);
+  const auto held_back = request_with(0, later, "", Command::kRelease);
   rig_.run(10'100);
   EXPECT_EQ(status(held_back), LinkStatus::kStale);
+}
+
+ChallengeBytes challenge_in(const ChallengeReply& reply) {
+  ChallengeBytes bytes;
+  std::memcpy(bytes.data(), reply.challenge, bytes.size());
+  return bytes;
+}
+
+// With a counter of 32 bits a used request was valid again 2^32 challenges later.
+TEST(Challenges, NeverRepeatAndDifferBetweenStarts) {
+  const BoardIdentity identity(new_key().public_part());
+  Gate gate(identity, Nonce{1}, ChallengeSeed{1}), same_nonce(identity, Nonce{1}, ChallengeSeed{2}),
+      same_seed(identity, Nonce{2}, ChallengeSeed{1});
+  std::set<ChallengeBytes> seen;
+  std::array<int, 128> ones{};
+  constexpr int kChallenges = 20'000;
+  for (int i = 0; i < kChallenges; ++i)
+    for (Gate* const one : {&gate, &same_nonce, &same_seed}) {
+      const ChallengeBytes bytes = challenge_in(one->challenge(LinkAccess::kUpload, {}, TimeUs(i)));
+      EXPECT_TRUE(seen.insert(bytes).second);
+      for (std::size_t bit = 0; bit < ones.size(); ++bit) ones[bit] += bytes[bit / 8] >> (bit % 8) & 1;
+    }
+  // Each bit is one in half of them, within six standard deviations of a fair coin.
+  const double mean = 1.5 * kChallenges, most = 6 * std::sqrt(0.75 * kChallenges);
+  for (const int count : ones) EXPECT_NEAR(count, mean, most);
+}
+
+/// A signed command that answers a challenge.
+std::vector<std::uint8_t> signed_hold(const SigningKey& key, const ChallengeReply& answers) {
+  SignedRequestHead head{};
+  std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
+  std::memcpy(head.nonce, answers.nonce, sizeof(head.nonce));
+  std::memcpy(head.challenge, answers.challenge, sizeof(head.challenge));
+  const std::vector<std::uint8_t> rest = {static_cast<std::uint8_t>(LinkOp::kCommand),
+                                          static_cast<std::uint8_t>(Command::kHold)};
+  const SignedRequest proof = sign_request(key, head, rest);
+  std::vector<std::uint8_t> request = {static_cast<std::uint8_t>(LinkOp::kSigned), 1};
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&proof);
+  request.insert(request.end(), bytes, bytes + sizeof(proof));
+  request.insert(request.end(), rest.begin(), rest.end());
+  return request;
+}
+
+// Four clients without a key that asked for challenges were enough.
+TEST(Challenges, OfOthersDoNotUseUpTheOperatorsOne) {
+  const SigningKey key = new_key();
+  const BoardIdentity identity(key.public_part());
+  Gate gate(identity, Nonce{1}, ChallengeSeed{1});
+  constexpr Caller kOperator{1, 1};
+  const auto opened = [&](const ChallengeReply& challenge) {
+    const auto request = signed_hold(key, challenge);
+    return gate
+        .open(request.data(), static_cast<std::uint32_t>(request.size()), LinkAccess::kCommand, kOperator,
+              TimeUs(2000))
+        .status;
+  };
+  // WHEN all other places of the operator's link ask a thousand times, and another link's, at any rate
+  ChallengeReply challenge = gate.challenge(LinkAccess::kCommand, kOperator, TimeUs(0));
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    gate.challenge(LinkAccess::kCommand, {1, 2 + i % 19}, TimeUs(1000));
+    gate.challenge(LinkAccess::kCommand, {2, i % 20}, TimeUs(1000));
+    gate.challenge(LinkAccess::kRead, {3, i}, TimeUs(1000));
+  }
+  EXPECT_EQ(opened(challenge), LinkStatus::kDone);
+  // WHEN another link opens ever new connections: ended ones leave no challenge, open ones use up their own
+  challenge = gate.challenge(LinkAccess::kCommand, kOperator, TimeUs(0));
+  for (std::uint64_t i = 0; i < 20'000; ++i) {
+    gate.challenge(LinkAccess::kCommand, {2, 100 + i}, TimeUs(1000));
+    if (i % 2 == 0) gate.forget({2, 100 + i});
+  }
+  EXPECT_EQ(opened(challenge), LinkStatus::kDone);
+  gate.challenge(LinkAccess::kCommand, kOperator, TimeUs(0));
+  gate.forget(kOperator);
+  EXPECT_EQ(opened(gate.challenge(LinkAccess::kCommand, {1, 2}, TimeUs(0))), LinkStatus::kStale)
+      << "of another connection";
 }
 
 TEST_F(LinkTest, RefusalTellsTheReason) {

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tools/registry/open_database.h"
 #include "tools/registry/registry.h"
 #include "tools/text/error.h"
+#include "tools/text/files.h"
 
 namespace vernier::spool_test {
 
@@ -47,6 +49,33 @@ TEST_F(SpoolFile, NumbersGoOnAfterItsGatewayEnds) {
   EXPECT_EQ(records[0].number, 2u);
   EXPECT_EQ(records[2].number, 4u);
   EXPECT_EQ(records[2].payload, std::string("\0\xff'", 3));
+}
+
+TEST_F(SpoolFile, DamagedRecordsAreSetAsideAndTheOthersGoThrough) {
+  {
+    Spool spool(file_, "g", 100);
+    put(spool, 6);
+  }
+  {
+    const auto database = open_database(file_);
+    database->run("UPDATE record SET payload = 'zz' WHERE number = 1");
+    database->run("UPDATE record SET payload = 'abc' WHERE number = 2");
+    database->run("UPDATE record SET time_ms = 'soon' WHERE number = 4");
+  }
+  Spool spool(file_, "g", 100);
+  auto records = spool.after(0, 2);
+  ASSERT_FALSE(records.empty()) << "the first two are damaged, the next are asked for";
+  EXPECT_EQ(records[0].number, 3u);
+  EXPECT_EQ(spool.after(0, 10).size(), 3u);
+  EXPECT_EQ(spool.count_aside(), 3u);
+  spool.set_aside({5});  // its payload says nothing to the gateway
+  records = spool.after(0, 10);
+  ASSERT_EQ(records.size(), 2u);
+  EXPECT_EQ(records[1].number, 6u);
+  const std::string aside = text::read_file(spool.aside());
+  EXPECT_EQ(std::count(aside.begin(), aside.end(), '\n'), 4);
+  EXPECT_NE(aside.find(R"("time_ms":"soon")"), std::string::npos) << aside;
+  EXPECT_NE(aside.find(R"("payload":"zz")"), std::string::npos) << aside;
 }
 
 TEST_F(SpoolFile, IsOneGatewaysAndNoOtherProgramsFile) {

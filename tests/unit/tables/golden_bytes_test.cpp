@@ -8,6 +8,7 @@
 #include "comp/shares.h"
 #include "firmware/core/link/signature.h"
 #include "tables/checksum.h"
+#include "tables/operator_record.h"
 #include "tables/slots.h"
 #include "tables/upload_format.h"
 #include "tests/bench/poses.h"
@@ -211,6 +212,28 @@ TEST(GoldenBytes, UploadIsSignedAndLaidOutAsBefore) {
                                     {"board", 24},
                                     {"key", 24},
                                     {"signature", 64}}));
+}
+
+TEST(GoldenBytes, OperatorRecordIsStoredAsBefore) {
+  const std::vector<Field> fields = {{"magic", 4},   {"sequence", 4}, {"out", 1},
+                                     {"holding", 1}, {"fault", 1},    {"reserved", 1},
+                                     {"axis", 32},   {"weight", 32},  {"checksum", 4}};
+  std::string text = "# operator record, version " + text_of(kOperatorRecordVersion) + "\n";
+  OperatorRecords records = OperatorRecords::load({}, {});
+  EXPECT_FALSE(records.known());
+  OperatorState state{
+      .out = 1, .holding = 0, .fault = 4, .axis = {operator_axis("X", 1)}, .weight = {0x8000}};
+  for (const char* const what : {"deactivated, a fault is latched, X at one half", "held"}) {
+    const OperatorChange change = records.change_to(state);
+    EXPECT_TRUE(is_valid(change.record));
+    std::vector<std::uint8_t> bytes(sizeof(OperatorRecord));
+    std::memcpy(bytes.data(), &change.record, bytes.size());
+    text += std::string("# ") + what + ", stored in place " + text_of(change.place) + "\n" +
+            listed(bytes, fields);
+    records.stored(change);
+    state.out = state.fault = 0, state.holding = 1;
+  }
+  expect_golden(file_of("operator_record", kOperatorRecordVersion), text);
 }
 
 TEST(GoldenBytes, SlotRecordIsStoredAsBefore) {

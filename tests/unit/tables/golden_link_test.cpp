@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every message of the link, request and reply, byte for byte: tests/golden/link_v2.txt.
+// Every message of the link, request and reply, byte for byte: tests/golden/link_v3.txt.
 #include <gtest/gtest.h>
 #include <sodium.h>
 
@@ -118,7 +118,7 @@ class Board {
     Bytes reply(kMaxReplyBytes);
     const auto size = static_cast<std::uint32_t>(request.size());
     if (Gate::is_challenge(request.data(), size)) {
-      const ChallengeReply challenge = gate_.challenge(LinkAccess::kUpload, TimeUs{});
+      const ChallengeReply challenge = gate_.challenge(LinkAccess::kUpload, Caller{}, TimeUs{});
       reply.resize(Link::answer_with(LinkStatus::kDone, request.data(), reply.data()));
       return reply + bytes_of(challenge);
     }
@@ -130,7 +130,7 @@ class Board {
     }
     Gate::Opened opened{LinkStatus::kDone, request.data(), size};
     if (request[0] == static_cast<std::uint8_t>(LinkOp::kSigned))
-      opened = gate_.open(request.data(), size, LinkAccess::kUpload, TimeUs{});
+      opened = gate_.open(request.data(), size, LinkAccess::kUpload, Caller{}, TimeUs{});
     reply.resize(opened.status == LinkStatus::kDone
                      ? link_.answer(opened.request, opened.size, reply.data(), TimeUs(1'000'000))
                      : Link::answer_with(opened.status, request.data(), reply.data()));
@@ -177,7 +177,7 @@ class Board {
   Uploader uploader_{store_, wiring_, *exchange_, {TimeUs(1000), golden_identity(), TimeUs(60'000'000)}};
   BoundProgram before_;
   GoldenIdentity own_key_;
-  Gate gate_{identity_, nonce(), &own_key_};
+  Gate gate_{identity_, nonce(), ChallengeSeed{}, &own_key_};
   Link link_{*exchange_, uploader_, wiring_, TimeUs(1000), identity_};
   static BoardIdentity golden_identity() {
     BoardIdentity identity(golden_key().public_part());
@@ -288,16 +288,21 @@ const std::vector<Field> kSlots = {{"confirmed_fingerprint", 8},
 
 void talk_of_signatures(Talk& talk) {
   talk.say("challenge", LinkOp::kChallenge, {}, {},
-           {{"nonce", 16}, {"counter", 4}, {"access", 1}, {"keys", 1}, {"reserved", 2}});
+           {{"nonce", 16}, {"challenge", 16}, {"access", 1}, {"keys", 1}, {"reserved", 2}});
   SignedRequestHead head{};
   std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
   std::memcpy(head.nonce, Board::nonce().data(), sizeof(head.nonce));
-  head.counter = 1;
+  // Computed again beside the gate: SHA-512 of the seed (zeros), the nonce and the number 1.
+  Bytes hashed(sizeof(ChallengeSeed) + sizeof(head.nonce) + 8), digest(crypto_hash_sha512_BYTES);
+  std::memcpy(hashed.data() + sizeof(ChallengeSeed), head.nonce, sizeof(head.nonce));
+  hashed[sizeof(ChallengeSeed) + sizeof(head.nonce)] = 1;
+  crypto_hash_sha512(digest.data(), hashed.data(), hashed.size());
+  std::memcpy(head.challenge, digest.data(), sizeof(head.challenge));
   std::memcpy(head.board, "mill-1", 6);
   const Bytes rest =
       Bytes{static_cast<std::uint8_t>(LinkOp::kWeight)} + Bytes{2} + bytes_of(std::uint32_t{0x4000});
-  const std::vector<Field> fields = {{"key", 8},       {"counter", 4}, {"signature", 64},
-                                     {"weight op", 1}, {"axis", 1},    {"weight", 4}};
+  const std::vector<Field> fields = {{"key", 8},       {"challenge", 16}, {"signature", 64},
+                                     {"weight op", 1}, {"axis", 1},       {"weight", 4}};
   const Bytes request = bytes_of(sign_request(golden_key(), head, rest)) + rest;
   talk.say("a signed weight", LinkOp::kSigned, request, fields, {});
   talk.say("the same once more", LinkOp::kSigned, request, fields, {});

@@ -216,6 +216,7 @@ void run_compare(const CompareArguments& arguments) {
     throw text::InputError("compare needs measurement files: MEAS, or --before and --after");
   const auto [text, as_given, m] =
       read_survey({arguments.machine, arguments.images, arguments.measurements, {}});
+  repeat_findings(as_given);
   const model::Machine machine = arguments.datum ? fit::set_up(as_given, m) : as_given;
   const Eigen::VectorXd residual = fit::residuals(machine, m);
   nlohmann::ordered_json json = results::compare_json(machine, m, residual);

@@ -245,6 +245,39 @@ double Evidence::shared_pose_error(const Eigen::VectorXd& residual, const Eigen:
   return (f - 1) * static_cast<double>(groups.size()) / count;
 }
 
+std::vector<std::vector<Eigen::Index>> Evidence::visits() const {
+  std::map<std::pair<int, int>, std::vector<Eigen::Index>> groups;  // by kind of reading and visit
+  int visit = 0;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    visit += i > 0 && place_[rows_[i]] != place_[rows_[i - 1]] ? 1 : 0;
+    const auto kind = static_cast<int>(measurement_.observations[observation_[i]].kind);
+    groups[{kind, visit}].push_back(static_cast<Eigen::Index>(i));
+  }
+  std::vector<std::vector<Eigen::Index>> list;
+  for (auto& [key, readings] : groups) list.push_back(std::move(readings));
+  return list;
+}
+
+bool Evidence::u_states_error_of_visits(const Eigen::VectorXd& residual) const {
+  if (!with_u_) return false;
+  std::set<std::pair<int, int>> poses;  // by kind of reading
+  double within = 0, freedom = 0;
+  const std::vector<std::vector<Eigen::Index>> all = visits();
+  for (const std::vector<Eigen::Index>& readings : all) {
+    const auto first = static_cast<std::size_t>(readings.front());
+    poses.emplace(static_cast<int>(measurement_.observations[observation_[first]].kind),
+                  place_[rows_[first]]);
+    const Eigen::VectorXd part = residual(readings);
+    within += (part.array() - part.mean()).matrix().squaredNorm();
+    freedom += static_cast<double>(readings.size()) - 1;
+  }
+  // Some random positions are near each other by chance.
+  const auto revisits = static_cast<double>(all.size() - poses.size());
+  if (revisits > thresholds_.layout.least_revisits * static_cast<double>(all.size())) return false;
+  const double near_u = thresholds_.noise.near_u;
+  return freedom >= thresholds_.evidence.pose_freedom && within < near_u * near_u * freedom;
+}
+
 void Evidence::weigh_poses(double share) {
   poses_ = readings_at_one_pose();
   pose_share_ = share;

@@ -68,6 +68,10 @@ class Evidence {
   /// independent variance of the readings (generalised least squares). weigh_poses weights the residual, the
   /// columns and the part that the model absorbs.
   void weigh_poses(double share);
+  /// True if u states the error of a visit to a pose: few poses are visited twice, and the readings of one
+  /// visit scatter by much less than u. The noise model then describes the errors of poses
+  /// (NoiseModel::pose).
+  bool u_states_error_of_visits(const Eigen::VectorXd& residual) const;
   /// From this call on, the noise model `noise` gives the correlation of the readings' errors (generalised
   /// least squares). assume() whitens the residual, the columns and the part that the model absorbs.
   void assume(const fit::NoiseModel& noise);
@@ -121,6 +125,8 @@ class Evidence {
   }
   /// Returns groups of two or more fit observations of one kind at one position, in any run.
   std::vector<std::vector<Eigen::Index>> readings_at_one_pose() const;
+  /// Returns the fit observations of one kind during one stay at a position, for each stay.
+  std::vector<std::vector<Eigen::Index>> visits() const;
 
   DiagnoseThresholds thresholds_;
   model::Machine machine_;

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an operator set, and a latched fault, outlive a power failure.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <set>
+
+#include "tests/unit/firmware/upload_rig.h"
+
+namespace vernier::operator_test {
+
+using namespace vernier::upload;
+namespace {
+
+class OperatorSetting : public testing::Test {
+ protected:
+  OperatorSetting() {
+    UploadRig rig(store_, key_);
+    EXPECT_EQ(rig.send(make_upload(small_image_bytes(2e-5), key_, 5, 0)).fault, UploadFault::kNone);
+    EXPECT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  }
+  static Exchange& exchange(UploadRig& rig) { return const_cast<Exchange&>(rig.service().exchange()); }
+  static void give(UploadRig& rig, Command command, int ticks = 1000) {
+    exchange(rig).command = command;
+    rig.run(ticks);
+  }
+  static Mode mode(UploadRig& rig) { return rig.service().cycle().mode(); }
+  SigningKey key_ = new_key();
+  SimSlotStore store_{1 << 16};
+};
+
+TEST_F(OperatorSetting, BoardActivatesWhereNobodyHasSetAnything) {
+  const std::uint64_t written = store_.written();
+  UploadRig rig(store_, key_);
+  rig.run(3000);
+  EXPECT_EQ(mode(rig), Mode::kActive);
+  EXPECT_EQ(store_.written(), written) << "nothing is worn by a board that nobody commands";
+}
+
+TEST_F(OperatorSetting, DeactivatedBoardStaysSoAfterAStartUntilItIsActivated) {
+  {
+    UploadRig rig(store_, key_);
+    rig.run(3000);
+    give(rig, Command::kDeactivate);
+  }
+  for (int start = 0; start < 2; ++start) {
+    UploadRig rig(store_, key_);
+    rig.run(3000);
+    EXPECT_EQ(mode(rig), Mode::kReady);
+    EXPECT_EQ(rig.plant().written(0), AxisTravel{});
+  }
+  {
+    UploadRig rig(store_, key_);
+    rig.run(1000);
+    give(rig, Command::kActivate, 2000);
+    EXPECT_EQ(mode(rig), Mode::kActive);
+  }
+  UploadRig rig(store_, key_);
+  rig.run(3000);
+  EXPECT_EQ(mode(rig), Mode::kActive) << "the last word was: activate";
+}
+
+TEST_F(OperatorSetting, DeactivateWhileCheckingCounts) {
+  UploadRig rig(store_, key_);
+  rig.run(10);
+  ASSERT_EQ(mode(rig), Mode::kChecking);
+  give(rig, Command::kDeactivate, 3000);
+  EXPECT_EQ(mode(rig), Mode::kReady);
+  EXPECT_EQ(rig.plant().written(0), AxisTravel{});
+}
+
+TEST_F(OperatorSetting, HeldBoardWaitsForTheOperatorAfterAStart) {
+  {
+    UploadRig rig(store_, key_);
+    rig.run(3000);
+    give(rig, Command::kHold);
+    ASSERT_TRUE(rig.service().cycle().holding());
+  }
+  UploadRig rig(store_, key_);
+  rig.run(3000);
+  EXPECT_EQ(mode(rig), Mode::kReady);
+  EXPECT_EQ(rig.plant().written(0), AxisTravel{});
+}
+
+TEST_F(OperatorSetting, ReleasedBoardActivatesAfterAStart) {
+  {
+    UploadRig rig(store_, key_);
+    rig.run(3000);
+    give(rig, Command::kHold);
+    give(rig, Command::kRelease);
+  }
+  UploadRig rig(store_, key_);
+  rig.run(3000);
+  EXPECT_EQ(mode(rig), Mode::kActive);
+}
+
+TEST_F(OperatorSetting, WeightOfAnAxisOutlivesAStart) {
+  {
+    UploadRig rig(store_, key_);
+    exchange(rig).axis_weight[0] = 0;
+    exchange(rig).axis_weight[1] = kFullWeight.count / 4;
+    rig.run(100);
+  }
+  UploadRig rig(store_, key_);
+  rig.run(3000);
+  EXPECT_EQ(mode(rig), Mode::kActive);
+  EXPECT_EQ(rig.plant().written(0), AxisTravel{});
+  EXPECT_NE(rig.plant().written(1), AxisTravel{});
+  EXPECT_EQ(rig.service().cycle().axis_weight(1).count, kFullWeight.count / 4);
+}
+
+TEST_F(OperatorSetting, LatchedFaultOutlivesAStartUntilItIsCleared) {
+  {
+    UploadRig rig(store_, key_);
+    rig.run(3000);
+    rig.service().cycle().tick(TimeUs(1), Command::kNone, Fault::kOverrun);
+    rig.run(1000);
+    ASSERT_EQ(mode(rig), Mode::kFaulted);
+  }
+  UploadRig rig(store_, key_);
+  rig.run(3000);
+  EXPECT_EQ(mode(rig), Mode::kFaulted);
+  EXPECT_EQ(rig.service().cycle().latched(), Fault::kOverrun);
+  EXPECT_EQ(rig.plant().written(0), AxisTravel{});
+  give(rig, Command::kClearFault, 1000);
+  EXPECT_EQ(mode(rig), Mode::kReady) << "as without the start";
+  give(rig, Command::kActivate, 2000);
+  EXPECT_EQ(mode(rig), Mode::kActive);
+}
+
+TEST_F(OperatorSetting, UnreadableRecordsKeepTheCorrectionOut) {
+  const std::uint8_t spoiled[sizeof(OperatorRecord)] = {1, 2, 3};
+  store_.write_record(kOperatorPlace, spoiled, sizeof(spoiled));
+  store_.write_record(kOperatorPlace + 1, spoiled, sizeof(spoiled));
+  UploadRig rig(store_, key_);
+  EXPECT_TRUE(rig.service().operator_memory().lost());
+  rig.run(3000);
+  EXPECT_EQ(mode(rig), Mode::kReady);
+  give(rig, Command::kActivate, 2000);
+  EXPECT_EQ(mode(rig), Mode::kActive);
+}
+
+// The power fails after every byte that a change of the setting writes.
+TEST_F(OperatorSetting, PowerLostAtAnyByteLeavesTheOldOrTheNewSetting) {
+  {
+    UploadRig rig(store_, key_);
+    exchange(rig).axis_weight[0] = 0;
+    rig.run(10);
+  }
+  std::set<std::int32_t> found;
+  for (std::uint64_t cut = 0; cut <= sizeof(OperatorRecord); ++cut) {
+    SimSlotStore store = store_;
+    {
+      UploadRig rig(store, key_);
+      rig.run(10);
+      store.cut_power_after(cut);
+      exchange(rig).axis_weight[0] = kFullWeight.count / 2;
+      rig.run(10);
+      EXPECT_EQ(rig.service().operator_memory().refused(), cut < sizeof(OperatorRecord));
+    }
+    store.restore_power();
+    UploadRig rig(store, key_);
+    const std::int32_t weight = exchange(rig).axis_weight[0];
+    ASSERT_TRUE(weight == 0 || weight == kFullWeight.count / 2) << weight << " after " << cut << " bytes";
+    found.insert(weight);
+  }
+  EXPECT_EQ(found.size(), 2u);
+}
+
+}  // namespace
+}  // namespace vernier::operator_test
