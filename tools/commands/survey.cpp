@@ -2,6 +2,7 @@
 #include "tools/commands/survey.h"
 
 #include "tools/effects/roles.h"
+#include "tools/model/file_set_ups.h"
 #include "tools/model/machine_reader.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/files.h"
@@ -23,22 +24,31 @@ void add_survey(CLI::App& command, SurveyArguments& arguments) {
       ->type_name("NAME=ROLE");
 }
 
-Survey read_survey(const SurveyArguments& arguments) {
+Survey read_survey(const SurveyArguments& arguments,
+                   const std::function<model::Machine(model::Machine)>& prepare) {
   Survey survey;
   survey.text = text::read_file(arguments.machine);
   const auto read = [&] {
     survey.machine = model::parse_machine(survey.text, arguments.machine);
+    if (prepare) survey.machine = prepare(std::move(survey.machine));
     survey.rows = model::read_measurement(arguments.measurements, survey.machine,
                                           simulate::corrections_of_images(arguments.images));
   };
   read();
-  if (arguments.columns.empty()) return survey;
-  std::vector<effects::ColumnRole> roles;
-  for (const std::string& statement : arguments.columns)
-    roles.push_back(effects::parse_column_role(statement));
-  survey.text = effects::with_declared_columns(survey.text, survey.machine, survey.rows, roles);
-  read();
-  effects::leave_out(survey.rows, roles);
+  const model::SetUpsOfFiles own = model::with_set_ups_of_files(survey.text, survey.machine, survey.rows);
+  if (!own.notes.empty()) {
+    survey.text = own.text;
+    read();
+  }
+  if (!arguments.columns.empty()) {
+    std::vector<effects::ColumnRole> roles;
+    for (const std::string& statement : arguments.columns)
+      roles.push_back(effects::parse_column_role(statement));
+    survey.text = effects::with_declared_columns(survey.text, survey.machine, survey.rows, roles);
+    read();
+    effects::leave_out(survey.rows, roles);
+  }
+  survey.machine.notes.insert(survey.machine.notes.end(), own.notes.begin(), own.notes.end());
   return survey;
 }
 

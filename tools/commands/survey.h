@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,15 @@ struct SurveyArguments {
 /// MACHINE, MEAS, --images and --column.
 void add_survey(CLI::App& command, SurveyArguments& arguments);
 
-/// A survey after reading: columns whose role is stated are inputs of the machine.
+/// A survey after reading: columns whose role is stated are inputs of the machine, and each file has its own
+/// set-up (model::with_set_ups_of_files; machine.notes says so).
 struct Survey {
   std::string text;
   model::Machine machine;
   model::Measurement rows;
 };
-/// Throws InputError. tool.
-Survey read_survey(const SurveyArguments& arguments);
+/// prepare: changes the machine after each reading of the file; may be empty. Throws InputError. tool.
+Survey read_survey(const SurveyArguments& arguments,
+                   const std::function<model::Machine(model::Machine)>& prepare = {});
 
 }  // namespace vernier::commands

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>
@@ -189,7 +190,11 @@ class Builder {
       states.run = runs.of;
       states.run_names = runs.names;
     }
-    if (has_word(columns::kSetup)) states.setup = labels_of(setups_of_rows());
+    if (has_word(columns::kSetup))
+      states.setup = labels_of(setups_of_rows(reader_.words(columns::kSetup)));
+    else if (has_set_up_of_file())
+      states.setup = labels_of(
+          setups_of_rows(std::vector<std::string>(reader_.rows(), set_up_of_file(result_.files.front()))));
     if (has_word(columns::kClock)) states.clock = labels_of(reader_.words(columns::kClock));
     if (has_word(columns::kBlock)) states.block = labels_of(reader_.words(columns::kBlock));
     std::vector<double> seen(states.names(states.clock).size(), 0);
@@ -265,13 +270,19 @@ class Builder {
 
   /// Returns the set-up of each row. A run for which the machine file has a BaseShift keeps its
   /// own set-up.
-  std::vector<std::string> setups_of_rows() {
-    std::vector<std::string> setups = reader_.words(columns::kSetup);
+  std::vector<std::string> setups_of_rows(std::vector<std::string> setups) const {
     const States& states = result_.states;
     for (std::size_t row = 0; row < setups.size(); ++row)
       for (const BaseShift& shift : machine_.base_shifts)
         if (!shift.of_setup && shift.run == states.run_names[states.run[row]]) setups[row] = *shift.run;
     return setups;
+  }
+
+  /// Does the machine file have a BaseShift for the set-up of this file?
+  bool has_set_up_of_file() const {
+    const std::string name = set_up_of_file(result_.files.front());
+    return std::any_of(machine_.base_shifts.begin(), machine_.base_shifts.end(),
+                       [&](const BaseShift& shift) { return shift.of_setup && shift.run == name; });
   }
 
   /// Are the columns of this name a reading in this file, and not an input of the machine file?
@@ -571,6 +582,8 @@ std::vector<T> pick(const std::vector<T>& all, const std::vector<std::size_t>& k
 }
 
 }  // namespace
+
+std::string set_up_of_file(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
 Column commanded(const Measurement& m, std::size_t axis) {
   if (m.correction.empty()) return m.states.axis[axis];

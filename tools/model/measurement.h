@@ -71,6 +71,10 @@ struct Measurement {
   bool has_recorded(std::string_view name) const;
 };
 
+/// Name of the set-up of a measurement file: the file name without folder and ending. The rows of a file
+/// without a column `setup` belong to `<BaseShift setup="NAME">` of the machine file, if there is one. tool.
+std::string set_up_of_file(const std::string& path);
+
 /// Returns the standard uncertainty of a reading. For a rotation the result is ua of its row if given, else
 /// u. The result is 0 if the row has no uncertainty. mm or deg. tool.
 double uncertainty_of(const Measurement& measurement, const Observation& observation);

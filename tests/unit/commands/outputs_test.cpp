@@ -158,5 +158,33 @@ TEST_F(OutputFolder, FileInItsPlaceIsAnError) {
   EXPECT_EQ(read_file(in("file")), "old");
 }
 
+using Instruments = OutputFolder;
+
+/// x y z of a tracker whose frame is turned by 35 degrees about z and moved, 0.1 um; k = 0.0001 in X.
+std::string turned_rows() {
+  std::string rows = "X[mm],x[mm],y[mm],u[mm]\n";
+  constexpr double kCos = 0.8191520443, kSin = 0.5735764364;
+  for (int x = 0; x <= 600; x += 50) {
+    const double true_x = 1.0001 * x;
+    rows += std::to_string(x) + "," + std::to_string(1200 + kCos * true_x) + "," +
+            std::to_string(kSin * true_x - 340) + ",0.001\n";
+  }
+  return rows;
+}
+
+TEST_F(Instruments, LaserAndTurnedTrackerAreFittedTogether) {
+  std::string machine = kMachine;
+  machine.replace(machine.find("<k value=\"0.0001\""), 17, "<BaseShift/><k value=\"0\"");
+  write_file(in("m.xml"), machine);
+  write_file(in("laser.csv"), "X[mm],x[mm],u[mm]\n0,0,0.001\n300,300.03,0.001\n600,600.06,0.001\n");
+  write_file(in("tracker.csv"), turned_rows());
+  ASSERT_EQ(run("vernier fit m.xml laser.csv tracker.csv -o f.xml"), 0) << said();
+  EXPECT_NE(said().find("tracker.csv has its own set-up BaseShift[tracker]"), std::string::npos) << said();
+  EXPECT_NE(read_file(in("f.xml")).find("<BaseShift setup=\"tracker\""), std::string::npos);
+  // The fitted machine knows the set-up of the file by its name.
+  ASSERT_EQ(run("vernier compare f.xml tracker.csv --limit 1um"), 0) << said();
+  ASSERT_EQ(run("vernier compare f.xml laser.csv --limit 1um"), 0) << said();
+}
+
 }  // namespace
 }  // namespace vernier::outputs_test

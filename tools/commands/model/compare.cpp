@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/report_header.h"
+#include "tools/commands/survey.h"
 #include "tools/fit/convention.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
@@ -213,9 +214,9 @@ void run_compare(const CompareArguments& arguments) {
   if (!arguments.before.empty() || !arguments.after.empty()) return run_before_after(arguments);
   if (arguments.measurements.empty())
     throw text::InputError("compare needs measurement files: MEAS, or --before and --after");
-  const model::Machine as_given = read_model(arguments.machine);
-  const model::Measurement m = model::read_measurement(arguments.measurements, as_given,
-                                                       simulate::corrections_of_images(arguments.images));
+  const auto [text, as_given, m] =
+      read_survey({arguments.machine, arguments.images, arguments.measurements, {}});
+  repeat_findings(as_given);
   const model::Machine machine = arguments.datum ? fit::set_up(as_given, m) : as_given;
   const Eigen::VectorXd residual = fit::residuals(machine, m);
   nlohmann::ordered_json json = results::compare_json(machine, m, residual);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/survey.h"
 #include "tools/fit/coverage/domain.h"
 #include "tools/fit/decisions.h"
 #include "tools/fit/fit.h"
@@ -140,11 +141,10 @@ fit::Prior prior_of(const std::string& text) {
 }
 
 void run_fit(const FitArguments& arguments) {
-  const std::string text = text::read_file(arguments.machine);
-  const model::Machine machine = fit::with_freedom(model::parse_machine(text, arguments.machine),
-                                                   split_all(arguments.free), split_all(arguments.hold));
-  const model::Measurement m = model::read_measurement(arguments.measurements, machine,
-                                                       simulate::corrections_of_images(arguments.images));
+  const auto [text, machine, m] = read_survey(
+      {arguments.machine, arguments.images, arguments.measurements, {}}, [&](const model::Machine& read) {
+        return fit::with_freedom(read, split_all(arguments.free), split_all(arguments.hold));
+      });
   fit::FitOptions options;
   options.loss = arguments.loss == "huber"    ? fit::Loss::kHuber
                  : arguments.loss == "cauchy" ? fit::Loss::kCauchy

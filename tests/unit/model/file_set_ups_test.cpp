@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/model/file_set_ups.h"
+
+#include <gtest/gtest.h>
+
+#include "tools/model/machine_reader.h"
+#include "tools/model/parameters.h"
+
+namespace vernier::model {
+namespace {
+
+constexpr const char* kMachine =
+    "<machine><variables><static><BaseShift X=\"7\"/></static><machineaxes><X "
+    "rotary=\"false\"/></machineaxes>"
+    "</variables><transforms><sixdof n=\"1\" X=\"X\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" "
+    "rZ=\"0\"/></transforms>"
+    "</machine>";
+
+struct File {
+  std::string name, text;
+};
+
+Measurement read(const std::vector<File>& files, const Machine& machine) {
+  Measurement all = parse_measurement(files[0].text, files[0].name, machine, {});
+  for (std::size_t i = 1; i < files.size(); ++i)
+    append_measurement(all, parse_measurement(files[i].text, files[i].name, machine, {}));
+  return all;
+}
+
+SetUpsOfFiles set_ups(const std::vector<File>& files, const std::string& text = kMachine) {
+  const Machine machine = parse_machine(text, "m.xml");
+  return with_set_ups_of_files(text, machine, read(files, machine));
+}
+
+TEST(FileSetUps, SecondFileHasItsOwnBaseShiftFromThePlainOne) {
+  const std::vector<File> files = {{"a/laser.csv", "X[mm],x[mm]\n1,1\n"},
+                                   {"a/tracker.csv", "X[mm],y[mm]\n1,1\n2,2\n"}};
+  const SetUpsOfFiles own = set_ups(files);
+  ASSERT_EQ(own.notes.size(), 1U);
+  const Machine machine = parse_machine(own.text, "m.xml");
+  ASSERT_EQ(machine.base_shifts.size(), 2U);
+  const Measurement rows = read(files, machine);
+  for (std::size_t row = 0; row < 3; ++row) {
+    const auto shift =
+        base_shift_of(machine, rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)]);
+    ASSERT_TRUE(shift);
+    EXPECT_EQ(machine.base_shifts[*shift].run.value_or(""), row == 0 ? "" : "tracker");
+    EXPECT_EQ(machine.base_shifts[*shift].value[0], 7);
+  }
+  // The file has its set-up now: nothing is added again.
+  EXPECT_EQ(set_ups(files, own.text).text, own.text);
+}
+
+TEST(FileSetUps, OneFileStatedSetUpsAndCheckFilesStayAsTheyAre) {
+  const File one = {"one.csv", "X[mm],x[mm]\n1,1\n"};
+  EXPECT_EQ(set_ups({one}).text, kMachine);
+  EXPECT_EQ(set_ups({one, {"two.csv", "X[mm],x[mm],setup\n1,1,s\n"}}).text, kMachine);
+  EXPECT_EQ(set_ups({one, {"two.csv", "X[mm],x[mm],role\n1,1,check\n"}}).text, kMachine);
+  const File labelled = {"one.csv", "X[mm],x[mm],run\n1,1,r\n"};
+  EXPECT_EQ(set_ups({labelled, {"two.csv", "X[mm],x[mm],run\n1,1,r\n"}}).text, kMachine);
+  EXPECT_NE(set_ups({labelled, {"two.csv", "X[mm],x[mm],run\n1,1,q\n"}}).text, kMachine);
+}
+
+TEST(FileSetUps, HiddenBaseShiftStaysTheOnlyOne) {
+  std::string hidden = kMachine;
+  hidden.replace(hidden.find("X=\"7\""), 5, "X=\"7\" Hide=\"true\"");
+  EXPECT_EQ(set_ups({{"one.csv", "X[mm],x[mm]\n1,1\n"}, {"two.csv", "X[mm],x[mm]\n1,1\n"}}, hidden).text,
+            hidden);
+}
+
+}  // namespace
+}  // namespace vernier::model

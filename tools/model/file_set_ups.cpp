@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/model/file_set_ups.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <pugixml.hpp>
+#include <set>
+
+#include "tools/model/parameters.h"
+#include "tools/text/numbers.h"
+#include "tools/text/xml_text.h"
+
+namespace vernier::model {
+namespace {
+
+/// What decides whether a file has a set-up of its own.
+struct FileUse {
+  bool needs_set_up = false;    // a fit row has a reading that depends on the set-up
+  bool on_plain = true;         // no row has a BaseShift of its own
+  bool stated = false;          // a column `setup` says which set-up
+  std::set<std::string> words;  // labels of its set-ups
+};
+
+std::vector<FileUse> uses_of(const Machine& machine, const Measurement& rows) {
+  std::vector<FileUse> uses(rows.files.size());
+  for (const Observation& o : rows.observations)
+    if (rows.check[o.row] == 0 && !is_free_of_setup(o.kind)) uses[rows.file[o.row]].needs_set_up = true;
+  const Labels& setup = rows.states.setup;
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
+    FileUse& use = uses[rows.file[row]];
+    const std::string& word = rows.states.names(setup)[rows.states.of(setup, row)];
+    const auto shift = base_shift_of(machine, word);
+    if (shift && machine.base_shifts[*shift].run) use.on_plain = false;
+    if (word.empty()) continue;
+    use.words.insert(word);
+    use.stated = use.stated || word != rows.states.run_names[rows.states.run[row]];
+  }
+  return uses;
+}
+
+bool share_a_word(const FileUse& a, const FileUse& b) {
+  return std::any_of(a.words.begin(), a.words.end(),
+                     [&](const auto& word) { return b.words.contains(word); });
+}
+
+/// The element of the plain BaseShift.
+pugi::xml_node plain_element(const pugi::xml_node& document) {
+  return document.find_node([](const pugi::xml_node& node) {
+    if (!text::equal_no_case(node.name(), "BaseShift")) return false;
+    const auto attributes = node.attributes();
+    return std::none_of(attributes.begin(), attributes.end(), [](const pugi::xml_attribute& item) {
+      return text::equal_no_case(item.name(), "run") || text::equal_no_case(item.name(), "setup");
+    });
+  });
+}
+
+std::string element_of(const std::string& name, const BaseShift& start) {
+  std::string element = fmt::format("<BaseShift setup=\"{}\"", text::escape_attribute(name));
+  for (std::size_t i = 0; i < start.value.size(); ++i)
+    element += fmt::format(" {}=\"{}\"", kSixDofNames[i], text::number_text(start.value[i]));
+  return element + "/>";
+}
+
+}  // namespace
+
+SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& machine,
+                                    const Measurement& rows) {
+  SetUpsOfFiles result{text, {}};
+  const auto plain = std::find_if(machine.base_shifts.begin(), machine.base_shifts.end(),
+                                  [](const auto& s) { return !s.run; });
+  if (rows.files.size() < 2 || plain == machine.base_shifts.end() || plain->hidden) return result;
+  const std::vector<FileUse> uses = uses_of(machine, rows);
+  std::set<std::string> names;
+  std::string elements;
+  const FileUse* first = nullptr;
+  std::vector<FileUse> before;
+  for (std::size_t file = 0; file < uses.size(); ++file) {
+    const FileUse& use = uses[file];
+    if (!use.needs_set_up || !use.on_plain) continue;
+    const std::string name = set_up_of_file(rows.files[file]);
+    const bool joined = std::any_of(before.begin(), before.end(),
+                                    [&](const FileUse& other) { return share_a_word(use, other); });
+    before.push_back(use);
+    // The first file keeps the plain BaseShift: a survey of one file is as before.
+    if (first == nullptr) {
+      first = &use;
+      names.insert(name);
+      continue;
+    }
+    if (joined || use.stated || !names.insert(name).second) continue;
+    elements += element_of(name, *plain) + "\n      ";
+    result.notes.push_back(
+        fmt::format("{} has its own set-up BaseShift[{}]; if the instrument stood as for {}, give the rows "
+                    "of both files one "
+                    "word in a column \"setup\"",
+                    rows.files[file], name, rows.files[static_cast<std::size_t>(first - uses.data())]));
+  }
+  if (elements.empty()) return result;
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  const pugi::xml_node element = plain_element(document);
+  if (!element) return {text, {}};
+  result.text =
+      text::apply_edits(text, {{static_cast<std::size_t>(element.offset_debug()) - 1, 0, elements}});
+  return result;
+}
+
+}  // namespace vernier::model

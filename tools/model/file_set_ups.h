@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+
+namespace vernier::model {
+
+/// A machine file in which each measurement file has its own set-up.
+struct SetUpsOfFiles {
+  std::string text;                // of the machine file
+  std::vector<std::string> notes;  // one for each added set-up
+};
+
+/// Adds a BaseShift (`setup` = file name without its ending) for each measurement file after the first. The
+/// instrument of a second file has its own place. No BaseShift is added for a file that
+/// - has a column `setup`, or has a run label that an earlier file has (one set-up as stated),
+/// - has only rows with role check, or only readings that need no set-up,
+/// - has a BaseShift in the machine file.
+/// Nothing is added if the plain BaseShift is absent or hidden. The start values are those of the plain
+/// BaseShift. text: of `machine`. The rows must be read again with the new text. tool.
+SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& machine, const Measurement& rows);
+
+}  // namespace vernier::model
