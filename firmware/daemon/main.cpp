@@ -25,9 +25,9 @@
 #include "firmware/daemon/settings/board_file.h"
 #include "firmware/daemon/settings/board_key.h"
 #include "firmware/daemon/settings/device_settings.h"
-#include "hal/linux/analogue_output.h"
 #include "hal/linux/file_slot_store.h"
 #include "hal/linux/monotonic_clock.h"
+#include "hal/linux/output_device.h"
 #include "hal/linux/realtime.h"
 #include "hal/linux/service_manager.h"
 #include "hal/sim/plant.h"
@@ -225,12 +225,12 @@ std::vector<CalibrationPoint> measured_points(const Arguments& arguments, const 
   source.numbers["span"] = static_cast<double>(codes) * (axis.wiring.rotary ? 1e-6 : 4e-6);
   const AnalogueScale scale =
       analogue_scale(source, axis.wiring.rotary, codes, source.kind == "pwm" ? "_ns" : "");
-  const auto output = open_analogue(source, axis.wiring.rotary, error);
+  const auto output = open_output({{&source, axis.wiring.rotary, INT32_MAX, {}}}, error);
   if (!output) throw BoardError{std::string("axis.") + axis.wiring.name.c_str() + ".output: " + error};
   if (!output->lock())
     throw BoardError{std::string("axis.") + axis.wiring.name.c_str() + ".output: in use by another process"};
   AxisTravel held;
-  const bool known = output->read_back(held) == HalFault::kNone;
+  const bool known = output->read_back(0, held) == HalFault::kNone;
   MonotonicClock clock;
   return calibrate_output(*output, scale, known ? scale.code_for(held) : scale.zero, arguments.steps, clock,
                           std::cin, std::cerr, stop_asked);

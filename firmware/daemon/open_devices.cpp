@@ -102,16 +102,18 @@ const DeviceKind<Open>& kind_of(const std::vector<DeviceKind<Open>>& kinds, cons
   source.fail("no " + std::string(port) + " of kind " + source.kind + "; drivers: " + known);
 }
 
-std::unique_ptr<AnalogueOutput> open_pwm(const SignalSource& source, bool rotary, std::string& error) {
-  const std::int64_t period = source.whole("period_ns", 2, 1'000'000'000);
-  return AnalogueOutput::pwm(source.text("path"), period, analogue_scale(source, rotary, period, "_ns"),
+std::unique_ptr<OutputDevice> open_pwm(const std::vector<OutputAxis>& axes, std::string& error) {
+  const auto& [source, rotary, most_per_tick, tick] = axes.front();
+  const std::int64_t period = source->whole("period_ns", 2, 1'000'000'000);
+  return AnalogueOutput::pwm(source->text("path"), period, analogue_scale(*source, rotary, period, "_ns"),
                              error);
 }
 
-std::unique_ptr<AnalogueOutput> open_iio_dac(const SignalSource& source, bool rotary, std::string& error) {
-  const AnalogueScale scale = analogue_scale(source, rotary, source.whole("codes", 1, (1 << 24) - 1), "");
-  const auto channel = static_cast<unsigned>(source.whole("channel", 0, 0, 63));
-  const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);
+std::unique_ptr<OutputDevice> open_iio_dac(const std::vector<OutputAxis>& axes, std::string& error) {
+  const auto& [source, rotary, most_per_tick, tick] = axes.front();
+  const AnalogueScale scale = analogue_scale(*source, rotary, source->whole("codes", 1, (1 << 24) - 1), "");
+  const auto channel = static_cast<unsigned>(source->whole("channel", 0, 0, 63));
+  const std::string device = find_iio_device(source->text("root", kIioRoot), source->text("device"), error);
   return device.empty() ? nullptr : AnalogueOutput::iio_dac(device, channel, scale, error);
 }
 
@@ -183,8 +185,12 @@ const std::vector<DeviceKind<OpenLinkKind>> kLinks = {
 
 }  // namespace
 
-std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error) {
-  return kind_of(kOutputs, "output", source).open(source, rotary, error);
+std::string device_of_output(const SignalSource&) { return {}; }
+
+std::unique_ptr<OutputDevice> open_output(const std::vector<OutputAxis>& axes, std::string& error) {
+  OpenOutput open = nullptr;
+  for (const OutputAxis& axis : axes) open = kind_of(kOutputs, "output", *axis.source).open;
+  return open(axes, error);
 }
 
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines,
