@@ -188,7 +188,7 @@ void Devices::Parts::make_output(std::uint32_t first, std::vector<Route<Correcti
                        device_of_output(axis.output) != shared))
       continue;
     sharing.push_back({&axis.output, axis.wiring.rotary, file.service.limits.axis[i].motion.slew,
-                    file.service.upload.tick});
+                       file.service.upload.tick});
     served.push_back(i);
   }
   std::string error;
