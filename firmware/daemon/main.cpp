@@ -41,6 +41,7 @@ constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2;
 constexpr int kPriority = 80;  // as cyclictest is usually run, above the kernel's threaded interrupts (50)
 constexpr double kShareOfRangePerS = 0.1;
 constexpr int kMostTicksToEnd = 30'000;
+constexpr int kMostTicksStill = 1000;  // of outputs that refuse: one second
 
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
@@ -210,9 +211,19 @@ void take_correction_out(Service& service, Devices& devices) {
     return true;
   };
   service.end();
-  for (int tick = 0; tick < kMostTicksToEnd && !out(); ++tick) {
+  AxisTravel before[kMaxAxes] = {};
+  for (int tick = 0, still = 0; tick < kMostTicksToEnd && !out(); ++tick) {
     devices.advance();
     service.tick();
+    bool moved = false;
+    for (std::uint32_t axis = 0; axis < kMaxAxes; ++axis) {
+      moved = moved || service.cycle().written(axis) != before[axis];
+      before[axis] = service.cycle().written(axis);
+    }
+    still = moved ? 0 : still + 1;
+    if (still < kMostTicksStill) continue;
+    std::fputs("vernierd: an output refuses every value: its correction was not removed\n", stderr);
+    return;
   }
 }
 

@@ -110,14 +110,13 @@ bool ModbusOutput::ticks_run(Clock::time_point now) const {
   return stored != INT64_MIN && ns_of(now) - stored < settings_.timeout.count * 1000;
 }
 
-// After the loss the controller removes the correction by its own ramp; the values are zero when it comes
-// back.
+// After the loss the controller removes the correction by its own ramp; the values are zero when the board
+// comes back. A tick must learn of the loss of a correction; without one its board is at zero already.
 void ModbusOutput::lose() {
-  healthy_ = false;
   repeat_ = false;
   for (std::size_t k = 0; k < settings_.axes.size(); ++k) {
     Place& place = places_[k];
-    if (place.valid) place.refuse = true;
+    if (place.valid && (place.sent != 0 || place.wanted != 0)) place.refuse = true;
     place.valid = false;
     place.sent = 0;
   }
@@ -152,11 +151,13 @@ void ModbusOutput::judge(bool answered, std::uint16_t echo, Clock::time_point no
   const bool in_use =
       std::any_of(places_.begin(), places_.end(), [](const Place& one) { return one.valid.load(); });
   const bool silent = now - good_ > span_of(settings_.timeout);
-  if ((silent && healthy_) || (in_use && !ticks_are_on)) {
-    lose();
-    const std::scoped_lock lock(guard_);
-    ++losses_;
-  }
+  if (!(silent && healthy_) && !(in_use && !ticks_are_on)) return;
+  const bool corrects =
+      std::any_of(places_.begin(), places_.end(), [](const Place& one) { return one.sent != 0; });
+  if (silent) healthy_ = false;
+  lose();
+  const std::scoped_lock lock(guard_);
+  losses_ += silent || corrects ? 1 : 0;
 }
 
 void ModbusOutput::exchange(bool last) {
@@ -189,7 +190,8 @@ void ModbusOutput::exchange(bool last) {
     const std::scoped_lock lock(guard_);
     ++exchanges_;
     failed_ += answered ? 0 : 1;
-    if (written && ticks_are_on) {
+    if (written && ticks_are_on && stored != delayed_) {  // the first answer to this tick
+      delayed_ = stored;
       const std::int64_t tenths = (ns_of(answered_at) - stored) / 100'000;
       ++delays_[static_cast<std::size_t>(std::clamp<std::int64_t>(tenths, 0, kDelayBins - 1))];
     }

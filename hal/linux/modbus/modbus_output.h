@@ -103,6 +103,7 @@ class ModbusOutput : public OutputDevice {
   mutable std::mutex guard_;  // of the figures below
   std::uint64_t exchanges_ = 0, failed_ = 0, losses_ = 0;
   std::vector<std::uint64_t> delays_;  // in tenths of a millisecond
+  std::int64_t delayed_ = INT64_MIN;   // tick whose delay was counted last
   std::thread thread_;
 };
 
