@@ -67,8 +67,9 @@ const std::uint8_t* ModbusLine::ask_over_tcp(int unit, const std::uint8_t* reque
   std::uint8_t frame[MODBUS_TCP_MAX_ADU_LENGTH] = {upper(transaction_), lower(transaction_), 0,          0,
                                                    upper(size + 1),     lower(size + 1),     lower(unit)};
   std::memcpy(frame + kMbap, request, static_cast<std::size_t>(size));
-  const int fd = modbus_get_socket(context_);
-  if (::send(fd, frame, static_cast<std::size_t>(kMbap + size), MSG_NOSIGNAL) != kMbap + size) return nullptr;
+  const std::size_t bytes = std::size_t{kMbap} + static_cast<std::size_t>(size);
+  if (::send(modbus_get_socket(context_), frame, bytes, MSG_NOSIGNAL) != static_cast<ssize_t>(bytes))
+    return nullptr;
   static_assert(sizeof(answer_) >= MODBUS_TCP_MAX_ADU_LENGTH);
   const int got = modbus_receive_confirmation(context_, answer_);
   if (got < 0) return nullptr;

@@ -83,9 +83,9 @@ class ModbusOutput : public OutputDevice {
   std::string begin();
   void run();
   void exchange(bool last = false);
-  void choose_values(Clock::time_point now, bool ticks_run);
+  void choose_values(Clock::time_point now, bool ticks_are_on);
   bool echo_is_new(std::uint16_t echo, Clock::time_point now) const;
-  void judge(bool answered, std::uint16_t echo, Clock::time_point now, bool ticks_run);
+  void judge(bool answered, std::uint16_t echo, Clock::time_point now, bool ticks_are_on);
   void lose();
   bool ticks_run(Clock::time_point now) const;
 
