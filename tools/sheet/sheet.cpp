@@ -113,6 +113,11 @@ void split(Sheet& sheet, const std::vector<Line>& lines) {
   for (const Line& line : lines) {
     std::vector<std::string> cells =
         text::fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number});
+    if (cells.size() > kMostColumns)
+      throw text::InputError({sheet.file, line.number}, "",
+                             std::to_string(cells.size()) + " columns separated by " +
+                                 separator_word(sheet.separator) + ": a sheet has at most " +
+                                 std::to_string(kMostColumns) + "; split the file, or give the separator");
     if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
       continue;
     sheet.rows.push_back(std::move(cells));
