@@ -64,6 +64,8 @@ std::string cause_in_words(const CandidateFinding& cause, const std::string& nex
   std::vector<std::string> beside;  // the stepwise model starts with the given model
   for (std::size_t i = 1; i < steps.size(); ++i)
     if (steps[i].said != cause.candidate.spoken) beside.push_back(steps[i].said);
+  if (cause.candidate.choice.effect->id == "base-drift" && !cause.candidate.choice.runs.empty())
+    text += " An instrument that was set up anew between the runs explains these rows as well.";
   if (!beside.empty()) text += fmt::format(" Beside it: {}.", fmt::join(beside, "; "));
   return text + check_rows_in_words(steps, accepted);
 }
@@ -71,7 +73,7 @@ std::string cause_in_words(const CandidateFinding& cause, const std::string& nex
 std::string aliases_in_words(const effects::Candidate& candidate, double period,
                              const std::vector<double>& aliases, const model::Axis& axis) {
   std::string text =
-      fmt::format("{}: {}, with any of {} periods: the positions of {} do not tell them apart. {:.5g}",
+      fmt::format("{}: {}, with any of {} periods: the positions of {} do not distinguish them. {:.5g}",
                   candidate.choice.effect->title, candidate.spoken, aliases.size() + 1, axis.name, period);
   constexpr std::size_t kListed = 20;  // largest number of periods in a sentence
   for (std::size_t i = 0; i < std::min(kListed, aliases.size()); ++i)

@@ -139,6 +139,11 @@ std::string spoken_with_size(const Candidate& candidate, const std::vector<Spoke
   const double amount = one ? plain : std::sqrt(squares);
   const double std = amount == 0 ? 0 : std::sqrt(variance) / std::abs(amount);
   text += " " + sized(size->factor * amount, std::abs(size->factor) * std, unit);
+  // A second coefficient `s` is the change of the effect along its axis.
+  const CandidateUnknown* const slope = by_rule(candidate, "s");
+  if (const SpokenValue* const value = slope == nullptr ? nullptr : find_value(values, slope->name))
+    text += fmt::format(" at position 0, and {} along the axis",
+                        sized(size->factor * value->value, std::abs(size->factor) * value->std, slope->unit));
   for (const CandidateUnknown& unknown : candidate.unknowns)
     if (unknown.kind == UnknownKind::kPeriod)
       if (const SpokenValue* const value = find_value(values, unknown.name))

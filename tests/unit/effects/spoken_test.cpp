@@ -46,6 +46,8 @@ TEST(Spoken, SaysHowMuchInUnitsOfTheShop) {
   EXPECT_EQ(five.sized("servo-lag:axis=Z", {{-0.0001369, 6.6e-6}}), "Z carriage: lag 0.137 +- 0.007 ms");
   // The jump is twice the coefficient.
   EXPECT_EQ(five.sized("backlash:axis=X", {{-0.0118, 2e-4}}), "X carriage: backlash -23.6 +- 0.4 um");
+  EXPECT_EQ(five.sized("backlash:axis=X,form=along", {{-0.00015, 1e-4}, {2.047e-5, 3.7e-7}}),
+            "X carriage: backlash -0.3 +- 0.2 um at position 0, and 40.9 +- 0.7 um/m along the axis");
   EXPECT_EQ(five.sized("backlash:axis=C", {{0.001, 1.2e-4}}), "C table: backlash 7.2 +- 0.9 arcsec");
   EXPECT_EQ(five.sized("scale-error:axis=X", {{5.5e-5, 1.4e-6}}), "X carriage: scale error 55.0 +- 1.4 um/m");
   // An uncertainty that is not known is not invented.
