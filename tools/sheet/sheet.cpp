@@ -163,6 +163,43 @@ void guess_decimal(Sheet& sheet) {
   if (sheet.separator == ',' && comma == 0) sheet.decimal_comma = false;
 }
 
+/// The decimal sign of the cells that are text. The numbers of a workbook have none; they get the same sign,
+/// so that one rule reads all cells.
+void settle_decimal(Sheet& sheet, const std::vector<std::vector<char>>& is_number,
+                    std::optional<bool> decimal_comma) {
+  Sheet texts = sheet;
+  const auto each_number = [&](Sheet& of, const auto& change) {
+    for (std::size_t row = 0; row < is_number.size(); ++row)
+      for (std::size_t k = 0; k < is_number[row].size(); ++k)
+        if (is_number[row][k] != 0) change(of.rows[row][k]);
+  };
+  each_number(texts, [](std::string& cell) { cell.clear(); });
+  texts.separator = '\0';  // no comma separates the cells
+  if (!decimal_comma) guess_decimal(texts);
+  sheet.decimal_comma = decimal_comma.value_or(texts.decimal_comma);
+  sheet.decimal_doubtful = !decimal_comma && texts.decimal_doubtful;
+  if (sheet.decimal_comma)
+    each_number(sheet, [](std::string& cell) { std::replace(cell.begin(), cell.end(), '.', ','); });
+}
+
+void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetFormat& format) {
+  WorkbookSheet read = read_workbook(bytes, sheet.file, format.sheet);
+  sheet.workbook = true;
+  sheet.sheet = read.name;
+  std::vector<std::vector<char>> is_number;
+  for (std::size_t i = 0; i < read.rows.size(); ++i) {
+    if (read.line[i] <= format.skip) continue;
+    if (!format.comment.empty() && read.rows[i].front().starts_with(format.comment) &&
+        !begins_with_error_value(read.rows[i].front()))
+      continue;
+    sheet.rows.push_back(std::move(read.rows[i]));
+    sheet.line.push_back(read.line[i]);
+    is_number.push_back(std::move(read.is_number[i]));
+  }
+  make_even(sheet);
+  settle_decimal(sheet, is_number, format.decimal_comma);
+}
+
 }  // namespace
 
 bool is_workbook(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"); }
@@ -194,20 +231,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
   if (bytes.starts_with("\xD0\xCF\x11\xE0"))
     throw text::InputError({file, 0}, "", "a workbook of the old kind (.xls): save it as .xlsx or as CSV");
   if (is_workbook(bytes)) {
-    WorkbookSheet read = read_workbook(bytes, file, format.sheet);
-    sheet.workbook = true;
-    sheet.sheet = read.name;
-    for (std::size_t i = 0; i < read.rows.size(); ++i) {
-      if (read.line[i] <= format.skip) continue;
-      if (!format.comment.empty() && read.rows[i].front().starts_with(format.comment) &&
-          !begins_with_error_value(read.rows[i].front()))
-        continue;
-      sheet.rows.push_back(std::move(read.rows[i]));
-      sheet.line.push_back(read.line[i]);
-    }
-    make_even(sheet);
-    // Its numbers are numbers; only cells that are text may have a decimal comma.
-    sheet.decimal_comma = format.decimal_comma.value_or(false);
+    read_from_workbook(sheet, bytes, format);
   } else {
     sheet.encoding = encoding_of(bytes);
     const std::string text = utf8_of(bytes, sheet.encoding);

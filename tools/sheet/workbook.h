@@ -11,6 +11,7 @@ struct WorkbookSheet {
   std::string name;
   std::vector<std::vector<std::string>> rows;  // of different lengths; empty cells are empty
   std::vector<std::size_t> line;               // row number in the sheet
+  std::vector<std::vector<char>> is_number;    // of each cell: stored as a number, not as text
 };
 
 /// Reads the sheet with this name or number (from 1). Empty: the first sheet that contains cells. Throws

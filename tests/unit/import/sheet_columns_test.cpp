@@ -113,6 +113,21 @@ const Case kCases[] = {
     {"SensesWithoutNumbers", "Z [mm];Abw. + [µm];Abw. - [µm];Abw. + [µm];Abw. - [µm]\n0;1;2;3;4\n9;1;2;3;4\n",
      "Z[mm],dirZ,run,z[mm]\n0,1,1,0.001\n9,1,1,9.001\n0,-1,1,0.002\n9,-1,1,9.002\n0,1,2,0.003\n"
      "9,1,2,9.003\n0,-1,2,0.004\n9,-1,2,9.004\n"},
+    {"RunsWithoutDirections", "X soll [mm];Messung 1 [mm];Messung 2 [mm]\n0;0,1;0,2\n9;9,1;9,2\n",
+     "X[mm],run,x[mm]\n0,1,0.1\n9,1,9.1\n0,2,0.2\n9,2,9.2\n"},
+    {"OneRunWithoutDirection", "X soll [mm];Lauf 1 + [um];Lauf 1 - [um];Lauf 2 [um]\n0;1;2;3\n9;1;2;3\n",
+     "refused: s.csv:1: \"Lauf 2 [um]\": the other runs have an approach direction"},
+    {"MeanBesideTheRuns", "X [mm];1+ [µm];1- [µm];Mittelwert [µm]\n0;1;2;1,5\n9;1;2;1,5\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n9,1,1,9.001\n0,-1,1,0.002\n9,-1,1,9.002\n"},
+    {"MeanDeviationBesideTheReading",
+     "X [mm];Abweichung [µm];mittlere Abw. (Mittelwert) [µm]\n0;1;2\n9;1;2\n",
+     "X[mm],x[mm]\n0,0.001\n9,9.001\n"},
+    {"MeanAlone", "X soll [mm];Mittelwert\n0;0,1\n9;9,1\n",
+     "such as --column \"x[mm]=Mittelwert\" for a measured position, or --deviation \"X[um]=Mittelwert\" for "
+     "a "
+     "deviation"},
+    {"MeanDeviationAlone", "X soll [mm];Abweichung Mittelwert [µm]\n0;1\n9;2\n",
+     "X[mm],x[mm]\n0,0.001\n9,9.002\n"},
     {"TheSameRunTwice", "Z [mm];1+ [um];1+ [um]\n0;1;2\n9;1;2\n",
      "refused: s.csv:1: \"1+ [um]\": this run occurs twice in this direction"},
     {"ThermometersAreNoRuns", "X[mm];x[mm];T1 [°C];T2 [°C]\n1;2;20;21\n2;3;20;21\n",

@@ -308,6 +308,23 @@ void settle_display(const sheet::SheetTable& table, std::vector<SheetColumn>& co
   }
 }
 
+bool names_statistic(const sheet::Heading& heading) {
+  const std::vector<std::string> words = heading_words(heading.name);
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return says_statistic(text::in_small_letters(word)); });
+}
+
+/// The mean or the spread of the readings in the columns beside it is no further reading.
+void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& columns) {
+  bool reading = false;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    reading |= !names_statistic(table.headings[k]) &&
+               (columns[k].use == SheetColumn::Use::kDeviation || is_reading(columns[k], columns));
+  for (std::size_t k = 0; reading && k < columns.size(); ++k)
+    if (columns[k].why == "by its heading" && names_statistic(table.headings[k]))
+      leave(columns[k], "computed from the readings beside it");
+}
+
 /// A sign that is stated: in the heading of a deviation, or in a title for all of them.
 void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                   std::vector<SheetColumn>& columns) {
@@ -464,6 +481,37 @@ std::string angle_of(const std::string& axis, const text::Place& place) {
       "with what was measured");
 }
 
+/// Assignments that read a table in which nothing was recognised as measured, with its own headings.
+std::string assignments_to_try(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
+                               const Guess& guess) {
+  const auto axis = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& column) {
+    return column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name);
+  });
+  std::string position, reading, unit;
+  bool actual = false;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
+        is_known_name(column.name))
+      continue;
+    const Guess::Bare bare = Guess::bare(table.headings[k].name);
+    if (bare == Guess::Bare::kTarget && axis == columns.end() && position.empty()) {
+      position =
+          fmt::format("--column \"{}={}\" ", column.unit.empty() ? "X[mm]" : "X", table.headings[k].text);
+    } else if (reading.empty() || (bare == Guess::Bare::kActual && !actual)) {
+      reading = table.headings[k].text;
+      unit = column.unit;
+      actual = bare == Guess::Bare::kActual;
+    }
+  }
+  const std::string name = axis == columns.end() ? "X" : axis->name;
+  if (reading.empty()) reading = "HEADING";
+  return fmt::format(
+      "{}--column \"{}{}={}\" for a measured position, or {}--deviation \"{}{}={}\" for a deviation",
+      position, text::in_small_letters(name), unit.empty() ? "[mm]" : "", reading, position, name,
+      unit.empty() ? "[um]" : "", reading);
+}
+
 /// One cell as the measurement file writes it.
 std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, const std::string& cell,
                       std::size_t row) {
@@ -609,6 +657,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   }
   settle_axis(sheet, table, columns, guess);
   settle_display(table, columns, guess);
+  leave_statistics(table, columns);
   settle(sheet, table, columns, guess);
   settle_signs(sheet, table, columns);
   keep_names_apart(table, columns);
@@ -648,9 +697,9 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   if (!measured)
     throw text::InputError(heading, "",
                            "nothing measured among the columns (" + format::reading_column_names() +
-                               ", or a deviation of an axis): assign one, such as --column "
-                               "\"x[mm]=HEADING\" or --deviation \"X[um]=HEADING\"; --preview shows what "
-                               "was understood");
+                               ", or a deviation of an axis): assign one, such as " +
+                               assignments_to_try(table, columns, guess) +
+                               "; --preview shows what was understood");
   for (std::size_t k = 0; k < columns.size(); ++k)
     check_quantity(columns[k], guess, table.headings[k].text, heading);
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {

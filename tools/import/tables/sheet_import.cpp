@@ -54,10 +54,13 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
 }
 
 std::string how_read(const sheet::Sheet& sheet) {
-  if (sheet.workbook) return "workbook, sheet \"" + sheet.sheet + "\"";
+  const std::string doubt =
+      sheet.decimal_doubtful ? " (it could separate thousands as well: give --decimal)" : "";
+  if (sheet.workbook)
+    return "workbook, sheet \"" + sheet.sheet + "\"" +
+           (sheet.decimal_comma ? ", numbers stored as text have a decimal comma" + doubt : "");
   return fmt::format("{}, columns separated by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
-                     sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point",
-                     sheet.decimal_doubtful ? " (it could separate thousands as well: give --decimal)" : "");
+                     sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point", doubt);
 }
 
 std::string becomes(const SheetColumn& column) {
