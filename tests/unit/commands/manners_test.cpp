@@ -106,6 +106,28 @@ TEST_F(Manners, CheckStatesItsVerdictAndTheFileThatItDoesNotWrite) {
   EXPECT_FALSE(fs::exists(folder_ + "/right.xml"));
 }
 
+TEST_F(Manners, RecordsInAnglesOnlyHaveFiguresInAngles) {
+  write_file(folder_ + "/a.xml",
+             "<machine><variables><static><BaseShift X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" "
+             "rZ=\"0\"/></static><machineaxes><X min=\"0\" max=\"600\"/></machineaxes></variables>"
+             "<transforms><sixdof X=\"X\"/></transforms></machine>");
+  std::string rows = "X[mm],ry[arcsec],u[arcsec],role\n";
+  for (int i = 0; i < 60; ++i)  // pitch of 8 arcsec, readings scattered by 0.3, in a fixed order
+    rows += std::to_string(10 * i) + "," +
+            std::to_string(8e-6 * (10 * i - 300) * (10 * i - 300) + 0.2 * ((7 * i) % 5 - 2)) + ",0.3," +
+            (i % 4 == 3 ? "check" : "fit") + "\n";
+  write_file(folder_ + "/a.csv", rows);
+  EXPECT_EQ(run("vernier improve a.xml a.csv -o out --yes --json r.json"), 0) << said_;
+  EXPECT_TRUE(said("the model as given, fitted: fit rows ") && said("urad") && !said("rows -")) << said_;
+  const std::string json = read_file(folder_ + "/r.json");
+  for (const char* key : {"rms_before_urad", "rms_urad", "check_rms_urad", "noise_urad"})
+    EXPECT_EQ(json.find(std::string("\"") + key + "\": null"), std::string::npos) << key;
+  for (const char* command : {"fit a.xml a.csv -o f.xml", "compare a.xml a.csv", "diagnose a.xml a.csv"}) {
+    EXPECT_EQ(run(std::string("vernier ") + command), 0) << said_;
+    EXPECT_FALSE(said("rows    -") || said("noise           -") || said(" -            -")) << said_;
+  }
+}
+
 TEST_F(Manners, RobotIsCorrectedAsTheMessageTells) {
   ASSERT_EQ(run("vernier new robot -o r.xml && vernier set r.xml th1=0.01 -o e.xml"), 0) << said_;
   write_file(folder_ + "/p.csv", "J1[deg],J2[deg],J3[deg],J4[deg],J5[deg],J6[deg]\n10,-80,80,10,80,10\n");
