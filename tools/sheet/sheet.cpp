@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "tools/sheet/several_tables.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/sheet/workbook.h"
 #include "tools/text/csv.h"
@@ -17,15 +18,6 @@ struct Line {
   std::string text;
   std::size_t number = 0;
 };
-
-/// True if a line begins with the text that a spreadsheet writes for a failed formula, in English or German.
-/// It is a row.
-bool begins_with_error_value(const std::string& line) {
-  for (const char* word : {"#REF!", "#N/A", "#DIV/0!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!", "#NV",
-                           "#BEZUG!", "#WERT!", "#ZAHL!"})
-    if (line.starts_with(word)) return true;
-  return false;
-}
 
 std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std::string& comment) {
   std::vector<Line> lines;
@@ -109,10 +101,39 @@ void make_even(Sheet& sheet) {
   for (auto& row : sheet.rows) row.resize(width);
 }
 
+/// Cells of a line of aligned text, with at least two blanks or a tab between them: headings may have words.
+std::vector<std::string> aligned_cells(const std::string& line) {
+  std::vector<std::string> cells;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t end = std::min({line.find("  ", at), line.find('\t', at), line.size()});
+    if (std::string cell = text::trimmed(line.substr(at, end - at)); !cell.empty())
+      cells.push_back(std::move(cell));
+    at = std::max(end, at + 1);
+    while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
+  }
+  return cells;
+}
+
+/// The most frequent number of cells in a line.
+std::size_t usual_width(const std::vector<std::vector<std::string>>& rows) {
+  std::map<std::size_t, std::size_t> count;
+  for (const auto& row : rows) ++count[row.size()];
+  const auto most = std::max_element(count.begin(), count.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == count.end() ? 0 : most->first;
+}
+
 void split(Sheet& sheet, const std::vector<Line>& lines) {
-  for (const Line& line : lines) {
-    std::vector<std::string> cells =
-        text::fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number});
+  std::vector<std::vector<std::string>> rows;
+  for (const Line& line : lines)
+    rows.push_back(text::fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number}));
+  const std::size_t width = usual_width(rows);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Line& line = lines[i];
+    std::vector<std::string>& cells = rows[i];
+    if (sheet.separator == ' ' && cells.size() > width)
+      if (std::vector<std::string> aligned = aligned_cells(line.text); aligned.size() <= width)
+        cells = std::move(aligned);
     if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
       continue;
     sheet.rows.push_back(std::move(cells));
@@ -186,6 +207,7 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
   WorkbookSheet read = read_workbook(bytes, sheet.file, format.sheet);
   sheet.workbook = true;
   sheet.sheet = read.name;
+  sheet.sheets = std::move(read.all);
   std::vector<std::vector<char>> is_number;
   for (std::size_t i = 0; i < read.rows.size(); ++i) {
     if (read.line[i] <= format.skip) continue;
@@ -201,6 +223,13 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
 }
 
 }  // namespace
+
+bool begins_with_error_value(const std::string& line) {
+  for (const char* word : {"#REF!", "#N/A", "#DIV/0!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!", "#NV",
+                           "#BEZUG!", "#WERT!", "#ZAHL!"})
+    if (line.starts_with(word)) return true;
+  return false;
+}
 
 bool is_workbook(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"); }
 
@@ -249,6 +278,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
       guess_decimal(sheet);
   }
   if (sheet.rows.empty()) throw text::InputError({file, 0}, "", "no rows");
+  keep_table(sheet, format.table);
   return sheet;
 }
 

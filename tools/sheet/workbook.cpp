@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <zip.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -98,22 +99,34 @@ class Reader {
   }
 
   WorkbookSheet read(const std::string& wanted) {
-    std::string names;
+    std::vector<std::string> names;
+    std::optional<WorkbookSheet> found;
     std::size_t number = 0;
     for (const pugi::xml_node entry : child(workbook_.document_element(), "sheets").children()) {
-      const std::string name = entry.attribute("name").value();
-      names += (names.empty() ? "" : ", ") + name;
+      names.emplace_back(entry.attribute("name").value());
       ++number;
-      if (!wanted.empty() && wanted != name && wanted != std::to_string(number)) continue;
+      if (found && (!wanted.empty() || is_table(*found))) continue;
+      if (!wanted.empty() && wanted != names.back() && wanted != std::to_string(number)) continue;
       WorkbookSheet sheet = cells_of(entry);
-      if (!wanted.empty() || !sheet.rows.empty()) return sheet;
+      if (!wanted.empty() || is_table(sheet) || (!found && !sheet.rows.empty())) found = std::move(sheet);
+    }
+    if (found) {
+      found->all = std::move(names);
+      return std::move(*found);
     }
     if (wanted.empty()) throw text::InputError({file_, 0}, "", "no sheet of this workbook contains a cell");
-    throw text::InputError({file_, 0}, wanted,
-                           "the workbook has no sheet of this name; its sheets are " + names);
+    throw text::InputError(
+        {file_, 0}, wanted,
+        "the workbook has no sheet of this name; its sheets are " + text::joined(names, ", "));
   }
 
  private:
+  /// Two rows with two numbers each: a cover sheet has a serial number and a date.
+  static bool is_table(const WorkbookSheet& sheet) {
+    return std::count_if(sheet.is_number.begin(), sheet.is_number.end(), [](const std::vector<char>& row) {
+             return std::count(row.begin(), row.end(), 1) >= 2;
+           }) >= 2;
+  }
   void load(pugi::xml_document& document, const std::string& text, const std::string& name) const {
     const auto result =
         document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_ws_pcdata);
@@ -161,7 +174,7 @@ class Reader {
   }
 
   WorkbookSheet cells_of(const pugi::xml_node& entry) const {
-    WorkbookSheet sheet{entry.attribute("name").value(), {}, {}, {}};
+    WorkbookSheet sheet{entry.attribute("name").value(), {}, {}, {}, {}};
     pugi::xml_document document;
     read_part(part_of(entry), document);
     std::size_t row_number = 0, filled = 0, empty = 0;

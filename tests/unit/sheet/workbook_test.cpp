@@ -71,6 +71,15 @@ TEST(Workbook, CellsOfTheFirstSheetThatHasSome) {
             (std::vector<std::string>{"200", "200.0011", "", "zurück"}));  // a cell that is not there
 }
 
+TEST(Workbook, CoverSheetIsNotTheTable) {
+  const WorkbookSheet sheet = read_workbook(bytes_of("cover.xlsx"), "b.xlsx", "");
+  EXPECT_EQ(sheet.name, "Daten");
+  EXPECT_EQ(sheet.all, (std::vector<std::string>{"Deckblatt", "Daten", "Leer"}));
+  EXPECT_EQ(sheet.rows.size(), 4u);
+  EXPECT_EQ(read_workbook(bytes_of("cover.xlsx"), "b.xlsx", "1").rows[1],
+            (std::vector<std::string>{"Auftrag", "4711"}));
+}
+
 TEST(Workbook, SheetIsTakenByNameOrNumber) {
   EXPECT_EQ(read_workbook(bytes_of("survey.xlsx"), "b.xlsx", "2").name, "Messung");
   EXPECT_TRUE(read_workbook(bytes_of("survey.xlsx"), "b.xlsx", "Deckblatt").rows.empty());

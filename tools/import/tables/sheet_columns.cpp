@@ -601,6 +601,8 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
         wishes.format.decimal_comma = value == "comma";
       else if (name == "skip" && skip)
         wishes.format.skip = *skip;
+      else if (name == "table" && skip)
+        wishes.format.table = *skip;
       else if (name == "sheet")
         wishes.format.sheet = value;
       else if (name == "comment")
@@ -608,10 +610,10 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
       else if (name == "unit" && sheet::unit_meant(value))
         wishes.unit = *sheet::unit_meant(value);
       else
-        throw text::InputError(
-            place, name,
-            "not understood; known are column, deviation, leave, set, separator, decimal, skip, sheet, "
-            "comment, unit");
+        throw text::InputError(place, name,
+                               "not understood; known are column, deviation, leave, set, separator, decimal, "
+                               "skip, table, sheet, "
+                               "comment, unit");
     }
   }
 }
@@ -625,6 +627,7 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
     text += std::string("separator = ") +
             (sheet.separator == ' ' ? "space" : sheet::separator_word(sheet.separator)) + "\n";
   text += std::string("decimal = ") + (sheet.decimal_comma ? "comma" : "point") + "\n";
+  if (wishes.format.table) text += "table = " + std::to_string(*wishes.format.table) + "\n";
   if (wishes.format.skip > 0) text += "skip = " + std::to_string(wishes.format.skip) + "\n";
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
@@ -677,18 +680,23 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   ImportTable result{sheet.file, {}, {}};
   const Guess guess(wishes);
   std::string without;
-  bool measured = false;
+  // The same value in every row (--set) is a column too.
+  std::vector<SheetColumn> all = columns;
+  for (const MappedColumn& constant : wishes.constants)
+    all.push_back({SheetColumn::Use::kColumn, constant.name, constant.unit, "as given"});
+  bool measured = std::any_of(all.begin() + static_cast<std::ptrdiff_t>(columns.size()), all.end(),
+                              [&](const SheetColumn& column) { return is_reading(column, all); });
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     const bool geometry = guess.is_axis(column.name) ||
-                          ((is_known_name(column.name) || is_reading(column, columns)) && wants_unit(column));
+                          ((is_known_name(column.name) || is_reading(column, all)) && wants_unit(column));
     if (wants_unit(column) && column.unit.empty() && column.use == SheetColumn::Use::kDeviation)
       without += fmt::format(" --deviation \"{}[um]={}\"", column.name, table.headings[k].text);
     else if (wants_unit(column) && column.unit.empty() && geometry)
       without += fmt::format(" --column \"{}={}\"", format::heading(column.name, unit_to_say(column.name)),
                              table.headings[k].text);
     if (column.use == SheetColumn::Use::kLeft) continue;
-    measured |= column.use == SheetColumn::Use::kDeviation || is_reading(column, columns);
+    measured |= column.use == SheetColumn::Use::kDeviation || is_reading(column, all);
   }
   const text::Place heading{sheet.file, sheet.line[table.heading_row]};
   if (!without.empty())
@@ -760,9 +768,14 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       settle_senses(sheet, result.line, table.headings[k].text == made.name, made.cells);
     result.columns.push_back(std::move(made));
   }
-  for (const MappedColumn& constant : wishes.constants)
+  for (const MappedColumn& constant : wishes.constants) {
+    if (result.find(constant.name) != nullptr)
+      throw text::InputError(
+          heading, constant.name,
+          "the table has this column: --set would give it a second time (--leave its heading)");
     result.columns.push_back(
         {constant.name, constant.unit, std::vector<std::string>(result.line.size(), constant.constant)});
+  }
   return result;
 }
 

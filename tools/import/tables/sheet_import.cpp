@@ -5,6 +5,7 @@
 
 #include "tools/import/tables/wide_sheet.h"
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace vernier::importer {
 namespace {
@@ -18,6 +19,7 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   }
   if (!words.comment.empty()) wishes.format.comment = words.comment == "none" ? "" : words.comment;
   if (words.skip) wishes.format.skip = *words.skip;
+  if (words.table) wishes.format.table = words.table;
   if (!words.sheet.empty()) wishes.format.sheet = words.sheet;
   if (!words.axes.empty()) wishes.axes = words.axes;
   if (!words.unit.empty()) {
@@ -58,6 +60,7 @@ std::string how_read(const sheet::Sheet& sheet) {
       sheet.decimal_doubtful ? " (it could separate thousands as well: give --decimal)" : "";
   if (sheet.workbook)
     return "workbook, sheet \"" + sheet.sheet + "\"" +
+           (sheet.sheets.size() > 1 ? " of " + text::joined(sheet.sheets, ", ") : "") +
            (sheet.decimal_comma ? ", numbers stored as text have a decimal comma" + doubt : "");
   return fmt::format("{}, columns separated by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
                      sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point", doubt);
