@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 
-#include "tools/sheet/several_tables.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/sheet/workbook.h"
 #include "tools/text/csv.h"
@@ -278,7 +277,6 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
       guess_decimal(sheet);
   }
   if (sheet.rows.empty()) throw text::InputError({file, 0}, "", "no rows");
-  keep_table(sheet, format.table);
   return sheet;
 }
 

@@ -15,7 +15,7 @@ struct SheetFormat {
   std::optional<bool> decimal_comma;  // guessed where absent
   std::size_t skip = 0;               // lines at the top that are no table
   std::string comment = "#";          // lines that begin with it are skipped; empty: no such lines
-  std::optional<std::size_t> table;   // of several tables below each other, from 1
+  std::optional<std::size_t> table;   // of several tables below each other, from 1 (keep_table)
   std::string sheet;                  // of a workbook, by name or number; empty: the first with rows
 };
 

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "tools/import/tables/wide_sheet.h"
+#include "tools/sheet/several_tables.h"
 #include "tools/text/files.h"
 
 namespace vernier::sheet_columns_test {
@@ -20,6 +21,7 @@ std::string import(const std::string& bytes, SheetWishes wishes = {},
                    const std::function<void(SheetWishes&, const SheetTable&)>& say = {}) {
   try {
     Sheet sheet = read_sheet(bytes, "s.csv", wishes.format);
+    keep_table(sheet, wishes.format.table);
     SheetTable table = parts_of_sheet(sheet);
     unfold_runs(sheet, table);
     if (say) say(wishes, table);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/import/tables/wide_sheet.h"
+#include "tools/sheet/several_tables.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -42,6 +43,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   SheetReading result;
   result.wishes = wishes_of(words, std::move(wishes));
   result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
+  sheet::keep_table(result.sheet, result.wishes.format.table);
   result.table = sheet::parts_of_sheet(result.sheet);
   result.runs = unfold_runs(result.sheet, result.table);
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
