@@ -45,7 +45,8 @@ std::string diagnose_report_html(const nlohmann::ordered_json& result);
 
 /// Makes the page of `improve`: the error after each step. ladder[{effect, add, label, rms_um,
 /// check_rms_um}], noise_um, and all keys of the page of diagnose; simulation{rms_before_um, rms_after_um,
-/// max_after_um, ticks}; steps[{title, prose[], findings[], explanation}]. tool.
+/// max_before_um, max_after_um, ticks}; pictures[] (tools/results/detail.h: before_after_pictures);
+/// steps[{title, prose[], findings[], explanation}]. tool.
 std::string improve_report_html(const nlohmann::ordered_json& result);
 
 /// Largest number of observations of one kind that a page draws.

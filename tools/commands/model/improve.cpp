@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -13,6 +14,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
 #include "tools/report/report.h"
+#include "tools/results/detail.h"
 #include "tools/results/diagnosis_json.h"
 #include "tools/results/results.h"
 #include "tools/results/safety_json.h"
@@ -80,6 +82,15 @@ Json replayed(const ModelStep& model_step, const model::Measurement& rows, const
     put("rms_after", r.after, false);
     put("check_rms_before", r.before, true);
     put("check_rms_after", r.after, true);
+    const auto largest = [&](const Eigen::VectorXd& residual, auto member) {
+      const std::optional<double> fit = fit::role_statistics(m, residual, false).*member;
+      const std::optional<double> check = fit::role_statistics(m, residual, true).*member;
+      return text::or_null(fit && check ? std::max(*fit, *check) : fit ? fit : check);
+    };
+    json["max_before_um"] = largest(r.before, &fit::RoleStatistics::max_um);
+    json["max_after_um"] = largest(r.after, &fit::RoleStatistics::max_um);
+    json["max_before_urad"] = largest(r.before, &fit::RoleStatistics::max_urad);
+    json["max_after_urad"] = largest(r.after, &fit::RoleStatistics::max_urad);
     return json;
   } catch (const text::InputError& error) {
     return {{"label", model_step.label}, {"why_not", error.what()}};
@@ -177,11 +188,27 @@ class Improver {
     simulate(json);
     judge(json);
     const std::string page = arguments_.output + "/improve.html";
-    text::write_file(page, report::improve_report_html(arguments_.header.on(json)));
+    Json shown = json;
+    shown["pictures"] = pictures();
+    text::write_file(page, report::improve_report_html(arguments_.header.on(std::move(shown))));
     text::write_file(arguments_.output + "/improve.json", json.dump(1) + "\n");
     write_json(arguments_.json, json);
     fmt::print(out_, "written to {}: {} machine files, improve.json, improve.html\n", arguments_.output,
                model_steps_.size());
+  }
+
+  /// Residuals of the given and of the last model against what explained the first ones; none without an
+  /// effect.
+  Json pictures() const {
+    if (model_steps_.size() < 2) return Json::array();
+    const auto residuals_of = [&](const ModelStep& step) {
+      const model::Machine machine = model::parse_machine(step.text, step.file);
+      return fit::residuals(machine, model::rebind(all_rows_, first_, machine));
+    };
+    const Eigen::VectorXd before = residuals_of(model_steps_.front()),
+                          after = residuals_of(model_steps_.back());
+    if (before.size() != after.size()) return Json::array();
+    return results::before_after_pictures(first_diagnosis_["findings"], first_, all_rows_, before, after);
   }
 
   /// The same fall in the 1 kHz loop: the correction of the first and of the last machine.
