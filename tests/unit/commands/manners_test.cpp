@@ -128,6 +128,16 @@ TEST_F(Manners, RecordsInAnglesOnlyHaveFiguresInAngles) {
   }
 }
 
+TEST_F(Manners, FitOfFewReadingsIsReadAgain) {
+  // Fewer readings than parameters: nothing is left over that shows a noise.
+  ASSERT_EQ(run("vernier new gantry --axis X:0:1200 --axis Y:0:800 --axis Z:-150:0 -o g.xml"), 0) << said_;
+  write_file(folder_ + "/g.csv",
+             "X[mm],Y[mm],Z[mm],x[mm],u[um]\n0,400,-50,0.001,0.5\n300,400,-50,300.004,0.5\n"
+             "600,400,-50,600.009,0.5\n900,400,-50,900.011,0.5\n");
+  ASSERT_EQ(run("vernier fit g.xml g.csv -o gf.xml"), 0) << said_;
+  EXPECT_EQ(run("vernier compare gf.xml g.csv"), 0) << said_;
+}
+
 TEST_F(Manners, RobotIsCorrectedAsTheMessageTells) {
   ASSERT_EQ(run("vernier new robot -o r.xml && vernier set r.xml th1=0.01 -o e.xml"), 0) << said_;
   write_file(folder_ + "/p.csv", "J1[deg],J2[deg],J3[deg],J4[deg],J5[deg],J6[deg]\n10,-80,80,10,80,10\n");
