@@ -285,6 +285,7 @@ void Evidence::weigh_poses(double share) {
 }
 
 void Evidence::assume(const fit::NoiseModel& noise) {
+  ++revision_;
   noise_ = noise;
   noise_known_ = with_u_ || !noise.independent();
   Eigen::MatrixXd residual = raw_residual_;

@@ -76,6 +76,8 @@ class Evidence {
   /// least squares). assume() whitens the residual, the columns and the part that the model absorbs.
   void assume(const fit::NoiseModel& noise);
   const fit::NoiseModel& noise() const { return noise_; }
+  /// Increases each time that the whitening changes.
+  std::size_t revision() const { return revision_; }
   /// log det of the covariance of the readings under that model.
   double log_determinant() const { return log_determinant_; }
   /// Returns the correlation of the readings' errors beside the model and the columns from `raw_columns`.
@@ -142,6 +144,7 @@ class Evidence {
   std::vector<int> place_;                        // of each row of the measurement
   double pose_share_ = 0;
   bool noise_known_ = false, with_u_ = false;
+  std::size_t revision_ = 1;
   double stride_ = 1;  // of the rows that were kept
   fit::NoiseLayout layout_;
   fit::NoiseModel noise_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "tools/maths/golden.h"
 
@@ -227,40 +228,70 @@ Eigen::VectorXd carrier_of(const Evidence& evidence, const effects::Candidate& c
   return carrier;
 }
 
-Eigen::VectorXd wave_gains(const Evidence& evidence, const WaveOfAxis& wave, double first, double step,
-                           Index count, const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) {
-  constexpr Index kBlock = 64;  // frequencies in one product
-  const Index size = residual.size();
+namespace {
+
+constexpr Index kBlock = 64;  // frequencies in one product
+
+/// Gains of projected waves beside the orthonormal columns `beside`.
+Eigen::VectorXd gains_beside(const Evidence& evidence, const ProjectedWaves& waves,
+                             const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) {
   const double least_square = std::pow(evidence.thresholds().pool.least_own, 2);
-  Eigen::ArrayXd at(size);
-  for (Index i = 0; i < size; ++i) at[i] = kTurn * position(evidence, wave.axis, static_cast<std::size_t>(i));
-  const Eigen::MatrixXd& absorbed = evidence.absorbed();
-  Eigen::VectorXd gains(count);
+  Eigen::VectorXd gains(waves.columns.cols() / 2);
   Eigen::MatrixXd columns;
-  for (Index begin = 0; begin < count; begin += kBlock) {
-    const Index width = std::min(kBlock, count - begin);
-    columns.resize(size, 2 * width);
-    for (Index k = 0; k < width; ++k) {
-      const Eigen::ArrayXd phase = (first + static_cast<double>(begin + k) * step) * at;
-      columns.col(2 * k) = wave.carrier.array() * phase.sin();
-      columns.col(2 * k + 1) = wave.carrier.array() * phase.cos();
-    }
-    evidence.whiten(columns);
-    const Eigen::RowVectorXd before = columns.colwise().squaredNorm();
-    if (absorbed.cols() > 0) columns -= absorbed * (absorbed.transpose() * columns);
+  for (Index begin = 0; begin < gains.size(); begin += kBlock) {
+    const Index width = std::min(kBlock, gains.size() - begin);
+    columns = waves.columns.middleCols(2 * begin, 2 * width);
     if (beside.cols() > 0) columns -= beside * (beside.transpose() * columns);
     const Eigen::RowVectorXd moment = residual.transpose() * columns;
     for (Index k = 0; k < width; ++k) {
       const double a = columns.col(2 * k).squaredNorm(), b = columns.col(2 * k + 1).squaredNorm(),
                    c = columns.col(2 * k).dot(columns.col(2 * k + 1)), u = moment[2 * k],
                    v = moment[2 * k + 1];
-      const double determinant = a * b - c * c, own = before[2 * k] + before[2 * k + 1];
+      const double determinant = a * b - c * c,
+                   own = waves.squares[2 * (begin + k)] + waves.squares[2 * (begin + k) + 1];
       // The smaller eigenvalue of the 2 x 2 matrix is at least its determinant over its trace.
       const bool independent = determinant > least_square * own * (a + b);
       gains[begin + k] = independent ? (b * u * u - 2 * c * u * v + a * v * v) / determinant : 0;
     }
   }
   return gains;
+}
+
+}  // namespace
+
+ProjectedWaves projected_waves(const Evidence& evidence, const WaveOfAxis& wave, double first, double step,
+                               Index count) {
+  const Index size = evidence.residual().size();
+  Eigen::ArrayXd at(size);
+  for (Index i = 0; i < size; ++i) at[i] = kTurn * position(evidence, wave.axis, static_cast<std::size_t>(i));
+  const Eigen::MatrixXd& absorbed = evidence.absorbed();
+  ProjectedWaves waves{Eigen::MatrixXd(size, 2 * count), Eigen::RowVectorXd(2 * count)};
+  // Each sine follows from the previous one by a rotation, as in `powers`.
+  const Eigen::ArrayXd turn_cos = (step * at).cos(), turn_sin = (step * at).sin();
+  Eigen::MatrixXd columns;
+  for (Index begin = 0; begin < count; begin += kBlock) {
+    const Index width = std::min(kBlock, count - begin);
+    columns.resize(size, 2 * width);
+    const Eigen::ArrayXd phase = (first + static_cast<double>(begin) * step) * at;
+    Eigen::ArrayXd now_cos = phase.cos(), now_sin = phase.sin();
+    for (Index k = 0; k < width; ++k) {
+      columns.col(2 * k) = wave.carrier.array() * now_sin;
+      columns.col(2 * k + 1) = wave.carrier.array() * now_cos;
+      const Eigen::ArrayXd next = now_cos * turn_cos - now_sin * turn_sin;
+      now_sin = now_sin * turn_cos + now_cos * turn_sin;
+      now_cos = next;
+    }
+    evidence.whiten(columns);
+    waves.squares.segment(2 * begin, 2 * width) = columns.colwise().squaredNorm();
+    if (absorbed.cols() > 0) columns -= absorbed * (absorbed.transpose() * columns);
+    waves.columns.middleCols(2 * begin, 2 * width) = columns;
+  }
+  return waves;
+}
+
+Eigen::VectorXd wave_gains(const Evidence& evidence, const WaveOfAxis& wave, double first, double step,
+                           Index count, const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) {
+  return gains_beside(evidence, projected_waves(evidence, wave, first, step, count), beside, residual);
 }
 
 bool is_affordable(const Evidence& evidence, Index count, const Eigen::MatrixXd& beside) {
@@ -271,13 +302,13 @@ bool is_affordable(const Evidence& evidence, Index count, const Eigen::MatrixXd&
 
 namespace {
 
-/// The same by exact gains, for one candidate.
-std::vector<double> best_by_gain(const Evidence& evidence, const FinePeriods& fine, Index count,
-                                 const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) {
+/// The same by exact gains, for one candidate. `waves`: at the frequencies of `fine`.
+std::vector<double> best_by_gain(const Evidence& evidence, const FinePeriods& fine,
+                                 const ProjectedWaves& waves, const Eigen::MatrixXd& beside,
+                                 const Eigen::VectorXd& residual) {
   const WaveOfAxis wave{fine.axis, fine.carrier};
   const FinePeriodThresholds& limits = evidence.thresholds().fine;
-  const Eigen::MatrixXd gains =
-      wave_gains(evidence, wave, fine.slowest, fine.step, count, beside, residual).transpose();
+  const Eigen::MatrixXd gains = gains_beside(evidence, waves, beside, residual).transpose();
   const double freedom = std::max(1.0, evidence.freedom()), all = residual.squaredNorm();
   const double left = std::max(all - gains.maxCoeff(), evidence.noise_known() ? freedom : 0.0);
   constexpr int kSections = 12;  // of a golden search between two frequencies
@@ -300,14 +331,25 @@ std::vector<double> best_by_gain(const Evidence& evidence, const FinePeriods& fi
 std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
                                                    const std::vector<const FinePeriods*>& of_axis,
                                                    const Eigen::MatrixXd& beside,
-                                                   const Eigen::VectorXd& residual) {
+                                                   const Eigen::VectorXd& residual, ProjectedColumns* kept,
+                                                   const std::vector<std::size_t>& candidates) {
   std::vector<std::vector<double>> found(of_axis.size());
   if (of_axis.empty()) return found;
   const FinePeriods& fine = *of_axis.front();
   const auto count = static_cast<Index>(std::floor((fine.fastest - fine.slowest) / fine.step)) + 1;
   if (is_affordable(evidence, count * static_cast<Index>(of_axis.size()), beside)) {
-    for (std::size_t i = 0; i < of_axis.size(); ++i)
-      found[i] = best_by_gain(evidence, *of_axis[i], count, beside, residual);
+    for (std::size_t i = 0; i < of_axis.size(); ++i) {
+      const ProjectedWaves* known = kept == nullptr ? nullptr : kept->waves(candidates[i]);
+      ProjectedWaves made;
+      if (known == nullptr) {
+        made = projected_waves(evidence, {fine.axis, of_axis[i]->carrier}, of_axis[i]->slowest,
+                               of_axis[i]->step, count);
+        known = kept != nullptr && kept->has_room(made.columns.size())
+                    ? &kept->keep(candidates[i], std::move(made))
+                    : &made;
+      }
+      found[i] = best_by_gain(evidence, *of_axis[i], *known, beside, residual);
+    }
     return found;
   }
   // The columns are weighted like the residual. For a symmetric weighting, weighting the residual

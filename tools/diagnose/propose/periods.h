@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tools/diagnose/propose/evidence.h"
+#include "tools/diagnose/propose/projected.h"
 #include "tools/effects/candidate.h"
 
 namespace vernier::diagnose {
@@ -60,6 +61,10 @@ Eigen::VectorXd wave_gains(const Evidence& evidence, const WaveOfAxis& wave, dou
                            Eigen::Index count, const Eigen::MatrixXd& beside,
                            const Eigen::VectorXd& residual);
 
+/// Returns the sines and cosines of a wave at the frequencies first + k * step. tool.
+ProjectedWaves projected_waves(const Evidence& evidence, const WaveOfAxis& wave, double first, double step,
+                               Eigen::Index count);
+
 /// True if exact gains (wave_gains) at `count` frequencies are affordable. A long record uses a periodogram
 /// instead: there, waves are nearly orthogonal to the part that the model absorbs.
 bool is_affordable(const Evidence& evidence, Eigen::Index count, const Eigen::MatrixXd& beside);
@@ -67,10 +72,13 @@ bool is_affordable(const Evidence& evidence, Eigen::Index count, const Eigen::Ma
 /// Returns the most promising short periods for each of several candidates of one axis, refined:
 /// the best ones, and the longest of those that fit nearly as well (the best may be its alias).
 /// promising_periods uses the exact gain of each period beside the orthonormal columns `beside` if that is
-/// affordable, else the periodogram of `residual`. Periods below the level of chance are excluded.
+/// affordable, else the periodogram of `residual`. Periods below the level of chance are excluded. `kept`:
+/// renewed, for the indices `candidates` of the list; null keeps nothing.
 std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
                                                    const std::vector<const FinePeriods*>& of_axis,
                                                    const Eigen::MatrixXd& beside,
-                                                   const Eigen::VectorXd& residual);
+                                                   const Eigen::VectorXd& residual,
+                                                   ProjectedColumns* kept = nullptr,
+                                                   const std::vector<std::size_t>& candidates = {});
 
 }  // namespace vernier::diagnose

@@ -46,14 +46,14 @@ namespace {
 
 /// Is a column only rounding relative to the others of its candidate? An example is the sine of a
 /// wave of two even steps.
-bool vanishes(const Eigen::MatrixXd& raw, Eigen::Index column) {
+bool vanishes(const Eigen::RowVectorXd& norms, Eigen::Index column) {
   constexpr double kRounding = 1e-9;  // of the longest column of its candidate
-  return raw.col(column).norm() <= kRounding * raw.colwise().norm().maxCoeff();
+  return norms[column] <= kRounding * norms.maxCoeff();
 }
 
 }  // namespace
 
-bool Scanner::score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected,
+bool Scanner::score(const Eigen::RowVectorXd& norms, const Eigen::MatrixXd& projected,
                     const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual, Scored& scored) const {
   const ScannedCandidate& item = candidates_[scored.candidate];
   scored.own_share = 1;
@@ -61,12 +61,12 @@ bool Scanner::score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected
   if (beside.cols() > 0) own -= beside * (beside.transpose() * own);
   Eigen::Index vanished = 0;
   for (Eigen::Index j = 0; j < own.cols(); ++j) {
-    if (own.cols() > 1 && vanishes(raw, j)) {
+    if (own.cols() > 1 && vanishes(norms, j)) {
       own.col(j).setZero();
       ++vanished;
       continue;
     }
-    const double before = raw.col(j).norm(), after = own.col(j).norm();
+    const double before = norms[j], after = own.col(j).norm();
     if (!(before > 0) || !std::isfinite(after) || after < thresholds_.least_own * before) {
       if (!item.may_lose_columns) return false;
       own.col(j).setZero();
@@ -89,69 +89,130 @@ Eigen::VectorXd Scanner::residual_beside(const Eigen::MatrixXd& beside) const {
   return residual;
 }
 
-double Scanner::gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
-                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const {
+ProjectedPoint Scanner::projected_at(ColumnMaker& maker, std::size_t candidate,
+                                     const std::vector<double>& scanned) const {
   const Eigen::MatrixXd& q = evidence_.absorbed();
-  const Eigen::MatrixXd raw = maker.columns(candidates_[scored.candidate].candidate, scanned);
-  Scored trial = scored;
-  return score(raw, raw - q * (q.transpose() * raw), beside, residual, trial) ? trial.gain : 0.0;
+  const Eigen::MatrixXd raw = maker.columns(candidates_[candidate].candidate, scanned);
+  return {scanned, raw - q * (q.transpose() * raw), raw.colwise().norm()};
 }
 
-void Scanner::scan_part(std::size_t first, std::size_t step, const Eigen::MatrixXd& beside,
-                        const Eigen::VectorXd& residual, std::vector<Scored>& best,
-                        const std::function<void(double)>& progress) const {
-  std::vector<Point> points;
-  std::vector<Eigen::MatrixXd> raw;
-  ColumnMaker maker(evidence_);
-  Eigen::Index width = 0;
-  const auto flush = [&] {
-    Eigen::MatrixXd batch(evidence_.residual().size(), width);
-    Eigen::Index at = 0;
-    for (const Eigen::MatrixXd& block : raw) {
-      batch.middleCols(at, block.cols()) = block;
-      at += block.cols();
+double Scanner::gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
+                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const {
+  Scored trial = scored;
+  return score(projected_at(maker, scored.candidate, scanned), beside, residual, trial) ? trial.gain : 0.0;
+}
+
+/// The candidates that one thread scans.
+class Scanner::Part {
+ public:
+  Part(const Scanner& scanner, ProjectedColumns& kept, const Eigen::MatrixXd& beside,
+       const Eigen::VectorXd& residual, std::vector<Scored>& best)
+      : scanner_(scanner),
+        kept_(kept),
+        beside_(beside),
+        residual_(residual),
+        best_(best),
+        maker_(scanner.evidence_) {}
+
+  void scan(std::size_t candidate) {
+    if (const std::vector<ProjectedPoint>* points = kept_.points(candidate)) {
+      for (const ProjectedPoint& point : *points) take(candidate, point);
+      return;
     }
-    const Eigen::MatrixXd& q = evidence_.absorbed();
+    for (std::vector<double>& scanned : grid_points(scanner_.candidates_[candidate].grid)) {
+      Eigen::MatrixXd columns = maker_.columns(scanner_.candidates_[candidate].candidate, scanned);
+      width_ += columns.cols();
+      raw_.push_back({candidate, {std::move(scanned), std::move(columns), {}}});
+      if (width_ >= kBatch) project();
+    }
+  }
+  /// Scores what is left.
+  void end() {
+    project();
+    keep();
+  }
+
+ private:
+  struct Raw {
+    std::size_t candidate;
+    ProjectedPoint point;
+  };
+
+  void take(std::size_t candidate, const ProjectedPoint& point) {
+    Scored scored{candidate, point.scanned, 0, 0, 0};
+    if (!scanner_.score(point, beside_, residual_, scored)) return;
+    Scored& so_far = best_[candidate];
+    if (so_far.unknowns == 0 || scored.gain > so_far.gain) so_far = std::move(scored);
+  }
+
+  void project() {
+    if (raw_.empty()) return;
+    Eigen::MatrixXd batch(residual_.size(), width_);
+    Eigen::Index at = 0;
+    for (const Raw& raw : raw_) {
+      batch.middleCols(at, raw.point.columns.cols()) = raw.point.columns;
+      at += raw.point.columns.cols();
+    }
+    const Eigen::RowVectorXd norms = batch.colwise().norm();
+    const Eigen::MatrixXd& q = scanner_.evidence_.absorbed();
     const Eigen::MatrixXd part = q.transpose() * batch;
     batch.noalias() -= q * part;
     at = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      Scored scored{points[i].candidate, points[i].scanned, 0, 0, 0};
-      const Eigen::Index count = raw[i].cols();
-      if (score(raw[i], batch.middleCols(at, count), beside, residual, scored)) {
-        Scored& so_far = best[scored.candidate];
-        if (so_far.unknowns == 0 || scored.gain > so_far.gain) so_far = scored;
-      }
+    for (Raw& raw : raw_) {
+      const Eigen::Index count = raw.point.columns.cols();
+      raw.point.columns = batch.middleCols(at, count);
+      raw.point.norms = norms.segment(at, count);
       at += count;
+      take(raw.candidate, raw.point);
+      if (raw.candidate != made_of_) keep();
+      made_of_ = raw.candidate;
+      numbers_ += raw.point.columns.size();
+      if (kept_.has_room(numbers_))
+        made_.push_back(std::move(raw.point));
+      else
+        made_.clear();  // and stays so: the candidate is made anew each time
     }
-    points.clear();
-    raw.clear();
-    width = 0;
-  };
-  for (std::size_t c = first; c < candidates_.size(); c += step) {
-    for (const std::vector<double>& scanned : grid_points(candidates_[c].grid)) {
-      Eigen::MatrixXd columns = maker.columns(candidates_[c].candidate, scanned);
-      width += columns.cols();
-      raw.push_back(std::move(columns));
-      points.push_back({c, scanned});
-      if (width >= kBatch) flush();
-    }
-    if (progress) progress(static_cast<double>(c) / static_cast<double>(candidates_.size()));
+    raw_.clear();
+    width_ = 0;
   }
-  if (width > 0) flush();
-}
+
+  void keep() {
+    if (kept_.has_room(numbers_)) kept_.keep(made_of_, std::move(made_));
+    made_.clear();
+    numbers_ = 0;
+  }
+
+  const Scanner& scanner_;
+  ProjectedColumns& kept_;
+  const Eigen::MatrixXd& beside_;
+  const Eigen::VectorXd& residual_;
+  std::vector<Scored>& best_;
+  ColumnMaker maker_;
+  std::vector<Raw> raw_;
+  Eigen::Index width_ = 0, numbers_ = 0;
+  std::size_t made_of_ = 0;
+  std::vector<ProjectedPoint> made_;  // of that candidate
+};
 
 std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
                                   std::size_t first_candidate) {
   const Eigen::VectorXd residual = residual_beside(beside);
+  kept_.renew(evidence_, candidates_.size());
   std::vector<Scored> best(candidates_.size());
   // Each thread writes the entries of its own candidates only.
   const std::size_t threads = std::max(1U, std::min(4U, std::thread::hardware_concurrency()));
+  const auto scan_every = [&](std::size_t first, const std::function<void(double)>& tell) {
+    Part part(*this, kept_, beside, residual, best);
+    for (std::size_t c = first; c < candidates_.size(); c += threads) {
+      part.scan(c);
+      if (tell) tell(static_cast<double>(c) / static_cast<double>(candidates_.size()));
+    }
+    part.end();
+  };
   std::vector<std::future<void>> others;  // each passes on the exception of its part
   for (std::size_t k = 1; k < threads; ++k)
-    others.push_back(std::async(
-        std::launch::async, [&, k] { scan_part(first_candidate + k, threads, beside, residual, best, {}); }));
-  scan_part(first_candidate, threads, beside, residual, best, progress);
+    others.push_back(std::async(std::launch::async, [&, k] { scan_every(first_candidate + k, {}); }));
+  scan_every(first_candidate, progress);
   for (std::future<void>& part : others) part.get();
   std::vector<Scored> seen;
   for (Scored& scored : best)
@@ -166,13 +227,12 @@ double Scanner::alike_within(double left) const {
 
 Scored Scanner::best_period(std::size_t candidate, const std::vector<double>& periods,
                             const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const {
-  const Eigen::MatrixXd& q = evidence_.absorbed();
   std::vector<Scored> seen;
   double most = 0;
+  ColumnMaker maker(evidence_);
   for (const double period : periods) {
     Scored scored{candidate, {period}, 0, 0, 0};
-    const Eigen::MatrixXd raw = evidence_.columns(candidates_[candidate].candidate, scored.scanned);
-    if (!score(raw, raw - q * (q.transpose() * raw), beside, residual, scored)) continue;
+    if (!score(projected_at(maker, candidate, scored.scanned), beside, residual, scored)) continue;
     most = std::max(most, scored.gain);
     seen.push_back(std::move(scored));
   }
@@ -183,8 +243,9 @@ Scored Scanner::best_period(std::size_t candidate, const std::vector<double>& pe
   return best;
 }
 
-std::vector<Scored> Scanner::scan_fine(const Eigen::MatrixXd& beside, std::size_t first_candidate) const {
+std::vector<Scored> Scanner::scan_fine(const Eigen::MatrixXd& beside, std::size_t first_candidate) {
   const Eigen::VectorXd residual = residual_beside(beside);
+  kept_.renew(evidence_, candidates_.size());
   std::map<std::size_t, std::vector<std::size_t>> of_axis;
   for (std::size_t c = first_candidate; c < candidates_.size(); ++c)
     if (candidates_[c].fine.any()) of_axis[candidates_[c].fine.axis].push_back(c);
@@ -192,7 +253,8 @@ std::vector<Scored> Scanner::scan_fine(const Eigen::MatrixXd& beside, std::size_
   for (const auto& [axis, list] : of_axis) {
     std::vector<const FinePeriods*> fine;
     for (const std::size_t c : list) fine.push_back(&candidates_[c].fine);
-    const std::vector<std::vector<double>> periods = promising_periods(evidence_, fine, beside, residual);
+    const std::vector<std::vector<double>> periods =
+        promising_periods(evidence_, fine, beside, residual, &kept_, list);
     for (std::size_t i = 0; i < list.size(); ++i) {
       Scored best = best_period(list[i], periods[i], beside, residual);
       if (best.unknowns > 0) found.push_back(std::move(best));
@@ -293,13 +355,12 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
 }
 
 Eigen::MatrixXd Scanner::projected(const Scored& scored, std::vector<std::size_t>* kept) const {
-  const Eigen::MatrixXd raw = evidence_.columns(candidates_[scored.candidate].candidate, scored.scanned);
-  const Eigen::MatrixXd& q = evidence_.absorbed();
-  const Eigen::MatrixXd own = raw - q * (q.transpose() * raw);
+  ColumnMaker maker(evidence_);
+  const auto [at, own, norms] = projected_at(maker, scored.candidate, scored.scanned);
   std::vector<std::size_t> chosen;
   Eigen::MatrixXd usable = own;
   for (Eigen::Index j = 0; j < own.cols(); ++j)
-    if (own.col(j).norm() < thresholds_.least_own * raw.col(j).norm() || (own.cols() > 1 && vanishes(raw, j)))
+    if (own.col(j).norm() < thresholds_.least_own * norms[j] || (own.cols() > 1 && vanishes(norms, j)))
       usable.col(j).setZero();
   maths::orthonormal(usable, thresholds_.least_independent, &chosen);
   Eigen::MatrixXd result(own.rows(), static_cast<Eigen::Index>(chosen.size()));

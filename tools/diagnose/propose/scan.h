@@ -6,6 +6,7 @@
 
 #include "tools/diagnose/propose/enumerate.h"
 #include "tools/diagnose/propose/evidence.h"
+#include "tools/diagnose/propose/projected.h"
 #include "tools/maths/orthonormal.h"
 
 namespace vernier::diagnose {
@@ -34,7 +35,7 @@ class Scanner {
   /// Searches periods shorter than those of the grid. For each candidate with such periods, returns the best
   /// period above the level of chance. Among periods that fit as well as the best, scan_fine returns the
   /// longest, which is the usual name of the family.
-  std::vector<Scored> scan_fine(const Eigen::MatrixXd& beside, std::size_t first_candidate = 0) const;
+  std::vector<Scored> scan_fine(const Eigen::MatrixXd& beside, std::size_t first_candidate = 0);
 
   /// Moves the scanned values between the grid's neighbours to the largest gain.
   void refine(Scored& scored, const Eigen::MatrixXd& beside) const;
@@ -51,13 +52,7 @@ class Scanner {
   const std::vector<ScannedCandidate>& candidates() const { return candidates_; }
 
  private:
-  struct Point {
-    std::size_t candidate;
-    std::vector<double> scanned;
-  };
-  void scan_part(std::size_t first, std::size_t step, const Eigen::MatrixXd& beside,
-                 const Eigen::VectorXd& residual, std::vector<Scored>& best,
-                 const std::function<void(double)>& progress) const;
+  class Part;
   /// Difference of chi^2 within which two periods fit alike, beside a wave that leaves a chi^2 of
   /// `left`. If that exceeds the noise, it is the scale.
   double alike_within(double left) const;
@@ -74,12 +69,21 @@ class Scanner {
   /// positions' own window, and, if affordable, all peaks of its exact gain near `mine`.
   std::vector<double> possible_aliases(const Scored& scored, double own, double most, double mine,
                                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
-  bool score(const Eigen::MatrixXd& raw, const Eigen::MatrixXd& projected, const Eigen::MatrixXd& beside,
+  /// `projected`: columns beside what the model absorbs; `norms`: of the columns before.
+  bool score(const Eigen::RowVectorXd& norms, const Eigen::MatrixXd& projected, const Eigen::MatrixXd& beside,
              const Eigen::VectorXd& residual, Scored& scored) const;
+  bool score(const ProjectedPoint& point, const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual,
+             Scored& scored) const {
+    return score(point.norms, point.columns, beside, residual, scored);
+  }
+  /// Returns the columns of a candidate at scanned values.
+  ProjectedPoint projected_at(ColumnMaker& maker, std::size_t candidate,
+                              const std::vector<double>& scanned) const;
 
   const Evidence& evidence_;
   const PoolThresholds& thresholds_;
   const std::vector<ScannedCandidate>& candidates_;
+  ProjectedColumns kept_;
 };
 
 /// Returns every combination of the values of several lists.
