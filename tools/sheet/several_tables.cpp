@@ -20,7 +20,7 @@ bool is_number(const Sheet& sheet, std::size_t row, std::size_t column) {
 /// A word of a heading: no mark of a missing value, no date.
 bool is_word(const std::string& cell) {
   return !cell.empty() && !begins_with_error_value(cell) && !is_date(cell) &&
-         text::in_small_letters(cell) != "n/a" && cell.find_first_not_of("-") != std::string::npos;
+         text::in_small_letters(cell) != "n/a" && cell.find_first_not_of('-') != std::string::npos;
 }
 
 /// No number, and at least two words in columns that have numbers in the row of data before.
