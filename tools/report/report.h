@@ -30,7 +30,7 @@ std::string compare_report_html(const nlohmann::ordered_json& result);
 ///   title, machine, files[], sections[{title, prose[], numbers[{label, value, unit, hint, strong}],
 ///     ladder[{label, rms_um, check_rms_um}], tables[{caption, columns[], rows[][]}], parameters[],
 ///     field: {axes[], counts[], point_mm[][3], deviation_um[][3], max_um} (arrows over a volume),
-///     plots[{x: {name, unit, values[]}, y[{name, unit, values[]}], bars, log, caption}],
+///     plots[{x: {name, unit, values[]}, y[{name, unit, values[], colour, style}], bars, log, caption}],
 ///     detail (as above), notes[]}]
 /// tool.
 std::string improvement_report_html(const nlohmann::ordered_json& result);

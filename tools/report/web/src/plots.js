@@ -195,13 +195,13 @@ export function beforeAfter(picture) {
   );
 }
 
-/** Curves over one quantity: {x: {name, unit, values}, y: [{name, unit, values}], bars, log}. */
+/** Curves over one quantity: {x: {name, unit, values}, y: [{name, unit, values, colour, style: dashed or points}], bars, log}. */
 export function curves(plotted) {
   const name = (one) => `${one.name}${one.unit ? ` [${one.unit}]` : ''}`;
   return el(
     'figure',
     {},
-    chart(`${plotted.y.map(name).join(', ')} against ${name(plotted.x)}`, () => {
+    chart(`${[...new Set(plotted.y.map(name))].join(', ')} against ${name(plotted.x)}`, () => {
       const c = colours();
       const palette = [c.fit, c.check, c.ccw, c.cw];
       const series = plotted.y.map((one, i) => ({
@@ -210,8 +210,13 @@ export function curves(plotted) {
         showSymbol: false,
         sampling: 'lttb',
         data: Array.from(plotted.x.values, (x, k) => [x, one.values[k]]),
-        itemStyle: { color: palette[i % 4] },
-        lineStyle: { color: palette[i % 4], width: 1.5 },
+        itemStyle: { color: palette[(one.colour ?? i) % 4] },
+        lineStyle: {
+          color: palette[(one.colour ?? i) % 4],
+          width: one.style === 'points' ? 0 : one.style === 'dashed' ? 1 : 1.5,
+          type: one.style === 'dashed' ? 'dashed' : 'solid',
+        },
+        ...(one.style === 'points' ? { showSymbol: true, symbol: 'circle', symbolSize: 4, sampling: undefined } : {}),
       }));
       const unit = plotted.y[0].unit ? ` [${plotted.y[0].unit}]` : '';
       return {
@@ -233,6 +238,7 @@ export function curves(plotted) {
             ...axisStyle(c),
             type: 'value',
             scale: true,
+            axisLine: { ...axisStyle(c).axisLine, onZero: false },
             name: plotted.y.length === 1 ? name(plotted.y[0]) : `value${unit}`,
             nameLocation: 'middle',
             nameGap: 48,
