@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/daemon/device_trials.h"
 
-#include "hal/linux/analogue_output.h"
 #include "hal/linux/can/can_axes.h"
 #include "hal/linux/iio/iio_buffer.h"
 
@@ -30,12 +29,6 @@ std::string hear_scan(Clock& clock, IioBuffer& buffer, std::uint32_t channel) {
     if (buffer.read_input(channel, value) == HalFault::kNone) return {};
   }
   return "no scan of this sensor has come within 1 s";
-}
-
-std::string try_output(AnalogueOutput& output) {
-  const HalFault fault = output.rewrite();
-  if (fault == HalFault::kRefused) return "refuses to write the value that it has now";
-  return fault == HalFault::kNone ? "" : "its present value cannot be read";
 }
 
 }  // namespace vernier

@@ -7,7 +7,6 @@
 
 namespace vernier {
 
-class AnalogueOutput;
 class CanAxes;
 class IioBuffer;
 
@@ -20,7 +19,5 @@ inline constexpr TimeUs kPatience(1'000'000);
 std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis);
 /// Waits for one scan of a sensor and describes it.
 std::string hear_scan(Clock& clock, IioBuffer& buffer, std::uint32_t channel);
-/// Writes the value that an output has.
-std::string try_output(AnalogueOutput& output);
 
 }  // namespace vernier

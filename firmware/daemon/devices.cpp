@@ -13,18 +13,19 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "firmware/daemon/device_trials.h"
 #include "firmware/daemon/open_devices.h"
 #include "firmware/daemon/routing.h"
 #include "firmware/daemon/settings/feature_settings.h"
-#include "hal/linux/analogue_output.h"
 #include "hal/linux/can/can_axes.h"
 #include "hal/linux/file_lock.h"
 #include "hal/linux/hardware_watchdog.h"
 #include "hal/linux/iio/iio_buffer.h"
 #include "hal/linux/modbus/modbus_input.h"
 #include "hal/linux/monotonic_clock.h"
+#include "hal/linux/output_device.h"
 #include "hal/linux/sampled_input.h"
 #include "hal/linux/wake_up.h"
 #include "hal/sim/plant.h"
@@ -38,9 +39,11 @@ constexpr std::int64_t kTicksToZero = 1000;  // at least, for the correction tha
 constexpr std::uint32_t kMostHandles = 64;   // of all links together
 constexpr int kWatchdogSeconds = 10;  // many drivers know whole seconds only; the unit's watchdog is quicker
 
-struct AnalogueAxis {
-  std::size_t axis;
-  std::unique_ptr<AnalogueOutput> device;
+/// A real output of an axis.
+struct RealOutput {
+  std::size_t axis;  // of the board
+  OutputDevice* device;
+  std::uint32_t number;  // of the axis in the device
 };
 
 }  // namespace
@@ -51,7 +54,8 @@ struct Devices::Parts {
   std::unique_ptr<Roaming> motion;
   std::unique_ptr<SimPlant> plant;
   std::map<std::string, std::unique_ptr<CanAxes>> buses;  // by interface
-  std::vector<AnalogueAxis> analogue;
+  std::vector<std::unique_ptr<OutputDevice>> output_devices;
+  std::vector<RealOutput> real_outputs;
   ModbusLines lines;
   std::vector<std::unique_ptr<SampledInput>> sensors;
   std::map<std::string, std::unique_ptr<IioBuffer>> buffers;  // by device
@@ -80,6 +84,8 @@ struct Devices::Parts {
   void make_bus(const std::string& interface, std::vector<Route<AxisReader>>& routes);
   std::vector<Route<AxisReader>> make_positions();
   std::vector<Route<CorrectionWriter>> make_outputs();
+  void make_output(std::uint32_t first, std::vector<Route<CorrectionWriter>>& routes,
+                   std::set<std::uint32_t>& opened);
   std::vector<Route<InputReader>> make_inputs();
   void make_buffer(const std::string& device, std::vector<Route<InputReader>>& routes);
   void vibrate(std::uint32_t input, const SignalSource& source);
@@ -153,6 +159,7 @@ std::vector<Route<AxisReader>> Devices::Parts::make_positions() {
 
 std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
   std::vector<Route<CorrectionWriter>> routes(file.axes.size());
+  std::set<std::uint32_t> opened;
   for (std::uint32_t i = 0; i < file.axes.size(); ++i) {
     const AxisEntry& axis = file.axes[i];
     if (axis.output.kind.empty()) continue;
@@ -164,14 +171,38 @@ std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
       continue;
     }
     look_for_calibration(axis);
-    std::string error;
-    auto output = open_analogue(axis.output, axis.wiring.rotary, error);
-    if (output && !output->lock()) error = "in use by another axis or another process";
-    routes[i] = {output.get(), 0};
-    note(name, error, [output = output.get()] { return try_output(*output); });
-    if (output) analogue.push_back({i, std::move(output)});
+    if (!opened.contains(i)) make_output(i, routes, opened);
   }
   return routes;
+}
+
+/// The device of an output, for all axes that share the device.
+void Devices::Parts::make_output(std::uint32_t first, std::vector<Route<CorrectionWriter>>& routes,
+                                 std::set<std::uint32_t>& opened) {
+  const std::string shared = device_of_output(file.axes[first].output);
+  std::vector<OutputAxis> sharing;
+  std::vector<std::uint32_t> served;
+  for (std::uint32_t i = first; i < file.axes.size(); ++i) {
+    const AxisEntry& axis = file.axes[i];
+    if (i != first && (shared.empty() || axis.output.kind != file.axes[first].output.kind ||
+                       device_of_output(axis.output) != shared))
+      continue;
+    sharing.push_back({&axis.output, axis.wiring.rotary, file.service.limits.axis[i].motion.slew,
+                       file.service.upload.tick});
+    served.push_back(i);
+  }
+  std::string error;
+  auto device = open_output(sharing, error);
+  if (device && !device->lock()) error = "in use by another axis or another process";
+  for (std::uint32_t k = 0; k < served.size(); ++k) {
+    const AxisEntry& axis = file.axes[served[k]];
+    opened.insert(served[k]);
+    routes[served[k]] = {device.get(), k};
+    note(std::string("axis.") + axis.wiring.name.c_str() + ".output  " + axis.output.kind, error,
+         [device = device.get(), k] { return device->attempt(k); });
+    if (device) real_outputs.push_back({served[k], device.get(), k});
+  }
+  if (device) output_devices.push_back(std::move(device));
 }
 
 /// The calibration that an output names. If the board file has a separate span, the output is opened without
@@ -410,18 +441,18 @@ void Devices::sample() noexcept {
 }
 
 void Devices::take_left_overs_out(const std::atomic<bool>& stop) noexcept {
-  for (const AnalogueAxis& output : parts_->analogue) {
+  for (const RealOutput& output : parts_->real_outputs) {
     AxisTravel held;
     MotionLimit motion;
     MotionBounds bounds = parts_->file.service.limits.axis[output.axis].motion;
-    if (output.device->read_back(held) == HalFault::kNone) motion.stop_at(held.count);
+    if (output.device->read_back(output.number, held) == HalFault::kNone) motion.stop_at(held.count);
     bounds.slew = std::min(bounds.slew, std::abs(held.count) / kTicksToZero + 1);
     // The zero is written too, because some drivers do not report their value; a refusal appears in the first
     // ticks.
     for (bool zero = false; !zero && !stop;) {
       const AxisTravel next(motion.approach(0, bounds));
-      zero = next == AxisTravel{} || output.device->write_correction(0, next) != HalFault::kNone;
-      if (zero) output.device->write_correction(0, AxisTravel{});
+      zero = next == AxisTravel{} || output.device->write_correction(output.number, next) != HalFault::kNone;
+      if (zero) output.device->write_correction(output.number, AxisTravel{});
       parts_->clock.sleep_until(parts_->clock.now() + instant_ns(parts_->file.service.upload.tick));
     }
   }
@@ -429,9 +460,9 @@ void Devices::take_left_overs_out(const std::atomic<bool>& stop) noexcept {
 
 std::vector<std::string> Devices::output_budget() const {
   std::vector<std::string> lines;
-  for (const AnalogueAxis& output : parts_->analogue) {
+  for (const RealOutput& output : parts_->real_outputs) {
     const AxisEntry& axis = parts_->file.axes[output.axis];
-    const AnalogueScale& scale = output.device->scale();
+    const AnalogueScale& scale = output.device->scale(output.number);
     // um or 0.001 deg
     const double unit = axis.wiring.rotary ? static_cast<double>(kTurnCounts) / 360e3 : 1e3;
     const auto of = [&](std::int64_t code) {
@@ -463,11 +494,14 @@ std::vector<std::string> Devices::output_budget() const {
 }
 
 void Devices::say_held() const {
-  for (const AnalogueAxis& output : parts_->analogue)
-    if (output.device->held_at_end() > 0)
+  for (const RealOutput& output : parts_->real_outputs)
+    if (output.device->held_at_end(output.number) > 0)
       std::fprintf(stderr, "vernierd: axis.%s.output was held at the end of its range in %llu ticks\n",
                    parts_->file.axes[output.axis].wiring.name.c_str(),
-                   static_cast<unsigned long long>(output.device->held_at_end()));
+                   static_cast<unsigned long long>(output.device->held_at_end(output.number)));
+  for (const auto& device : parts_->output_devices)
+    if (const std::string account = device->account(); !account.empty())
+      std::fprintf(stderr, "vernierd: %s\n", account.c_str());
   for (const auto& [place, line] : parts_->lines)
     if (line && line->wrong_answers() > 0)
       std::fprintf(stderr, "vernierd: Modbus at %s: %llu answers were damaged or not to the request\n",

@@ -25,9 +25,9 @@
 #include "firmware/daemon/settings/board_file.h"
 #include "firmware/daemon/settings/board_key.h"
 #include "firmware/daemon/settings/device_settings.h"
-#include "hal/linux/analogue_output.h"
 #include "hal/linux/file_slot_store.h"
 #include "hal/linux/monotonic_clock.h"
+#include "hal/linux/output_device.h"
 #include "hal/linux/realtime.h"
 #include "hal/linux/service_manager.h"
 #include "hal/sim/plant.h"
@@ -41,6 +41,7 @@ constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2;
 constexpr int kPriority = 80;  // as cyclictest is usually run, above the kernel's threaded interrupts (50)
 constexpr double kShareOfRangePerS = 0.1;
 constexpr int kMostTicksToEnd = 30'000;
+constexpr int kMostTicksStill = 1000;  // of outputs that refuse: one second
 
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
@@ -210,9 +211,19 @@ void take_correction_out(Service& service, Devices& devices) {
     return true;
   };
   service.end();
-  for (int tick = 0; tick < kMostTicksToEnd && !out(); ++tick) {
+  AxisTravel before[kMaxAxes] = {};
+  for (int tick = 0, still = 0; tick < kMostTicksToEnd && !out(); ++tick) {
     devices.advance();
     service.tick();
+    bool moved = false;
+    for (std::uint32_t axis = 0; axis < kMaxAxes; ++axis) {
+      moved = moved || service.cycle().written(axis) != before[axis];
+      before[axis] = service.cycle().written(axis);
+    }
+    still = moved ? 0 : still + 1;
+    if (still < kMostTicksStill) continue;
+    std::fputs("vernierd: an output refuses every value: its correction was not removed\n", stderr);
+    return;
   }
 }
 
@@ -225,12 +236,12 @@ std::vector<CalibrationPoint> measured_points(const Arguments& arguments, const 
   source.numbers["span"] = static_cast<double>(codes) * (axis.wiring.rotary ? 1e-6 : 4e-6);
   const AnalogueScale scale =
       analogue_scale(source, axis.wiring.rotary, codes, source.kind == "pwm" ? "_ns" : "");
-  const auto output = open_analogue(source, axis.wiring.rotary, error);
+  const auto output = open_output({{&source, axis.wiring.rotary, INT32_MAX, {}}}, error);
   if (!output) throw BoardError{std::string("axis.") + axis.wiring.name.c_str() + ".output: " + error};
   if (!output->lock())
     throw BoardError{std::string("axis.") + axis.wiring.name.c_str() + ".output: in use by another process"};
   AxisTravel held;
-  const bool known = output->read_back(held) == HalFault::kNone;
+  const bool known = output->read_back(0, held) == HalFault::kNone;
   MonotonicClock clock;
   return calibrate_output(*output, scale, known ? scale.code_for(held) : scale.zero, arguments.steps, clock,
                           std::cin, std::cerr, stop_asked);

@@ -2,6 +2,8 @@
 // Part of the composition root: opens the backends that a board file names.
 #include "firmware/daemon/open_devices.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "hal/linux/iio/iio_device.h"
 #include "hal/linux/iio/iio_input.h"
 #include "hal/linux/modbus/modbus_input.h"
+#include "hal/linux/modbus/modbus_output.h"
 #include "hal/linux/modbus/modbus_server.h"
 #include "tables/link_format.h"
 
@@ -102,17 +105,79 @@ const DeviceKind<Open>& kind_of(const std::vector<DeviceKind<Open>>& kinds, cons
   source.fail("no " + std::string(port) + " of kind " + source.kind + "; drivers: " + known);
 }
 
-std::unique_ptr<AnalogueOutput> open_pwm(const SignalSource& source, bool rotary, std::string& error) {
-  const std::int64_t period = source.whole("period_ns", 2, 1'000'000'000);
-  return AnalogueOutput::pwm(source.text("path"), period, analogue_scale(source, rotary, period, "_ns"),
+std::unique_ptr<OutputDevice> open_pwm(const std::vector<OutputAxis>& axes, std::string& error) {
+  const auto& [source, rotary, most_per_tick, tick] = axes.front();
+  const std::int64_t period = source->whole("period_ns", 2, 1'000'000'000);
+  return AnalogueOutput::pwm(source->text("path"), period, analogue_scale(*source, rotary, period, "_ns"),
                              error);
 }
 
-std::unique_ptr<AnalogueOutput> open_iio_dac(const SignalSource& source, bool rotary, std::string& error) {
-  const AnalogueScale scale = analogue_scale(source, rotary, source.whole("codes", 1, (1 << 24) - 1), "");
-  const auto channel = static_cast<unsigned>(source.whole("channel", 0, 0, 63));
-  const std::string device = find_iio_device(source.text("root", kIioRoot), source.text("device"), error);
+std::unique_ptr<OutputDevice> open_iio_dac(const std::vector<OutputAxis>& axes, std::string& error) {
+  const auto& [source, rotary, most_per_tick, tick] = axes.front();
+  const AnalogueScale scale = analogue_scale(*source, rotary, source->whole("codes", 1, (1 << 24) - 1), "");
+  const auto channel = static_cast<unsigned>(source->whole("channel", 0, 0, 63));
+  const std::string device = find_iio_device(source->text("root", kIioRoot), source->text("device"), error);
   return device.empty() ? nullptr : AnalogueOutput::iio_dac(device, channel, scale, error);
+}
+
+/// Where the controller of an output is: a serial device, or address and port.
+std::string modbus_place(const SignalSource& source) {
+  const std::string device = source.text("device", "");
+  if (!device.empty() && !source.text("address", "").empty()) source.fail("give device or address, not both");
+  if (!device.empty()) return device;
+  return source.text("address") + ":" + std::to_string(source.whole("port", 502, 1, 65535));
+}
+
+/// A register holds correction / resolution, signed: the scale's codes are shifted by its zero.
+AnalogueScale register_scale(const SignalSource& source, bool rotary) {
+  constexpr std::int64_t kZero = 1 << 30, kCodes = 1'000'000;
+  const double unit = rotary ? static_cast<double>(kTurnCounts) / 360 : 1e6;
+  const double resolution = source.number("resolution"), range = source.number("range");
+  AnalogueScale scale;
+  if (!(resolution > 0 && resolution <= 1)) source.fail("resolution must be above 0, and at most 1");
+  if (!(range >= resolution && range / resolution < static_cast<double>(kZero)))
+    source.fail("range must be at least resolution, and below 2^30 times resolution");
+  scale.codes = kCodes;
+  scale.span = std::llround(resolution * unit * static_cast<double>(kCodes));
+  scale.zero = kZero;
+  const auto most = static_cast<std::int64_t>(range / resolution * (1 + 1e-12));
+  scale.low = kZero - most, scale.high = kZero + most;
+  scale.inverted = is_inverted(source);
+  if (!scale.valid()) source.fail("resolution is too small");
+  return scale;
+}
+
+std::unique_ptr<OutputDevice> open_modbus_out(const std::vector<OutputAxis>& axes, std::string& error) {
+  const SignalSource& first = *axes.front().source;
+  ModbusOutputSettings settings;
+  constexpr std::int64_t kLast = 65535;
+  settings.unit = static_cast<int>(first.whole("unit", 1, 1, 247));
+  settings.echo = static_cast<int>(first.whole("echo", 0, kLast));
+  settings.period = TimeUs(1000 * first.whole("period_ms", 5, 1, 50));
+  settings.timeout = TimeUs(1000 * first.whole("timeout_ms", 100, 2, 10'000));
+  if (settings.timeout.count < 4 * settings.period.count)
+    first.fail("timeout_ms must be at least four times period_ms");
+  settings.tick = axes.front().tick;
+  int places = 0;
+  for (const OutputAxis& axis : axes) {
+    const auto place = static_cast<int>(axis.source->whole("place", 0, 0, ModbusOutputSettings::kPlaces - 1));
+    for (const auto& other : settings.axes)
+      if (other.place == place) axis.source->fail("another axis uses this place");
+    settings.axes.push_back({register_scale(*axis.source, axis.rotary), place, axis.most_per_tick});
+    places = std::max(places, place + 1);
+  }
+  settings.address =
+      static_cast<int>(first.whole("register", 0, kLast - ModbusOutputSettings::kValues - 2 * places));
+  if (settings.echo >= settings.address &&
+      settings.echo < settings.address + ModbusOutputSettings::kValues + 2 * places)
+    first.fail("echo is among the registers that the board writes");
+  const bool rtu = !first.text("device", "").empty();
+  const TimeUs wait(settings.timeout.count / 2);
+  const auto line =
+      rtu ? ModbusLine::rtu(first.text("device"), baud(first, 19200), parity(first), wait, error)
+          : ModbusLine::tcp(first.text("address"), static_cast<int>(first.whole("port", 502, 1, 65535)), wait,
+                            error);
+  return line ? ModbusOutput::open(line, settings, error) : nullptr;
 }
 
 using OpenOutput = decltype(&open_pwm);
@@ -124,6 +189,10 @@ const std::vector<DeviceKind<OpenOutput>> kOutputs = {
      {"root", "device", "channel", "codes", "span", "zero", "low", "high", "polarity", "calibration",
       "delay_ms"},
      open_iio_dac},
+    {"modbus-out",
+     {"address", "port", "device", "baud", "parity", "unit", "register", "echo", "place", "resolution",
+      "range", "polarity", "period_ms", "timeout_ms", "delay_ms"},
+     open_modbus_out},
 };
 
 std::unique_ptr<SampledInput> open_modbus(const SignalSource& source, ModbusLines& lines,
@@ -183,8 +252,16 @@ const std::vector<DeviceKind<OpenLinkKind>> kLinks = {
 
 }  // namespace
 
-std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error) {
-  return kind_of(kOutputs, "output", source).open(source, rotary, error);
+std::string device_of_output(const SignalSource& source) {
+  if (source.kind != "modbus-out") return {};
+  return modbus_place(source) + " unit " + std::to_string(source.whole("unit", 1, 1, 247)) + " register " +
+         std::to_string(source.whole("register", 0, 65535));
+}
+
+std::unique_ptr<OutputDevice> open_output(const std::vector<OutputAxis>& axes, std::string& error) {
+  OpenOutput open = nullptr;
+  for (const OutputAxis& axis : axes) open = kind_of(kOutputs, "output", *axis.source).open;
+  return open(axes, error);
 }
 
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines,

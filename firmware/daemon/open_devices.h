@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "firmware/daemon/settings/board_file.h"
 #include "hal/command_link.h"
@@ -12,9 +13,9 @@
 
 namespace vernier {
 
-class AnalogueOutput;
 class IioBuffer;
 class ModbusLine;
+class OutputDevice;
 class SampledInput;
 
 /// Lines that several sensors share, by device or address.
@@ -23,8 +24,19 @@ using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
 // Each function opens one device of the board file. Null with `error` set if it is missing; a wrong kind or
 // setting throws BoardError. setup.
 
-/// Opens a PWM channel or a converter. rotary: spans are in degrees, else in mm.
-std::unique_ptr<AnalogueOutput> open_analogue(const SignalSource& source, bool rotary, std::string& error);
+/// An axis whose correction leaves through an output.
+struct OutputAxis {
+  const SignalSource* source = nullptr;
+  bool rotary = false;                     // spans are in degrees, else in mm
+  std::int64_t most_per_tick = INT32_MAX;  // largest change of the correction in a tick, counts
+  TimeUs tick;
+};
+
+/// Returns a text that is the same for all outputs of one device; empty: each output is a separate device.
+std::string device_of_output(const SignalSource& source);
+/// Opens the device of these axes, which is their number k for axes[k]: an output, or several outputs that
+/// share a device.
+std::unique_ptr<OutputDevice> open_output(const std::vector<OutputAxis>& axes, std::string& error);
 /// Opens a sensor. lines: the open Modbus lines; a line that the sensor needs is added.
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines, std::string& error);
 /// Opens the buffer of the device that inputs of kind "iio-buffer" name, one channel per input. The trigger

@@ -76,10 +76,10 @@ AxisTravel AnalogueOutput::within_range(std::uint32_t, AxisTravel correction) co
   return AxisTravel(clamp(correction.count, lowest_.count, highest_.count));
 }
 
-HalFault AnalogueOutput::read_back(AxisTravel& correction) noexcept {
+HalFault AnalogueOutput::read_back(std::uint32_t, AxisTravel& correction) noexcept {
   std::int64_t code = 0;
   if (attribute_.read(code) != HalFault::kNone || code < 0 || code > INT32_MAX) return HalFault::kNoReading;
-  correction = scale().correction_of(code);
+  correction = converter_.scale().correction_of(code);
   return HalFault::kNone;
 }
 
@@ -87,6 +87,12 @@ HalFault AnalogueOutput::rewrite() noexcept {
   std::int64_t code = 0;
   if (attribute_.read(code) != HalFault::kNone) return HalFault::kNoReading;
   return attribute_.write(code);
+}
+
+std::string AnalogueOutput::attempt(std::uint32_t) {
+  const HalFault fault = rewrite();
+  if (fault == HalFault::kRefused) return "refuses to write the value that it has now";
+  return fault == HalFault::kNone ? "" : "its present value cannot be read";
 }
 
 }  // namespace vernier

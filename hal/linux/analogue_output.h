@@ -3,16 +3,15 @@
 #include <memory>
 #include <string>
 
-#include "hal/correction_writer.h"
+#include "hal/linux/output_device.h"
 #include "hal/linux/sysfs_attribute.h"
-#include "hal/support/analogue_scale.h"
 
 namespace vernier {
 
 /// The correction of one axis as an analogue quantity: the pulse width of a PWM channel, or a channel of a
 /// converter. An AnalogueOutput has axis 0 only. Setting up changes no value of a running channel: a
 /// correction of an earlier process can be read back and removed.
-class AnalogueOutput : public CorrectionWriter {
+class AnalogueOutput : public OutputDevice {
  public:
   /// channel: directory of an exported channel of the PWM class (/sys/class/pwm/pwmchip0/pwm0); scale: in ns
   /// of on-time; period: ns, >= scale.high. A channel that is off, or has another period, is set to the zero
@@ -30,18 +29,15 @@ class AnalogueOutput : public CorrectionWriter {
 
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 
-  /// Takes the device for exclusive use; false if another process, or another output, uses it. setup.
-  bool lock() noexcept { return attribute_.lock(); }
+  bool lock() noexcept override { return attribute_.lock(); }
+  HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept override;
+  std::string attempt(std::uint32_t axis) override;
+  std::uint64_t held_at_end(std::uint32_t) const noexcept override { return held_at_end_; }
+  const AnalogueScale& scale(std::uint32_t) const noexcept override { return converter_.scale(); }
 
-  /// Reads the correction that the device has now. kNoReading: the driver does not report it. setup.
-  HalFault read_back(AxisTravel& correction) noexcept;
   /// Reads the code of the device and writes the same code again: the axis does not move. kNoReading: the
   /// driver does not give the code; it was not written. setup.
   HalFault rewrite() noexcept;
-  /// Returns the number of writes whose correction was beyond the range.
-  std::uint64_t held_at_end() const noexcept { return held_at_end_; }
-
-  const AnalogueScale& scale() const noexcept { return converter_.scale(); }
 
  private:
   AnalogueOutput(SysfsAttribute attribute, const AnalogueScale& scale)

@@ -48,7 +48,7 @@ TEST_F(Analogue, ConverterGetsTheCodesOfThePublishedChain) {
     ASSERT_EQ(output->write_correction(0, AxisTravel(nm)), HalFault::kNone);
     ASSERT_EQ(raw(), std::to_string(chain.code_for(AxisTravel(nm)))) << nm;
   }
-  EXPECT_GT(output->held_at_end(), 0u);
+  EXPECT_GT(output->held_at_end(0), 0u);
 }
 
 TEST_F(Analogue, CodeIsTheNearestOfAll) {
@@ -81,7 +81,7 @@ TEST_F(Analogue, AnyCorrectionIsHeldWithinTheRangeAndCounted) {
     EXPECT_EQ(raw(), code) << nm;
   }
   // 124.509 um is 127.0 codes, the last of the range; 125 um is 127.5, which rounds beyond it.
-  EXPECT_EQ(output->held_at_end(), 4u);
+  EXPECT_EQ(output->held_at_end(0), 4u);
 }
 
 TEST_F(Analogue, PolarityTurnsTheSign) {
@@ -92,7 +92,7 @@ TEST_F(Analogue, PolarityTurnsTheSign) {
   ASSERT_EQ(output->write_correction(0, AxisTravel(98'039)), HalFault::kNone);
   EXPECT_EQ(raw(), "27");
   AxisTravel held;
-  ASSERT_EQ(output->read_back(held), HalFault::kNone);
+  ASSERT_EQ(output->read_back(0, held), HalFault::kNone);
   EXPECT_EQ(held, AxisTravel(98'039));
 }
 
@@ -102,7 +102,7 @@ TEST_F(Analogue, EveryCodeReadsBackAsACorrectionThatGivesIt) {
   for (int code = 0; code <= 254; ++code) {
     files_.put("iio:device3/out_voltage1_raw", std::to_string(code));
     AxisTravel held;
-    ASSERT_EQ(output->read_back(held), HalFault::kNone);
+    ASSERT_EQ(output->read_back(0, held), HalFault::kNone);
     ASSERT_EQ(output->write_correction(0, held), HalFault::kNone);
     ASSERT_EQ(raw(), std::to_string(code));
   }
@@ -126,7 +126,7 @@ TEST_F(Analogue, RunningPulseKeepsItsWidthAtSetUp) {
   const auto output = pwm();
   ASSERT_NE(output, nullptr) << error_;
   AxisTravel held;
-  ASSERT_EQ(output->read_back(held), HalFault::kNone);
+  ASSERT_EQ(output->read_back(0, held), HalFault::kNone);
   EXPECT_EQ(held, AxisTravel(25'000));
   ASSERT_EQ(output->rewrite(), HalFault::kNone);
   EXPECT_EQ(files_.get("pwm0/duty_cycle"), "30000");

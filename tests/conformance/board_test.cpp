@@ -104,7 +104,7 @@ class LinuxWorld : public World {
   CorrectionWriter& corrections() override { return *routed_outputs_; }
   AxisTravel written(std::uint32_t axis) override {
     AxisTravel held;
-    EXPECT_EQ(outputs_[axis]->read_back(held), HalFault::kNone);
+    EXPECT_EQ(outputs_[axis]->read_back(0, held), HalFault::kNone);
     return held;
   }
 

@@ -238,6 +238,39 @@ TEST_F(Check, WrongSettingsOfLinesAreNamed) {
   }
 }
 
+TEST_F(Check, WrongSettingsOfRegistersAreNamed) {
+  const std::string pwm(kBoard);
+  const auto begin = pwm.find("output = {"), end = pwm.find('\n', begin);
+  const auto board = [&](const std::string& settings) {
+    return pwm.substr(0, begin) + "output = { kind = \"modbus-out\", " + settings + " }" + pwm.substr(end);
+  };
+  const std::string place = "address = \"127.0.0.1\", port = 1, register = 100, ";
+  const std::pair<std::string, const char*> kWrong[] = {
+      {place + "echo = 50, range = 0.2", "resolution is missing"},
+      {place + "echo = 50, resolution = 1e-6", "range is missing"},
+      {place + "echo = 50, resolution = 1e-6, range = 1e-7", "range must be at least resolution"},
+      {place + "echo = 50, resolution = 1e-9, range = 2", "range must be"},
+      {place + "echo = 103, resolution = 1e-6, range = 0.2",
+       "echo is among the registers that the board writes"},
+      {place + "echo = 50, resolution = 1e-6, range = 0.2, timeout_ms = 19", "at least four times period_ms"},
+      {place + "echo = 50, resolution = 1e-6, range = 0.2, device = \"/dev/x\"",
+       "device or address, not both"},
+      {place + "echo = 50, resolution = 1e-6, range = 0.2, place = 16", "place"},
+      {place + "echo = 50, resolution = 1e-6, range = 0.2, span = 1", "unknown setting span"}};
+  for (const auto& [settings, said_of_it] : kWrong) {
+    write(board(settings));
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << settings << said.text;
+    EXPECT_NE(said.text.find(said_of_it), std::string::npos) << settings << said.text;
+  }
+  write(board(place + "echo = 50, resolution = 1e-6, range = 0.2"));
+  const Said gone = run("--check");
+  EXPECT_EQ(gone.status, 2) << gone.text;
+  EXPECT_NE(gone.text.find("missing  axis.X.output  modbus-out: the controller does not answer"),
+            std::string::npos)
+      << gone.text;
+}
+
 // What a real output may do is not for an image to say.
 TEST_F(Check, RealOutputsNeedLimitsOfTheBoardsOwn) {
   const std::pair<const char*, const char*> kLimits[] = {

@@ -275,12 +275,12 @@ TEST(ModbusTcpSensor, PeerThatIsNotThereIsTriedAgain) {
   ::close(listener);
 }
 
-/// A sensor over TCP: answers each request of 12 bytes with what `answer` makes of it, to one client after
-/// the other.
+/// A device over TCP: answers each request of so many bytes with what `answer` makes of it, to one client
+/// after the other.
 class FarServer {
  public:
   using Answer = std::function<Bytes(const Bytes&)>;
-  FarServer() : listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  explicit FarServer(std::size_t bytes = 12) : bytes_(bytes), listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -312,8 +312,8 @@ class FarServer {
         fd = ::accept(listener_, nullptr, nullptr);
         continue;
       }
-      Bytes request(12);
-      if (::recv(fd, request.data(), request.size(), MSG_WAITALL) != 12) {
+      Bytes request(bytes_);
+      if (::recv(fd, request.data(), bytes_, MSG_WAITALL) != static_cast<ssize_t>(bytes_)) {
         ::close(fd), fd = -1;
         continue;
       }
@@ -326,6 +326,7 @@ class FarServer {
 
   std::mutex mutex_;
   Answer answer_;
+  std::size_t bytes_;
   int listener_, port_ = 0;
   std::atomic<bool> stop_{false};
   std::thread thread_;
@@ -383,6 +384,37 @@ TEST(ModbusTcpSensor, AnswerToSomethingElseIsNoReadingAndCounted) {
   far.set([](const Bytes& q) { return Bytes{q[0], q[1], 0, 0, 0, 3, 3, 0x84, 2}; });
   EXPECT_EQ(input.sample(), HalFault::kNoReading);
   EXPECT_EQ(line->wrong_answers(), wrong);
+}
+
+TEST(ModbusTcpWrite, IsDoneOnlyWithTheAnswerToIt) {
+  // GIVEN a controller, unit 3, that takes two registers from 100 on
+  const auto truth = [](const Bytes& q) {
+    EXPECT_EQ(Bytes(q.begin() + 2, q.end()),
+              (Bytes{0, 0, 0, 11, 3, 16, 0, 100, 0, 2, 4, 0x12, 0x34, 0xff, 0xfe}));
+    return Bytes{q[0], q[1], 0, 0, 0, 6, 3, 16, 0, 100, 0, 2};
+  };
+  FarServer far(17);
+  std::string error;
+  const std::shared_ptr<ModbusLine> line = ModbusLine::tcp("127.0.0.1", far.port(), kWait, error);
+  const std::uint16_t values[] = {0x1234, 0xfffe};
+  std::uint64_t wrong = 0;
+  for (const std::size_t byte : {1, 3, 5, 6, 7, 8, 9, 10, 11}) {
+    // WHEN one byte of an answer is another: transaction, protocol, length, unit, function, address, number
+    far.set([&](const Bytes& q) {
+      Bytes reply = truth(q);
+      ++reply[byte];
+      return reply;
+    });
+    EXPECT_FALSE(line->write(3, 100, 2, values)) << byte;
+    // THEN the write is not believed, and the next right answer is
+    EXPECT_EQ(line->wrong_answers(), ++wrong) << byte;
+    far.set(truth);
+    EXPECT_TRUE(line->write(3, 100, 2, values)) << byte;
+  }
+  far.set([](const Bytes& q) { return Bytes{q[0], q[1], 0, 0, 0, 3, 3, 0x90, 2}; });
+  EXPECT_FALSE(line->write(3, 100, 2, values)) << "an exception";
+  EXPECT_FALSE(line->write(3, 100, 0, values));
+  EXPECT_FALSE(line->write(3, 100, 124, values)) << "more than a request holds";
 }
 
 TEST(ModbusLineSetUp, MissingDeviceIsNamed) {

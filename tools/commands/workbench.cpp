@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "tables/upload_format.h"
 #include "tools/commands/command.h"
 #include "tools/commands/description.h"
+#include "tools/commands/until_told.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/text/process.h"
@@ -29,14 +30,6 @@ struct WorkbenchArguments {
   bool no_browser = false, reader = false;
 };
 
-/// The signals that end the command are waited for by a thread, so that they are blocked in all others.
-sigset_t ending_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int one : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, one);
-  return set;
-}
-
 void open_browser(const std::string& url) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   std::thread([url] {
@@ -52,25 +45,21 @@ void open_browser(const std::string& url) {
 
 void run_workbench(const WorkbenchArguments& arguments, const CLI::App& vernier) {
   if (arguments.reader) return workbench::serve_files(workbench::Project(arguments.directory), STDIN_FILENO);
-  workbench::Api api(arguments.directory, std::filesystem::read_symlink("/proc/self/exe").string(),
-                     VERNIER_VERSION " (" VERNIER_COMMIT ")", describe(vernier));
-  workbench::WorkbenchServer server(api, arguments.port);
-  const sigset_t ending = ending_signals();
-  pthread_sigmask(SIG_BLOCK, &ending, nullptr);
-  std::thread wait([&] {
-    int signal = 0;
-    sigwait(&ending, &signal);
-    server.stop();
-  });
-  write_json(arguments.json,
-             {{"url", server.url()}, {"port", server.port()}, {"folder", arguments.directory}});
-  std::FILE* const out = human_stream(arguments.json);
-  fmt::print(out, "{}\nfor this computer and this session only; end with Ctrl-C\n", server.url());
-  std::fflush(nullptr);
-  if (!arguments.no_browser) open_browser(server.url());
-  server.serve();
-  pthread_kill(wait.native_handle(), SIGTERM);  // where something else than a signal ended it
-  wait.join();
+  std::optional<workbench::Api> api(std::in_place, arguments.directory,
+                                    std::filesystem::read_symlink("/proc/self/exe").string(),
+                                    VERNIER_VERSION " (" VERNIER_COMMIT ")", describe(vernier));
+  workbench::WorkbenchServer server(*api, arguments.port);
+  const auto serve = [&](const std::atomic<bool>&) {
+    write_json(arguments.json,
+               {{"url", server.url()}, {"port", server.port()}, {"folder", arguments.directory}});
+    std::FILE* const out = human_stream(arguments.json);
+    fmt::print(out, "{}\nfor this computer and this session only; end with Ctrl-C\n", server.url());
+    std::fflush(nullptr);
+    if (!arguments.no_browser) open_browser(server.url());
+    server.serve();
+    api.reset();  // ends jobs, and the connection to a board, which may wait
+  };
+  until_told(serve, [&] { server.stop(); });
 }
 
 struct DiffArguments {

@@ -128,19 +128,18 @@ class Diagnoser {
     bool of_check_rows = false;  // 20 to 1; else from runs held out in turn
   };
 
-  /// Returns nullopt if held-out rows do not confirm the step. Check rows are tested first, as far
-  /// as the step is visible on them. Held-out runs are tested if the check rows cannot reach 20 to
-  /// 1.
+  /// Returns nullopt if held-out rows do not confirm the step. Check rows are tested first; a step
+  /// that makes them worse is never confirmed. Held-out runs are tested if the check rows cannot reach
+  /// 20 to 1.
   std::optional<StepEvidence> confirmed_by(const fit::FitResult& before, const fit::FitResult& after,
                                            std::size_t item) const {
     const ProofThresholds& limits = options_.thresholds.proof;
     const Proof proof = proof_of(before, after);
-    const std::optional<double> asked = proof.asked(limits);
-    if (asked && proof.evidence < *asked) return std::nullopt;
+    if (proof.evidence < proof.asked(limits)) return std::nullopt;
     // A step of one run does not apply to another run. It is sufficient that rows of other runs
     // become worse with it.
     if (!pool_.candidate(item).choice.runs.empty() && proof.evidence < 0) return std::nullopt;
-    if (asked && proof.evidence >= limits.evidence) return StepEvidence{proof.evidence, true};
+    if (proof.evidence >= limits.evidence) return StepEvidence{proof.evidence, true};
     const double held_out = finder_.held_out_evidence(item);
     if (held_out < limits.evidence) return std::nullopt;
     return StepEvidence{held_out, false};

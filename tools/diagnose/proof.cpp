@@ -7,8 +7,8 @@
 
 namespace vernier::diagnose {
 
-std::optional<double> Proof::asked(const ProofThresholds& thresholds) const {
-  if (expected < thresholds.least_expected) return std::nullopt;
+double Proof::asked(const ProofThresholds& thresholds) const {
+  if (expected < thresholds.least_expected) return -thresholds.worse;
   return std::clamp(expected - thresholds.chance_sigmas * std::sqrt(2 * expected), 0.0, thresholds.evidence);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
-#include <optional>
 
 #include "tools/diagnose/propose/thresholds.h"
 #include "tools/fit/noise/noise.h"
@@ -16,9 +15,9 @@ struct Proof {
   double expected = 0;  // its mean if the step is true; the opposite if the step is absent. In both cases its
                         // variance is twice that value.
   /// Returns the required evidence of a step: 20 to 1 if 99 of 100 true steps would reach this value. The
-  /// required evidence is smaller if the step is too small on these rows for 20 to 1, but never below zero.
-  /// nullopt if the step is hardly visible on these rows.
-  std::optional<double> asked(const ProofThresholds& thresholds) const;
+  /// required evidence is smaller if the step is too small on these rows for 20 to 1, but never below zero. If
+  /// the step is hardly visible on these rows, it must not make them worse.
+  double asked(const ProofThresholds& thresholds) const;
 };
 
 /// Evaluates the check rows under two models. before, after: residuals (measured - model) of all

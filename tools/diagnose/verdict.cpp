@@ -72,7 +72,7 @@ class Decision {
 
   std::string instrument_alone() {
     const std::string drift = accepted_.empty() ? drift_of_instrument() : "";
-    if (drift.empty()) return {};
+    if (drift.empty() || is_beyond_u()) return {};
     return drift + (is_noise_ ? " Beside it there is nothing to add." : where_left(answer_.left));
   }
 
@@ -86,8 +86,9 @@ class Decision {
 
   std::string nothing_explains() {
     if (!accepted_.empty()) return {};
+    const std::string drift = drift_of_instrument();
     return with_refused("There is more than noise, and nothing in the catalogue explains it." +
-                        where_left(answer_.left));
+                        (drift.empty() ? "" : " " + drift) + where_left(answer_.left));
   }
 
   std::string effect_of_instrument() {
@@ -239,6 +240,14 @@ class Decision {
     return "The instrument does not hold still: " + ::vernier::fit::in_words(noise, answer_.noise_unit) + ".";
   }
 
+  /// True if the errors of single readings or poses, beside drift and set-ups, exceed the stated
+  /// uncertainty by more than a too small uncertainty explains. A drift and set-ups may have any size.
+  bool is_beyond_u() const {
+    const fit::NoiseModel& noise = answer_.noise;
+    return fit::has_uncertainty(found_.measurement) && !noise.independent() &&
+           std::pow(std::max(noise.own, noise.pose), 2) > limits_.implausible_uncertainty;
+  }
+
   /// Is one of the candidates, accepted or not, significant beside the accepted effects and noise
   /// of the size of the residual?
   bool something_stands_out() const {
@@ -269,6 +278,7 @@ class Decision {
     // Noise above the stated value is accepted only if no tested candidate is significant, and if
     // there are enough readings to show structure.
     const double stated = answer_.end.chi_square / freedom;
+    if (is_beyond_u()) return false;
     if (noise.independent() && stated > limits_.doubtful_uncertainty) {
       if (stated > limits_.implausible_uncertainty || something_stands_out()) return false;
       // With too few readings to show structure, the requirement is the same as without u.

@@ -2,12 +2,12 @@
 #include "tools/fleet/metrics.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
 #include <algorithm>
 #include <charconv>
 #include <thread>
 
+#include "tools/http/gated_server.h"
 #include "tools/registry/cells.h"
 #include "tools/registry/due.h"
 #include "tools/registry/open_database.h"
@@ -128,17 +128,14 @@ void serve_metrics(const std::string& registry, const std::string& address, cons
   if (port < 0 || port > 65535) throw text::InputError({}, address, "HOST:PORT is wanted");
   const std::string host = address.substr(0, colon);
   { registry::Registry there(registry::open_database(registry)); }
-  httplib::Server server;
-  // Not the library's default, which lets a second server take the same port.
-  server.set_socket_options([](socket_t socket) {
-    const int yes = 1;
-    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  http::GatedServer server;
+  // No request has a body: the library would read one before it looks for the address.
+  server.set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
+    if (request.method == "GET" || request.method == "HEAD")
+      return httplib::Server::HandlerResponse::Unhandled;
+    response.status = 405;
+    return httplib::Server::HandlerResponse::Handled;
   });
-  // Idle connections hold a thread for this time at most, and never the last thread.
-  constexpr int kPatience_s = 1, kThreads = 32;
-  server.set_read_timeout(kPatience_s);
-  server.set_keep_alive_timeout(kPatience_s);
-  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   server.Get("/metrics", [&](const httplib::Request&, httplib::Response& response) {
     try {
       registry::Registry here(registry::open_database(registry));

@@ -124,8 +124,14 @@ std::size_t usual_width(const std::vector<std::vector<std::string>>& rows) {
 
 void split(Sheet& sheet, const std::vector<Line>& lines) {
   std::vector<std::vector<std::string>> rows;
-  for (const Line& line : lines)
+  for (const Line& line : lines) {
     rows.push_back(text::fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number}));
+    if (rows.back().size() > kMostColumns)
+      throw text::InputError({sheet.file, line.number}, "",
+                             std::to_string(rows.back().size()) + " columns separated by " +
+                                 separator_word(sheet.separator) + ": a sheet has at most " +
+                                 std::to_string(kMostColumns) + "; split the file, or give the separator");
+  }
   const std::size_t width = usual_width(rows);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Line& line = lines[i];

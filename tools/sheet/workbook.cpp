@@ -23,7 +23,7 @@ constexpr zip_uint64_t kMostBytes = 256u << 20;
 /// A row has all cells up to its last one. Rows with one cell far to the right would make a small
 /// file large.
 constexpr std::size_t kMostEmpty = 4u << 20, kMostEmptyForOne = 2;
-constexpr std::size_t kMostRows = 1048576, kMostColumns = 16384;  // of the format itself
+constexpr std::size_t kMostRows = 1048576;  // of the format itself
 
 class Package {
  public:

@@ -5,6 +5,9 @@
 
 namespace vernier::sheet {
 
+/// Columns of a sheet: the limit of SpreadsheetML (column XFD).
+inline constexpr std::size_t kMostColumns = 16384;
+
 /// A sheet of an Office Open XML workbook (ECMA-376 part 1, SpreadsheetML) as text: numbers with a decimal
 /// point as stored, formulas by their last value, dates and times in the form of `date_text`.
 struct WorkbookSheet {

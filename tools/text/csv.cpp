@@ -16,14 +16,15 @@ std::vector<std::string> fields_of(const std::string& line, const FieldRules& ru
   const auto is_separator = [&](char c) { return c == rules.separator || (blanks && c == '\t'); };
   const std::string text = blanks ? trimmed(line) : line;
   std::vector<std::string> fields(1);
-  bool quoted = false, was_quoted = false;
+  bool quoted = false, was_quoted = false, blank = true;
   const auto close = [&] {
     if (!was_quoted) fields.back() = trimmed(fields.back());
     was_quoted = false;
+    blank = true;
   };
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    const bool at_begin = !was_quoted && trimmed(fields.back()).empty();
+    const bool at_begin = !was_quoted && blank;
     if (quoted) {
       const bool doubled = c == '"' && i + 1 < text.size() && text[i + 1] == '"';
       quoted = c != '"' || doubled;
@@ -40,6 +41,7 @@ std::vector<std::string> fields_of(const std::string& line, const FieldRules& ru
       throw InputError(place, text.substr(i, 20), "a stray quote");
     } else if (!was_quoted) {
       fields.back() += c;
+      blank = blank && trimmed({&c, 1}).empty();
     } else if (c != ' ' && c != '\t') {
       throw InputError(place, text.substr(i, 20), "text behind a closing quote");
     }

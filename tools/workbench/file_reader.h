@@ -16,7 +16,7 @@ namespace vernier::workbench {
 class FileReader {
  public:
   /// patience_s: the process is ended if it gives no answer for this time.
-  FileReader(std::string program, const Project& project, double patience_s = 300)
+  FileReader(std::string program, const Project& project, double patience_s = 60)
       : program_(std::move(program)), project_(project), patience_s_(patience_s) {}
 
   /// Answers like FileDesk::reply; 422 if the reading process ended because of the request.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/server.h"
 
-#include <httplib.h>
 #include <sys/random.h>
 
 #include <array>
@@ -9,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "tools/http/gated_server.h"
 #include "tools/text/error.h"
 #include "tools/workbench/assets.h"
 
@@ -97,7 +97,7 @@ struct WorkbenchServer::Inside {
   Api& api;
   std::string token;
   int port = 0;
-  httplib::Server server;
+  http::GatedServer server;
   std::mutex guarded;
   bool ended = false, serving = false;
 };
@@ -171,14 +171,7 @@ void WorkbenchServer::Inside::answer(const httplib::Request& request, httplib::R
 WorkbenchServer::WorkbenchServer(Api& api, std::uint16_t port) : inside_(std::make_unique<Inside>(api)) {
   httplib::Server& server = inside_->server;
   Inside* const inside = inside_.get();
-  // Not the library's default, which lets another process of this user listen on the same port.
-  server.set_socket_options([](socket_t socket) {
-    const int yes = 1;
-    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  });
   server.set_payload_max_length(kMostBodyBytes);
-  server.set_keep_alive_max_count(100'000);
-  server.set_keep_alive_timeout(30);
   server.set_tcp_nodelay(true);
   server.set_pre_routing_handler(
       [inside](const auto& request, auto& response) { return inside->guard(request, response); });

@@ -420,7 +420,8 @@ void refuse_duplicates(const BoardFile& board) {
     if (found != used.end()) source.fail("the device of " + (*found)->where + " too: one device has one use");
     used.push_back(&source);
   };
-  for (const AxisEntry& axis : board.axes) claim(axis.output, {"path", "device", "root", "channel"});
+  for (const AxisEntry& axis : board.axes)
+    claim(axis.output, {"path", "device", "root", "channel", "address", "port", "unit", "register", "place"});
   for (const SignalSource* const line : {&board.probe, &board.enable, &board.healthy})
     claim(*line, {"chip", "line"});
   for (const LinkEntry& link : board.links)

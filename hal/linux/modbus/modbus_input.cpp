@@ -14,7 +14,7 @@ namespace vernier {
 namespace {
 
 constexpr std::int64_t kUsPerS = 1'000'000;
-constexpr std::uint8_t kAskHolding = 3, kAskInput = 4, kException = 0x80;
+constexpr std::uint8_t kAskHolding = 3, kAskInput = 4, kWriteHolding = 16, kException = 0x80;
 constexpr int kMbap = 7;  // transaction, protocol, length: two bytes each; unit
 
 bool is_exception(int error) { return error >= EMBXILFUN && error <= EMBXGTAR; }
@@ -59,46 +59,43 @@ bool ModbusLine::connected() noexcept {
 }
 
 // libmodbus compares the unit of an answer on serial lines only, so a request over TCP and the comparison are
-// made here (Modbus Messaging on TCP/IP V1.0b, 4.2). -1 with errno of libmodbus: no values.
-int ModbusLine::ask_over_tcp(int unit, Registers kind, int address, int count,
-                             std::uint16_t* values) noexcept {
+// made here (Modbus Messaging on TCP/IP V1.0b, 4.2). request: function and data. Null with errno of
+// libmodbus: no valid answer; else the answer of answer_size bytes from its function on.
+const std::uint8_t* ModbusLine::ask_over_tcp(int unit, const std::uint8_t* request, int size,
+                                             int answer_size) noexcept {
   ++transaction_;
-  const std::uint8_t function = kind == Registers::kInput ? kAskInput : kAskHolding;
-  const std::uint8_t request[] = {
-      upper(transaction_), lower(transaction_), 0,           0, 0, 6, lower(unit), function, upper(address),
-      lower(address),      upper(count),        lower(count)};
-  std::uint8_t answer[MODBUS_TCP_MAX_ADU_LENGTH] = {};
-  const int fd = modbus_get_socket(context_);
-  if (::send(fd, request, sizeof(request), MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof(request))) return -1;
-  const int got = modbus_receive_confirmation(context_, answer);
-  if (got < 0) return -1;
+  std::uint8_t frame[MODBUS_TCP_MAX_ADU_LENGTH] = {upper(transaction_), lower(transaction_), 0,          0,
+                                                   upper(size + 1),     lower(size + 1),     lower(unit)};
+  std::memcpy(frame + kMbap, request, static_cast<std::size_t>(size));
+  const std::size_t bytes = std::size_t{kMbap} + static_cast<std::size_t>(size);
+  if (::send(modbus_get_socket(context_), frame, bytes, MSG_NOSIGNAL) != static_cast<ssize_t>(bytes))
+    return nullptr;
+  static_assert(sizeof(answer_) >= MODBUS_TCP_MAX_ADU_LENGTH);
+  const int got = modbus_receive_confirmation(context_, answer_);
+  if (got < 0) return nullptr;
   errno = EMBBADDATA;
-  if (got < kMbap + 2 || std::memcmp(answer, request, 4) != 0) return -1;
-  if ((answer[4] << 8 | answer[5]) != got - (kMbap - 1)) return -1;
-  if (answer[6] != request[6]) return errno = EMBBADSLAVE, -1;
-  const std::uint8_t* const body = answer + kMbap;
-  if (got == kMbap + 2 && body[0] == (function | kException)) {
+  if (got < kMbap + 2 || std::memcmp(answer_, frame, 4) != 0) return nullptr;
+  if ((answer_[4] << 8 | answer_[5]) != got - (kMbap - 1)) return nullptr;
+  if (answer_[6] != frame[6]) return errno = EMBBADSLAVE, nullptr;
+  const std::uint8_t* const body = answer_ + kMbap;
+  if (got == kMbap + 2 && body[0] == (request[0] | kException)) {
     if (is_exception(MODBUS_ENOBASE + body[1])) errno = MODBUS_ENOBASE + body[1];
-    return -1;
+    return nullptr;
   }
-  if (body[0] != function || body[1] != 2 * count || got != kMbap + 2 + 2 * count) return -1;
-  for (int i = 0; i < count; ++i)
-    values[i] = static_cast<std::uint16_t>(body[2 + 2 * i] << 8 | body[3 + 2 * i]);
-  return count;
+  return body[0] == request[0] && got == kMbap + answer_size ? body : nullptr;
 }
 
-bool ModbusLine::read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept {
-  if (!connected()) return false;
+void ModbusLine::prepare(int unit) noexcept {
   if (after_silence_) ::usleep(static_cast<useconds_t>(wait_.count));
   after_silence_ = false;
   modbus_flush(context_);
   modbus_set_slave(context_, unit);
-  const int got = !serial_                    ? ask_over_tcp(unit, kind, address, count, values)
-                  : kind == Registers::kInput ? modbus_read_input_registers(context_, address, count, values)
-                                              : modbus_read_registers(context_, address, count, values);
-  if (got == count) return true;
-  // An exception is a valid answer. After any other error the line must become quiet, and a connection is
-  // opened again. (So is a serial device that was removed.)
+}
+
+/// An exception is a valid answer. After any other error the line must become quiet, and a connection is
+/// opened again. (So is a serial device that was removed.)
+bool ModbusLine::finish(bool done) noexcept {
+  if (done) return true;
   const bool exception = is_exception(errno);
   if (errno == EMBBADDATA || errno == EMBBADSLAVE || errno == EMBBADCRC) ++wrong_answers_;
   after_silence_ = serial_ && !exception;
@@ -106,6 +103,38 @@ bool ModbusLine::read(int unit, Registers kind, int address, int count, std::uin
   modbus_close(context_);
   open_ = false;
   return false;
+}
+
+bool ModbusLine::read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept {
+  if (!connected()) return false;
+  prepare(unit);
+  if (serial_)
+    return finish(count == (kind == Registers::kInput
+                                ? modbus_read_input_registers(context_, address, count, values)
+                                : modbus_read_registers(context_, address, count, values)));
+  const std::uint8_t request[] = {kind == Registers::kInput ? kAskInput : kAskHolding, upper(address),
+                                  lower(address), upper(count), lower(count)};
+  const std::uint8_t* const body = ask_over_tcp(unit, request, sizeof(request), 2 + 2 * count);
+  const bool fits = body != nullptr && body[1] == 2 * count;
+  for (int i = 0; fits && i < count; ++i)
+    values[i] = static_cast<std::uint16_t>(body[2 + 2 * i] << 8 | body[3 + 2 * i]);
+  return finish(fits);
+}
+
+bool ModbusLine::write(int unit, int address, int count, const std::uint16_t* values) noexcept {
+  if (count < 1 || count > MODBUS_MAX_WRITE_REGISTERS || !connected()) return false;
+  prepare(unit);
+  if (serial_) return finish(modbus_write_registers(context_, address, count, values) == count);
+  constexpr int kHead = 6;  // function, address, number of registers, number of bytes
+  std::uint8_t request[kHead + 2 * MODBUS_MAX_WRITE_REGISTERS] = {
+      kWriteHolding, upper(address), lower(address), upper(count), lower(count), lower(2 * count)};
+  for (int i = 0; i < count; ++i) {
+    request[kHead + 2 * i] = upper(values[i]);
+    request[kHead + 2 * i + 1] = lower(values[i]);
+  }
+  // The answer repeats address and number.
+  const std::uint8_t* const body = ask_over_tcp(unit, request, kHead + 2 * count, kHead - 1);
+  return finish(body != nullptr && std::memcmp(body, request, kHead - 1) == 0);
 }
 
 HalFault ModbusInput::take(std::int64_t& micro) noexcept {

@@ -31,17 +31,23 @@ class ModbusLine {
   /// unit, transaction, function or length. After a missing answer the line is not used for the same time
   /// again: a late answer is then not taken for the answer to the next request. setup.
   bool read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;
+  /// Writes `count` holding registers (1 to 123) in one request. False as for read(): the peer may have taken
+  /// the values. setup.
+  bool write(int unit, int address, int count, const std::uint16_t* values) noexcept;
   /// Answers so far that did not belong to their request or were damaged. For the thread that reads. setup.
   std::uint64_t wrong_answers() const noexcept { return wrong_answers_; }
 
  private:
   ModbusLine(_modbus* context, bool serial, TimeUs wait);
   bool connected() noexcept;
-  int ask_over_tcp(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;
+  void prepare(int unit) noexcept;
+  bool finish(bool done) noexcept;
+  const std::uint8_t* ask_over_tcp(int unit, const std::uint8_t* request, int size, int answer_size) noexcept;
 
   _modbus* context_;
   bool serial_, open_ = false, after_silence_ = false;
   std::uint16_t transaction_ = 0;  // of the newest request over TCP
+  std::uint8_t answer_[260] = {};  // to this request (Modbus Messaging on TCP/IP V1.0b, 4.1)
   std::uint64_t wrong_answers_ = 0;
   TimeUs wait_;
 };

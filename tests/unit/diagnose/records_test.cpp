@@ -264,5 +264,35 @@ TEST(Records, OutliersDoNotTurnAGrowthIntoADriftOfTheInstrument) {
   EXPECT_NE(answer.explanation.find("Left out:"), std::string::npos) << answer.explanation;
 }
 
+/// Rows at random positions with an error of the move before, noise of 1 um and a drift of 0.3 um a row.
+std::string rows_after_moves(std::uint64_t seed, const std::function<double(double)>& error_mm) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::uniform_real_distribution<double> place(0, 600);
+  std::string text = "X[mm],T[degC],t[s],x[mm],u[um],role\n";
+  double before = 300, drift = 0;
+  for (int row = 0; row < 400; ++row) {
+    const double x = place(random);
+    drift += 0.3 * noise(random);
+    text += fmt::format("{:.4f},{:.3f},{},{:.6f},1,{}\n", x, 20 + 5 * (1 - std::exp(-row / 150.0)), 10 * row,
+                        x + error_mm(x - before) + drift + noise(random), row % 5 == 2 ? "check" : "fit");
+    before = x;
+  }
+  return text;
+}
+
+TEST(Records, AnErrorOfThePreviousMoveIsNeitherNamedNorNoiseBesideADrift) {
+  // No effect of the catalogue. 3 to 10 um remain beside whatever a drift explains, and u is 1 um.
+  const std::vector<std::function<double(double)>> errors = {
+      [](double move) { return 0.02 * std::tanh(move / 200); },
+      [](double move) { return 0.02 * std::exp(-std::abs(move) / 100); },
+      [](double move) { return 0.02 * move * move / 360'000; }};
+  for (std::size_t law = 0; law < errors.size(); ++law)
+    for (const std::uint64_t seed : {41U, 42U}) {
+      const Diagnosis answer = diagnosed(kLinear, rows_after_moves(seed, errors[law]));
+      EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << law << " " << seed << " " << answer.explanation;
+    }
+}
+
 }  // namespace
 }  // namespace vernier::records_test

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "tables/link_format.h"
 #include "tests/unit/firmware/rig.h"
@@ -116,6 +118,40 @@ TEST_P(CycleFault, RampsOutLatchesAndIsCounted) {
   rig.tick(Command::kClearFault);
   EXPECT_EQ(rig.cycle().mode(), Mode::kChecking);
   EXPECT_TRUE(rig.run_to(Mode::kActive));
+}
+
+// The numbers of firmware/docs/hazards.md. The tick of the fault counts; a tolerance of n ticks detects in
+// tick n + 1. The removal takes the ticks of the ramp, within the slew limits of this machine.
+TEST_P(CycleFault, IsDetectedInTheTicksOfThePage) {
+  static const std::map<std::string, int> kTicks = {{"MissingPosition", 4}, {"Jump", 1},
+                                                    {"SensorLost", 101},    {"WriteFailure", 1},
+                                                    {"ReferenceLost", 1},   {"SensorBeyondItsRange", 1},
+                                                    {"SensorJumps", 1}};
+  const Injected& injected = GetParam();
+  PlantOptions options;
+  options.faults = {{injected.kind, injected.index, 1500, injected.ticks, injected.counts}};
+  CycleLimits limits;
+  limits.input[0] = {0, 40'000'000, 500'000};
+  Rig rig(options, limits, 5);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  int ticks = 0, removal = 0;
+  while (rig.cycle().latched() == Fault::kNone && ticks < 1000) {
+    rig.tick();
+    if (rig.plant().tick() >= 1500) ++ticks;
+  }
+  EXPECT_EQ(rig.cycle().latched(), injected.latched);
+  while (rig.cycle().mode() == Mode::kRampOut && removal < 1000) {
+    rig.tick();
+    ++removal;
+  }
+  if (const auto expected = kTicks.find(injected.name); expected != kTicks.end()) {
+    EXPECT_EQ(ticks, expected->second);
+  } else {  // a frozen axis is detected after 0.2 mm of its speed
+    const double speed_mm_s =
+        1e-6 * static_cast<double>(rig.cycle().axis_state(injected.index).velocity.count);
+    EXPECT_NEAR(ticks, 1000 * 0.2 / std::abs(speed_mm_s), 0.1 * ticks);
+  }
+  EXPECT_LE(removal, static_cast<int>(kRampTicks) + static_cast<int>(injected.ticks));
 }
 
 INSTANTIATE_TEST_SUITE_P(

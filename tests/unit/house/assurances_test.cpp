@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/house/named_tests.h"
 #include "tests/unit/house/tracked_files.h"
 
 namespace vernier::house {
@@ -115,24 +116,11 @@ TEST(Assurances, EveryAssuringTextIsOnThePage) {
 }
 
 TEST(Assurances, EveryTestThatThePageNamesIsThere) {
-  const auto files = tracked_files();
-  if (files.empty()) GTEST_SKIP() << "not a git checkout: no list of tracked files";
-  std::string tests;
-  for (const std::string& file : files)
-    if (file.starts_with("tests/") && (file.ends_with("_test.cpp") || file.ends_with("CMakeLists.txt")))
-      tests += text_of(file);
-  std::size_t named = 0;
-  const std::regex name(R"(\b([A-Z]\w+)\.([A-Z]\w+)\b)");
-  for (const std::string& word : quoted(text_of(kPage))) {
-    std::smatch parts;
-    if (!std::regex_match(word, parts, name)) continue;
-    ++named;
-    const std::regex found("TEST(_F|_P)?\\(\\s*" + parts[1].str() + ",\\s*" + parts[2].str() + "\\b|NAME " +
-                           parts[1].str() + "\\." + parts[2].str() + "\\b");
-    EXPECT_TRUE(std::regex_search(tests, found))
-        << kPage << " names the test " << word << ", which is not there";
-  }
-  EXPECT_GT(named, 15U);
+  if (tracked_files().empty()) GTEST_SKIP() << "not a git checkout: no list of tracked files";
+  const std::set<std::string> named = named_tests(text_of(kPage));
+  for (const std::string& name : tests_that_are_missing(named))
+    ADD_FAILURE() << kPage << " names the test " << name << ", which is not there";
+  EXPECT_GT(named.size(), 15U);
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"text", {}},
       {"format", {"maths", "text"}},
       {"report", {}},
+      {"http", {}},
       {"sheet", {"format", "text"}},
       {"model", {"format", "maths", "text"}},
       {"fit", {"format", "maths", "model", "text"}},
@@ -62,7 +63,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"map", {"format", "import", "kinematics", "maths", "model", "text"}},
       {"check", {"effects", "fit", "format", "maths", "model", "text"}},
       {"registry", {"maths", "text"}},
-      {"fleet", {"check", "registry", "text", "upload"}},
+      {"fleet", {"check", "http", "registry", "text", "upload"}},
       {"offline", {"format", "kinematics", "maths", "model", "text"}},
       {"tolerance", {"effects", "fit", "format", "kinematics", "maths", "model", "offline", "text"}},
       {"plan", {"check", "diagnose", "effects", "fit", "format", "maths", "model", "text", "tolerance"}},
@@ -71,8 +72,8 @@ const std::vector<Room>& rooms_of_tools() {
         "safety", "simulate", "text"}},
       {"python", {"diagnose", "effects", "fit", "format", "model", "plan", "residual", "results", "text"}},
       {"workbench",
-       {"diagnose", "effects", "fit", "format", "import", "maths", "model", "results", "safety", "simulate",
-        "text", "upload"}},
+       {"diagnose", "effects", "fit", "format", "http", "import", "maths", "model", "results", "safety",
+        "simulate", "text", "upload"}},
   };
   return kRooms;
 }

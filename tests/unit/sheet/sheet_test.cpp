@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet_number.h"
+#include "tools/sheet/workbook.h"
 #include "tools/text/error.h"
 
 namespace vernier::sheet_test {
@@ -144,18 +147,39 @@ TEST(Sheet, PartsAreTitleHeadingsUnitsAndData) {
 
 // A line of many separators over many short lines: as many cells in each would be 10^10.
 TEST(Sheet, OneRowFarWiderThanTheOthersIsNoTable) {
-  std::string text = "a,b" + std::string(100'000, ',') + "c\n";
+  std::string text = "a,b" + std::string(10'000, ',') + "c\n";
   for (int i = 0; i < 100'000; ++i) text += "1,2\n";
   try {
     read_sheet(text, "s.csv", {});
     ADD_FAILURE() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find("s.csv:1: 100002 cells here"), 0u) << error.what();
+    EXPECT_EQ(std::string(error.what()).find("s.csv:1: 10002 cells here"), 0u) << error.what();
   }
   // A wide title over a table is one.
   text = "title" + std::string(200, ',') + "x\n";
   for (int i = 0; i < 1000; ++i) text += "1,2\n";
   EXPECT_EQ(read_sheet(text, "s.csv", {}).rows.size(), 1001u);
+}
+
+// The columns of a spreadsheet at most; more took minutes, and the workbench waited.
+TEST(Sheet, MoreColumnsThanASpreadsheetHasAreRefusedWithTheirLine) {
+  EXPECT_EQ(read_sheet("# title\nX" + std::string(kMostColumns - 1, ';') + "1\n", "s.csv").rows.size(), 1u);
+  try {
+    read_sheet("# title\nX" + std::string(kMostColumns, ';') + "1\n", "s.csv");
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("s.csv:2: 16385 columns separated by semicolon"), 0u)
+        << error.what();
+  }
+}
+
+// Each letter of a cell used to cost the length of the blanks before it: 2 MB of blanks took ten seconds.
+// The limit is 50 times the time of today.
+TEST(Sheet, TimeOfACellGrowsWithItsLengthOnly) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Sheet sheet = read_sheet("X,x\n1," + std::string(2'000'000, ' ') + "2\n", "s.csv");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
+  EXPECT_EQ(sheet.rows[1][1], "2");
 }
 
 }  // namespace

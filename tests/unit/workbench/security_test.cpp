@@ -4,7 +4,11 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
+
+#include <chrono>
+#include <csignal>
 
 #include "tests/unit/workbench/rig.h"
 
@@ -199,6 +203,59 @@ TEST_F(Attack, EveryAnswerForbidsForeignScriptsAndReportsAreShutIn) {
     for (const char* header :
          {"X-Content-Type-Options: nosniff", "Cache-Control: no-store", "Referrer-Policy: no-referrer"})
       EXPECT_NE(answer.find(header), std::string::npos) << header;
+}
+
+/// A board that takes connections and never answers.
+class SilentBoard {
+ public:
+  SilentBoard() : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ::bind(fd_, reinterpret_cast<const sockaddr*>(&address), size);
+    ::listen(fd_, 1);
+    ::getsockname(fd_, reinterpret_cast<sockaddr*>(&address), &size);
+    port_ = ntohs(address.sin_port);
+  }
+  ~SilentBoard() { ::close(fd_); }
+  SilentBoard(const SilentBoard&) = delete;
+  SilentBoard& operator=(const SilentBoard&) = delete;
+  std::string port() const { return std::to_string(port_); }
+
+ private:
+  int fd_;
+  std::uint16_t port_ = 0;
+};
+
+// The workbench waited for half-open requests, for a file that was read, for a board.
+TEST(WorkbenchEnds, OneSecondAfterItsSignalWhateverRuns) {
+  using Clock = std::chrono::steady_clock;
+  const test::Folder folder;
+  const SilentBoard board;
+  const std::string url_file = folder.beside("url.json");
+  const pid_t child =
+      start_process(test::program(), {"workbench", folder.project(), "--no-browser", "--json", url_file},
+                    folder.project(), {STDIN_FILENO, STDERR_FILENO, STDERR_FILENO});
+  ASSERT_GT(child, 0);
+  for (int i = 0; i < 500 && !std::filesystem::exists(url_file); ++i) ::usleep(10'000);
+  const auto json = nlohmann::ordered_json::parse(read_file(url_file));
+  const std::string url = json["url"], port = std::to_string(json["port"].get<int>());
+  const std::string ours = "Host: 127.0.0.1:" + port + "\r\nCookie: vernier_" + port + "=" +
+                           url.substr(url.find("token=") + 6) + "\r\n";
+  std::thread watching([&] {
+    talk(json["port"], "GET /api/live?to=tcp://127.0.0.1:" + board.port() + " HTTP/1.1\r\n" + ours + "\r\n");
+  });
+  std::thread half([&] { talk(json["port"], "GET / HTTP/1.1\r\n"); });
+  ::usleep(300'000);
+  const auto begin = Clock::now();
+  ::kill(child, SIGTERM);
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  EXPECT_LT(Clock::now() - begin, std::chrono::milliseconds(2500));  // the grace, and a busy computer
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  watching.join();
+  half.join();
 }
 
 }  // namespace

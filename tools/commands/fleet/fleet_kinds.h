@@ -22,8 +22,6 @@ registry::Registry open_registry(const std::string& place);
 /// the text is not a time. tool.
 std::int64_t time_of(const std::string& text, std::int64_t otherwise);
 
-/// Runs a function that continues until SIGINT, SIGTERM or SIGHUP stops it. tool.
-void until_told(const std::function<void(const std::atomic<bool>& stop)>& run);
 /// A line on standard error, whole, from any thread. tool.
 void say_line(const std::string& line);
 

@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/fleet/fleet_kinds.h"
 #include "tools/commands/run/upload_kinds.h"
+#include "tools/commands/until_told.h"
 #include "tools/fleet/rollout.h"
 #include "tools/registry/digest.h"
 #include "tools/registry/machine_name.h"
@@ -157,10 +158,13 @@ void run_rollout(const RolloutArguments& arguments) {
   mine.options.key = *key;
   const std::vector<fleet::RolloutMachine> machines = machines_of(mine, registry);
   fleet::RolloutEnd end;
-  until_told([&](const std::atomic<bool>& stop) {
-    end = fleet::roll_out(registry, machines, mine.options, stop, say_line,
-                          [&](const fleet::RolloutMachine& one) { write_kept(registry, mine, one); });
-  });
+  constexpr int kNotAll = 2;
+  until_told(
+      [&](const std::atomic<bool>& stop) {
+        end = fleet::roll_out(registry, machines, mine.options, stop, say_line,
+                              [&](const fleet::RolloutMachine& one) { write_kept(registry, mine, one); });
+      },
+      [] {}, kNotAll);
   const bool holds = tell(mine, registry, &end);
   if (!end.stood.empty()) throw text::LimitNotMet(end.stood);
   if (!holds)

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <cstdlib>
 #include <mutex>
-#include <thread>
 
 #include "tools/commands/command.h"
 #include "tools/commands/fleet/fleet_kinds.h"
+#include "tools/commands/until_told.h"
 #include "tools/fleet/ingest.h"
 #include "tools/fleet/metrics.h"
 #include "tools/text/error.h"
@@ -53,31 +52,6 @@ void say_line(const std::string& line) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   fmt::print(stderr, "{}\n", line);
-}
-
-void until_told(const std::function<void(const std::atomic<bool>& stop)>& run) {
-  std::atomic<bool> stop{false};
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int one : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, one);
-  pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread, so that all have it
-  ::signal(SIGPIPE, SIG_IGN);
-  std::thread wait([&] {
-    int which = 0;
-    sigwait(&set, &which);
-    stop = true;
-  });
-  const auto end = [&] {
-    pthread_kill(wait.native_handle(), SIGTERM);  // where something else than a signal ended it
-    wait.join();
-  };
-  try {
-    run(stop);
-  } catch (...) {
-    end();
-    throw;
-  }
-  end();
 }
 
 void add_services(CLI::App& fleet) {

@@ -321,6 +321,9 @@ struct ProofThresholds {
   /// Expected evidence of a step below which the rows give no information about the step. A true step with so
   /// little expected evidence would be rejected by chance one time in six.
   double least_expected = 2;
+  /// Evidence against such a step that counts as worse rows: chi^2 of the check rows increases by 1, their
+  /// standard deviation by 1/(2 n) of itself for n rows.
+  double worse = 0.5;
   /// Number of standard deviations below the mean of the evidence that one true step in a hundred reaches.
   double chance_sigmas = 2.33;
   /// Limit for the mean square of the check rows, divided by the value that reading and model explain. If
@@ -332,6 +335,7 @@ struct ProofThresholds {
   void for_each(const Visit& visit) {
     visit("proof.evidence", evidence);
     visit("proof.least_expected", least_expected);
+    visit("proof.worse", worse);
     visit("proof.chance_sigmas", chance_sigmas);
     visit("proof.carries_sigmas", carries_sigmas);
   }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <deque>
 #include <map>
 #include <set>
 
@@ -42,17 +41,26 @@ bool is_pure(const std::string& name) {
   return is_sense(name) || (column != nullptr && !column->words && *column->unit == '\0');
 }
 
-/// Is a column a reading among these?
-bool is_reading(const SheetColumn& column, const std::vector<SheetColumn>& columns) {
-  std::deque<format::CsvColumn> header;
-  return format::is_reading({column.name, column.unit},
-                            [&](std::string_view name) -> const format::CsvColumn* {
-                              for (const SheetColumn& one : columns)
-                                if (one.use == SheetColumn::Use::kColumn && one.name == name)
-                                  return &header.emplace_back(format::CsvColumn{one.name, one.unit});
-                              return nullptr;
-                            });
-}
+/// Names of columns, to find each in a time that does not depend on their number.
+class Readings {
+ public:
+  explicit Readings(const std::vector<SheetColumn>& columns) {
+    for (const SheetColumn& one : columns)
+      if (one.use == SheetColumn::Use::kColumn)
+        header_.emplace(one.name, format::CsvColumn{one.name, one.unit});
+  }
+  /// Is a column a reading among these?
+  bool contain(const SheetColumn& column) const {
+    return format::is_reading({column.name, column.unit},
+                              [&](std::string_view name) -> const format::CsvColumn* {
+                                const auto found = header_.find(name);
+                                return found == header_.end() ? nullptr : &found->second;
+                              });
+  }
+
+ private:
+  std::map<std::string, format::CsvColumn, std::less<>> header_;
+};
 
 class Guess {
  public:
@@ -316,10 +324,11 @@ bool names_statistic(const sheet::Heading& heading) {
 
 /// The mean or the spread of the readings in the columns beside it is no further reading.
 void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& columns) {
+  const Readings readings(columns);
   bool reading = false;
   for (std::size_t k = 0; k < columns.size(); ++k)
     reading |= !names_statistic(table.headings[k]) &&
-               (columns[k].use == SheetColumn::Use::kDeviation || is_reading(columns[k], columns));
+               (columns[k].use == SheetColumn::Use::kDeviation || readings.contain(columns[k]));
   for (std::size_t k = 0; reading && k < columns.size(); ++k)
     if (columns[k].why == "by its heading" && names_statistic(table.headings[k]))
       leave(columns[k], "computed from the readings beside it");
@@ -364,11 +373,12 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     if (deviation && column.name.empty() && axes.size() == 1) column.name = *axes.begin();
     if (deviation && column.name.empty() && axes.empty() && alone_measured.size() == 1)
       column.name = *alone_measured.begin();
-    const auto along = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& one) {
-      return one.use == SheetColumn::Use::kColumn && one.name == column.name;
-    });
-    if (deviation && column.unit == "in" && along != columns.end() && is_angle(along->unit))
-      column.unit = "arcsec";  // " beside degrees
+    if (deviation && column.unit == "in") {
+      const auto along = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+        return one.use == SheetColumn::Use::kColumn && one.name == column.name;
+      });
+      if (along != columns.end() && is_angle(along->unit)) column.unit = "arcsec";  // " beside degrees
+    }
     if (deviation && !axes.contains(column.name) && alone_measured.contains(column.name))
       column.to_target = true;
     else if (deviation && (column.name.empty() || !axes.contains(column.name)))
@@ -684,19 +694,20 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   std::vector<SheetColumn> all = columns;
   for (const MappedColumn& constant : wishes.constants)
     all.push_back({SheetColumn::Use::kColumn, constant.name, constant.unit, "as given"});
+  const Readings readings(all);
   bool measured = std::any_of(all.begin() + static_cast<std::ptrdiff_t>(columns.size()), all.end(),
-                              [&](const SheetColumn& column) { return is_reading(column, all); });
+                              [&](const SheetColumn& column) { return readings.contain(column); });
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     const bool geometry = guess.is_axis(column.name) ||
-                          ((is_known_name(column.name) || is_reading(column, all)) && wants_unit(column));
+                          ((is_known_name(column.name) || readings.contain(column)) && wants_unit(column));
     if (wants_unit(column) && column.unit.empty() && column.use == SheetColumn::Use::kDeviation)
       without += fmt::format(" --deviation \"{}[um]={}\"", column.name, table.headings[k].text);
     else if (wants_unit(column) && column.unit.empty() && geometry)
       without += fmt::format(" --column \"{}={}\"", format::heading(column.name, unit_to_say(column.name)),
                              table.headings[k].text);
     if (column.use == SheetColumn::Use::kLeft) continue;
-    measured |= column.use == SheetColumn::Use::kDeviation || is_reading(column, all);
+    measured |= column.use == SheetColumn::Use::kDeviation || readings.contain(column);
   }
   const text::Place heading{sheet.file, sheet.line[table.heading_row]};
   if (!without.empty())
@@ -716,6 +727,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       continue;
     result.line.push_back(sheet.line[row]);
   }
+  std::set<std::string> names;
   std::map<std::string, std::size_t> axis_column;
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (columns[k].use == SheetColumn::Use::kColumn) axis_column.emplace(columns[k].name, k);
@@ -745,7 +757,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       throw text::InputError(heading, table.headings[k].text,
                              "an angle, where " + column.name + " is a length");
     }
-    if (result.find(made.name) != nullptr)
+    if (!names.insert(made.name).second)
       throw text::InputError(heading, table.headings[k].text,
                              "this would be " + made.name + " a second time");
     for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {

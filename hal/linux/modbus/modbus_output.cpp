@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/linux/modbus/modbus_output.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "hal/support/rounded_ratio.h"
+
+namespace vernier {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::microseconds;
+
+constexpr std::size_t kDelayBins = 10'000;  // of 0.1 ms: one second
+constexpr int kTries = 10;                  // of the first exchange
+
+std::int64_t ns_of(Clock::time_point when) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(when.time_since_epoch()).count();
+}
+microseconds span_of(TimeUs time) { return microseconds(time.count); }
+
+/// The delay below which a share of all delays is, ms.
+double share_of(const std::vector<std::uint64_t>& bins, std::uint64_t all, double share) {
+  std::uint64_t below = 0;
+  for (std::size_t i = 0; i < bins.size(); ++i)
+    if ((below += bins[i]) >= static_cast<std::uint64_t>(share * static_cast<double>(all)) && below > 0)
+      return 0.1 * static_cast<double>(i + 1);
+  return 0;
+}
+
+}  // namespace
+
+ModbusOutput::ModbusOutput(std::shared_ptr<ModbusLine> line, const ModbusOutputSettings& settings)
+    : line_(std::move(line)), settings_(settings), delays_(kDelayBins) {
+  for (std::size_t k = 0; k < settings_.axes.size(); ++k) {
+    const ModbusOutputSettings::Axis& axis = settings_.axes[k];
+    converters_.emplace_back(axis.scale);
+    // The correction changes by this in a period; one more, because both ends are rounded.
+    const std::int64_t ticks = (settings_.period.count + settings_.tick.count - 1) / settings_.tick.count;
+    const std::int64_t most = std::min<std::int64_t>(axis.most_per_tick, INT32_MAX) * ticks;
+    places_[k].most_per_period = RoundedRatio(axis.scale.codes, axis.scale.span).of(most) + 1;
+  }
+}
+
+std::unique_ptr<ModbusOutput> ModbusOutput::open(std::shared_ptr<ModbusLine> line,
+                                                 const ModbusOutputSettings& settings, std::string& error) {
+  std::unique_ptr<ModbusOutput> output(new ModbusOutput(std::move(line), settings));
+  error = output->begin();
+  if (!error.empty()) return nullptr;
+  output->thread_ = std::thread([raw = output.get()] { raw->run(); });
+  return output;
+}
+
+/// Empty, or the reason why the controller cannot be used.
+std::string ModbusOutput::begin() {
+  const auto look = [&](std::uint16_t& number) {
+    for (int i = 0; i < kTries; ++i)
+      if (line_->read(settings_.unit, ModbusLine::Registers::kHolding, settings_.address, 1, &number))
+        return true;
+    return false;
+  };
+  std::uint16_t before = 0, after = 0;
+  if (!look(before)) return "the controller does not answer, or has no such register";
+  std::this_thread::sleep_for(4 * span_of(settings_.period));
+  if (!look(after)) return "the controller does not answer";
+  if (before != after) return "in use: another board writes the sequence number";
+  sequence_ = after;
+  good_ = written_ = Clock::now();
+  for (const auto end = Clock::now() + span_of(settings_.timeout) + std::chrono::seconds(1);
+       !healthy_ && Clock::now() < end;) {
+    exchange();
+    std::this_thread::sleep_for(span_of(settings_.period));
+  }
+  return healthy_ ? "" : "the controller does not return the sequence number: does its program run?";
+}
+
+ModbusOutput::~ModbusOutput() {
+  if (!thread_.joinable()) return;
+  stop_ = true;
+  thread_.join();
+  lose();
+  exchange(true);
+}
+
+HalFault ModbusOutput::write_correction(std::uint32_t axis, AxisTravel correction) noexcept {
+  if (axis >= converters_.size()) return HalFault::kNoDevice;
+  Place& place = places_[axis];
+  const std::int64_t code = converters_[axis].code_for(correction);
+  place.held_at_end += converters_[axis].wanted_code(correction) != code ? 1 : 0;
+  const auto wanted = static_cast<std::int32_t>(code - converters_[axis].scale().zero);
+  stored_ns_.store(ns_of(Clock::now()));
+  const bool lost = place.refuse.exchange(false) || !healthy_;
+  // Without a valid bit a correction can only go to zero: no board believes that its correction is used.
+  if (!lost && !place.valid && std::abs(wanted) > std::abs(place.wanted.load())) return HalFault::kRefused;
+  place.wanted.store(wanted);
+  return lost ? HalFault::kRefused : HalFault::kNone;
+}
+
+AxisTravel ModbusOutput::within_range(std::uint32_t axis, AxisTravel correction) const noexcept {
+  if (axis >= converters_.size()) return AxisTravel{};
+  const AnalogueScale& scale = converters_[axis].scale();
+  const std::int64_t a = scale.correction_of(scale.low).count, b = scale.correction_of(scale.high).count;
+  return AxisTravel(std::clamp(correction.count, std::min(a, b), std::max(a, b)));
+}
+
+bool ModbusOutput::ticks_run(Clock::time_point now) const {
+  const std::int64_t stored = stored_ns_.load();
+  return stored != INT64_MIN && ns_of(now) - stored < settings_.timeout.count * 1000;
+}
+
+// After the loss the controller removes the correction by its own ramp; the values are zero when the board
+// comes back. A tick must learn of the loss of a correction; without one its board is at zero already.
+void ModbusOutput::lose() {
+  repeat_ = false;
+  for (std::size_t k = 0; k < settings_.axes.size(); ++k) {
+    Place& place = places_[k];
+    if (place.valid && (place.sent != 0 || place.wanted != 0)) place.refuse = true;
+    place.valid = false;
+    place.sent = 0;
+  }
+}
+
+/// Values of the next block: within the change that ticks make in a period; after a late exchange, of two.
+void ModbusOutput::choose_values(Clock::time_point now, bool ticks_are_on) {
+  const double periods =
+      std::clamp(std::chrono::duration<double>(now - written_) / span_of(settings_.period), 1.0, 2.0);
+  for (std::size_t k = 0; k < settings_.axes.size(); ++k) {
+    Place& place = places_[k];
+    const std::int64_t wanted = place.wanted.load();
+    if (!place.valid) {
+      place.valid = healthy_ && ticks_are_on && wanted == 0 && !place.refuse;
+      continue;
+    }
+    const auto most = static_cast<std::int64_t>(static_cast<double>(place.most_per_period) * periods);
+    place.sent = static_cast<std::int32_t>(std::clamp(wanted, place.sent - most, place.sent + most));
+  }
+}
+
+bool ModbusOutput::echo_is_new(std::uint16_t echo, Clock::time_point now) const {
+  const auto behind = static_cast<std::uint16_t>(sequence_ - echo);
+  return behind < sent_at_.size() && now - sent_at_[echo & 0xff] <= span_of(settings_.timeout);
+}
+
+void ModbusOutput::judge(bool answered, std::uint16_t echo, Clock::time_point now, bool ticks_are_on) {
+  if (answered && echo_is_new(echo, now)) {
+    good_ = std::max(good_, sent_at_[echo & 0xff]);
+    healthy_ = true;
+  }
+  const bool in_use =
+      std::any_of(places_.begin(), places_.end(), [](const Place& one) { return one.valid.load(); });
+  const bool silent = now - good_ > span_of(settings_.timeout);
+  if (!(silent && healthy_) && !(in_use && !ticks_are_on)) return;
+  const bool corrects =
+      std::any_of(places_.begin(), places_.end(), [](const Place& one) { return one.sent != 0; });
+  if (silent) healthy_ = false;
+  lose();
+  const std::scoped_lock lock(guard_);
+  losses_ += silent || corrects ? 1 : 0;
+}
+
+void ModbusOutput::exchange(bool last) {
+  const Clock::time_point began = Clock::now();
+  const bool ticks_are_on = ticks_run(began);
+  const std::int64_t stored = stored_ns_.load();
+  if (!repeat_ && !last) choose_values(began, ticks_are_on);
+  std::array<std::uint16_t, ModbusOutputSettings::kValues + 2 * ModbusOutputSettings::kPlaces> block{};
+  int used = ModbusOutputSettings::kValues;
+  block[ModbusOutputSettings::kSequence] = ++sequence_;
+  sent_at_[sequence_ & 0xff] = began;
+  for (std::size_t k = 0; k < settings_.axes.size(); ++k) {
+    const auto place = static_cast<std::size_t>(settings_.axes[k].place);
+    const auto value = static_cast<std::uint32_t>(places_[k].sent);
+    block[ModbusOutputSettings::kValues + 2 * place] = static_cast<std::uint16_t>(value >> 16);
+    block[ModbusOutputSettings::kValues + 2 * place + 1] = static_cast<std::uint16_t>(value);
+    if (places_[k].valid)
+      block[ModbusOutputSettings::kValid] =
+          static_cast<std::uint16_t>(block[ModbusOutputSettings::kValid] | 1u << place);
+    used = std::max(used, ModbusOutputSettings::kValues + 2 * static_cast<int>(place) + 2);
+  }
+  const bool written = line_->write(settings_.unit, settings_.address, used, block.data());
+  const Clock::time_point answered_at = Clock::now();
+  if (written) written_ = began;
+  repeat_ = !written;
+  std::uint16_t echo = 0;
+  const bool answered =
+      written && line_->read(settings_.unit, ModbusLine::Registers::kHolding, settings_.echo, 1, &echo);
+  {
+    const std::scoped_lock lock(guard_);
+    ++exchanges_;
+    failed_ += answered ? 0 : 1;
+    if (written && ticks_are_on && stored != delayed_) {  // the first answer to this tick
+      delayed_ = stored;
+      const std::int64_t tenths = (ns_of(answered_at) - stored) / 100'000;
+      ++delays_[static_cast<std::size_t>(std::clamp<std::int64_t>(tenths, 0, kDelayBins - 1))];
+    }
+  }
+  judge(answered, echo, Clock::now(), ticks_are_on);
+}
+
+void ModbusOutput::run() {
+  for (auto due = Clock::now(); !stop_;) {
+    exchange();
+    due = std::max(due + span_of(settings_.period), Clock::now());
+    std::this_thread::sleep_until(due);
+  }
+}
+
+std::string ModbusOutput::attempt(std::uint32_t) {
+  // The thread exchanges; the echo was new within the time-out.
+  std::this_thread::sleep_for(span_of(settings_.timeout));
+  return healthy_ ? "" : "the controller does not return the sequence number";
+}
+
+std::string ModbusOutput::account() const {
+  const std::scoped_lock lock(guard_);
+  std::uint64_t all = 0;
+  for (const std::uint64_t one : delays_) all += one;
+  char text[300];
+  std::snprintf(
+      text, sizeof text,
+      "modbus-out register %d: %llu exchanges, %llu failed, %llu losses; from the tick to the answer "
+      "median %.1f ms, 99 %% %.1f ms, largest %.1f ms; a value stays %.3g ms more",
+      settings_.address, static_cast<unsigned long long>(exchanges_),
+      static_cast<unsigned long long>(failed_), static_cast<unsigned long long>(losses_),
+      share_of(delays_, all, 0.5), share_of(delays_, all, 0.99), share_of(delays_, all, 1.0),
+      1e-3 * static_cast<double>(settings_.period.count));
+  return text;
+}
+
+}  // namespace vernier

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hal/linux/modbus/modbus_input.h"
+#include "hal/linux/output_device.h"
+
+namespace vernier {
+
+/// Registers of a controller (PLC) that take corrections. The block begins at `address`: sequence number,
+/// valid bits (bit p: place p), then two registers for each place, a signed 32-bit number, high word first.
+struct ModbusOutputSettings {
+  static constexpr int kSequence = 0, kValid = 1, kValues = 2, kPlaces = 16;
+
+  struct Axis {
+    AnalogueScale scale;                     // the register holds code - scale.zero
+    int place = 0;                           // 0 .. kPlaces - 1
+    std::int64_t most_per_tick = INT32_MAX;  // largest change of the correction in a tick, counts
+  };
+  int unit = 1, address = 0;
+  int echo = 0;             // register to which the controller copies the sequence number that it has used
+  TimeUs period{5'000};     // from one exchange to the next
+  TimeUs timeout{100'000};  // longest time without an echo, and without a tick
+  TimeUs tick{1'000};
+  std::vector<Axis> axes;
+};
+
+/// Corrections of several axes as registers of a controller. A separate thread writes the block and reads the
+/// echo; a tick only leaves its value and never waits. If no new sequence number comes back in `timeout`, the
+/// thread clears the valid bits and all writes are refused. The valid bit of an axis is set again when the
+/// board's own correction of the axis is zero: the return of a connection causes no step.
+class ModbusOutput : public OutputDevice {
+ public:
+  /// line: used by this output only. Returns null with `error` set if the controller does not answer, does
+  /// not return the sequence number, or is written by another board. Waits for the controller. setup.
+  static std::unique_ptr<ModbusOutput> open(std::shared_ptr<ModbusLine> line,
+                                            const ModbusOutputSettings& settings, std::string& error);
+  /// Clears the valid bits.
+  ~ModbusOutput() override;
+  ModbusOutput(const ModbusOutput&) = delete;
+  ModbusOutput& operator=(const ModbusOutput&) = delete;
+
+  /// kRefused: the controller does not return the sequence number; or a correction grows whose valid bit is
+  /// not set. realtime.
+  HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
+  AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
+
+  /// open() has found that nothing else changes the sequence number.
+  bool lock() noexcept override { return true; }
+  /// Zero: without a valid bit the controller itself removes a correction of an earlier process.
+  HalFault read_back(std::uint32_t, AxisTravel& correction) noexcept override {
+    return correction = AxisTravel{}, HalFault::kNone;
+  }
+  std::string attempt(std::uint32_t axis) override;
+  std::uint64_t held_at_end(std::uint32_t axis) const noexcept override { return places_[axis].held_at_end; }
+  const AnalogueScale& scale(std::uint32_t axis) const noexcept override {
+    return settings_.axes[axis].scale;
+  }
+  /// Exchanges, losses, and the delay from the tick of a correction to the answer to its write.
+  std::string account() const override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  /// State of one axis. The tick writes `wanted`; the thread writes `valid` and `refuse`, which the tick
+  /// clears.
+  struct Place {
+    std::atomic<std::int32_t> wanted{0};  // register's number
+    std::atomic<bool> valid{false}, refuse{false};
+    std::int32_t sent = 0;
+    std::int64_t most_per_period = 1;
+    std::uint64_t held_at_end = 0;
+  };
+
+  ModbusOutput(std::shared_ptr<ModbusLine> line, const ModbusOutputSettings& settings);
+  std::string begin();
+  void run();
+  void exchange(bool last = false);
+  void choose_values(Clock::time_point now, bool ticks_are_on);
+  bool echo_is_new(std::uint16_t echo, Clock::time_point now) const;
+  void judge(bool answered, std::uint16_t echo, Clock::time_point now, bool ticks_are_on);
+  void lose();
+  bool ticks_run(Clock::time_point now) const;
+
+  const std::shared_ptr<ModbusLine> line_;
+  const ModbusOutputSettings settings_;
+  std::vector<AnalogueConverter> converters_;
+  std::array<Place, ModbusOutputSettings::kPlaces> places_;  // by axis
+  std::atomic<bool> healthy_{false}, stop_{false};
+  std::atomic<std::int64_t> stored_ns_{INT64_MIN};  // when a tick left its value
+  std::uint16_t sequence_ = 0;
+  bool repeat_ = false;  // the controller may have the last block or the one before
+  Clock::time_point good_, written_;
+  std::array<Clock::time_point, 256> sent_at_{};  // by the low byte of the sequence number
+
+  mutable std::mutex guard_;  // of the figures below
+  std::uint64_t exchanges_ = 0, failed_ = 0, losses_ = 0;
+  std::vector<std::uint64_t> delays_;  // in tenths of a millisecond
+  std::int64_t delayed_ = INT64_MIN;   // tick whose delay was counted last
+  std::thread thread_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Corrections as registers of a controller: values to the digit, and what a controller does that is gone,
+// stuck or late. The controller is libmodbus's server; tests/board/plc has another one.
+#include "hal/linux/modbus/modbus_output.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/conformance/plc.h"
+
+namespace vernier::modbus_output_test {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::int64_t kStep = 200;  // nm in a tick
+constexpr auto kTick = 1ms, kPeriod = 5ms, kTimeout = 60ms;
+/// Detection: the time-out, an answer that does not come (half the time-out), and two exchanges; and what a
+/// busy computer adds.
+constexpr auto kDetected = kTimeout + kTimeout / 2 + 2 * kPeriod + 150ms;
+
+ModbusOutputSettings settings() {
+  ModbusOutputSettings made;
+  made.address = Plc::kBlock;
+  made.echo = Plc::kEcho;
+  made.period = TimeUs(5'000);
+  made.timeout = TimeUs(60'000);
+  AnalogueScale scale;  // 10 nm in a count, 1 mm at most
+  scale.codes = 1'000'000, scale.span = 10'000'000;
+  scale.zero = 1 << 30, scale.low = scale.zero - 100'000, scale.high = scale.zero + 100'000;
+  made.axes = {{scale, 0, kStep}, {scale, 2, kStep}};
+  return made;
+}
+
+std::unique_ptr<ModbusOutput> open(const Plc& plc, std::string& error,
+                                   const ModbusOutputSettings& how = settings()) {
+  const TimeUs wait(how.timeout.count / 2);
+  auto line = plc.path().empty() ? ModbusLine::tcp("127.0.0.1", plc.port(), wait, error)
+                                 : ModbusLine::rtu(plc.path(), 115200, 'N', wait, error);
+  return line ? ModbusOutput::open(line, how, error) : nullptr;
+}
+
+/// Ticks that move axis 0 towards a target, as a board does: a refused value is repeated.
+class Ticks {
+ public:
+  explicit Ticks(ModbusOutput& output) : output_(output), due_(Clock::now()) {}
+  HalFault step(std::int64_t target) {
+    due_ = std::max(due_ + kTick, Clock::now() - 20ms);
+    std::this_thread::sleep_until(due_);
+    const std::int64_t next = repeat_ ? pending_ : std::clamp(target, written_ - kStep, written_ + kStep);
+    const auto began = Clock::now();
+    const HalFault fault = output_.write_correction(0, AxisTravel(next));
+    took_.push_back(Clock::now() - began);
+    output_.write_correction(1, AxisTravel(-next));
+    repeat_ = fault != HalFault::kNone;
+    pending_ = next;
+    if (!repeat_) written_ = next;
+    asked_.push_back({Clock::now(), next});
+    return fault;
+  }
+  void run(std::chrono::milliseconds time, std::int64_t target) {
+    for (const auto end = Clock::now() + time; Clock::now() < end;) step(target);
+  }
+  /// Time until a write is refused.
+  std::chrono::milliseconds until_refused(std::int64_t target) {
+    const auto began = Clock::now();
+    while (step(target) == HalFault::kNone && Clock::now() - began < 2s) {
+    }
+    return std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - began);
+  }
+  std::int64_t written() const { return written_; }
+  const auto& asked() const { return asked_; }
+  Clock::duration slow_write() {  // of a hundred, the slowest but one
+    std::sort(took_.begin(), took_.end());
+    return took_[took_.size() * 99 / 100];
+  }
+
+ private:
+  ModbusOutput& output_;
+  Clock::time_point due_;
+  std::int64_t written_ = 0, pending_ = 0;
+  bool repeat_ = false;
+  std::vector<Clock::duration> took_;
+  std::vector<std::pair<Clock::time_point, std::int64_t>> asked_;
+};
+
+/// Largest change of a value from one valid block to the next; the controller ramps out without a valid bit,
+/// so that a first valid block counts from zero.
+std::int64_t largest_step(const std::vector<Plc::Block>& blocks) {
+  std::int64_t largest = 0, before = 0;
+  for (const Plc::Block& block : blocks) {
+    const std::int64_t now = (block.valid & 1) != 0 ? block.values[0] : 0;
+    if ((block.valid & 1) != 0) largest = std::max(largest, std::abs(now - before));
+    before = now;
+  }
+  return largest;
+}
+/// Of two periods: kStep in each of ten ticks, in counts of 10 nm, and a rounding for each period.
+constexpr std::int64_t kMostStep = 2 * (kStep * 5 / 10 + 1);
+
+void expect_equal_and_in_time(Plc& plc, std::chrono::milliseconds most_late) {
+  std::string error;
+  const auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  Ticks ticks(*output);
+  ticks.run(60ms, 0);
+  plc.forget();
+  for (int i = 0; i < 2000; ++i) ticks.step(static_cast<std::int64_t>(20'000 * std::sin(i / 150.0)));
+  const auto blocks = plc.blocks();
+  std::size_t valid = 0, equal = 0;
+  std::int32_t before = 0;
+  for (const Plc::Block& block : blocks) {
+    if ((block.valid & 1) == 0) continue;
+    ++valid;
+    // GIVEN a block WHEN it came THEN its value is the correction of a tick shortly before, to the digit
+    const auto same = [&](const auto& asked) {
+      const std::int64_t counts = (std::abs(asked.second) + 5) / 10 * (asked.second < 0 ? -1 : 1);
+      return asked.first <= block.when + kTick && asked.first >= block.when - most_late &&
+             counts == block.values[0];
+    };
+    // or, after an exchange that was late, a value on the way that the limit of two periods gives.
+    const bool limited = std::abs(block.values[0] - before) >= kMostStep / 2;
+    EXPECT_TRUE(limited || std::any_of(ticks.asked().begin(), ticks.asked().end(), same)) << block.values[0];
+    equal += limited ? 0 : 1;
+    before = block.values[0];
+    EXPECT_LE(std::abs(block.values[0] + block.values[2]), kStep / 10) << "the other axis, a tick apart";
+    EXPECT_EQ(block.values[1], 0) << "a place without an axis";
+  }
+  EXPECT_GT(valid, blocks.size() * 9 / 10);
+  EXPECT_GT(equal, valid * 9 / 10);
+  EXPECT_LE(largest_step(blocks), kMostStep);
+  EXPECT_LT(ticks.slow_write(), 200us) << "a tick waits for nothing";
+  std::printf("%s\n", output->account().c_str());
+}
+
+TEST(ModbusOutput, TcpRegistersAreTheCorrectionsOfTicksToTheDigit) {
+  Plc plc;
+  expect_equal_and_in_time(plc, 60ms);
+}
+
+TEST(ModbusOutput, RtuRegistersAreTheCorrectionsOfTicksToTheDigit) {
+  Plc plc{Plc::Serial{}};
+  expect_equal_and_in_time(plc, 80ms);
+}
+
+/// What follows every loss: no valid bit, zeros, and no step when the correction comes back.
+void expect_return_without_a_step(Plc& plc, ModbusOutput& output, Ticks& ticks) {
+  // GIVEN the correction that the board still has WHEN the controller is there again
+  const std::int64_t held = ticks.written();
+  EXPECT_GT(std::abs(held), 10 * kStep);
+  ASSERT_TRUE(plc.wait_for_blocks(3));
+  plc.forget();
+  ticks.run(40ms, held);
+  // THEN nothing is valid while the board has not come to zero
+  for (const Plc::Block& block : plc.blocks()) {
+    EXPECT_EQ(block.valid & 1, 0);
+    EXPECT_EQ(block.values[0], 0);
+  }
+  const auto began = Clock::now();
+  while (ticks.written() != 0 && Clock::now() - began < 2s) ticks.step(0);
+  std::printf("from %lld nm to zero in %lld ms\n", static_cast<long long>(held),
+              static_cast<long long>(
+                  std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - began).count()));
+  ticks.run(60ms, 0);
+  plc.forget();
+  ticks.run(200ms, 20'000);
+  EXPECT_EQ(plc.blocks().back().valid & 1, 1);
+  EXPECT_GT(plc.blocks().back().values[0], 1000);
+  EXPECT_LE(largest_step(plc.blocks()), kMostStep);
+  EXPECT_EQ(output.attempt(0), "");
+}
+
+class ModbusOutputLoss : public testing::Test {
+ protected:
+  ModbusOutputLoss() : output_(open(plc_, error_)) {}
+  void SetUp() override {
+    ASSERT_NE(output_, nullptr) << error_;
+    ticks_ = std::make_unique<Ticks>(*output_);
+    ticks_->run(60ms, 0);
+    ticks_->run(200ms, 20'000);
+    ASSERT_EQ(plc_.blocks().back().valid & 1, 1);
+  }
+  void report(const char* what, std::chrono::milliseconds detected) {
+    EXPECT_LE(detected, kDetected);
+    std::printf("%s: refused after %lld ticks, largest step %lld counts of 10 nm\n", what,
+                static_cast<long long>(detected.count()),
+                static_cast<long long>(largest_step(plc_.blocks())));
+    EXPECT_LE(largest_step(plc_.blocks()), kMostStep);
+  }
+  Plc plc_;
+  std::string error_;
+  std::unique_ptr<ModbusOutput> output_;
+  std::unique_ptr<Ticks> ticks_;
+};
+
+TEST_F(ModbusOutputLoss, StuckEchoIsDetectedAndNothingStaysValid) {
+  plc_.stuck = true;
+  report("stuck echo", ticks_->until_refused(20'000));
+  ASSERT_TRUE(plc_.wait_for_blocks(2));
+  EXPECT_EQ(plc_.blocks().back().valid & 1, 0);
+  EXPECT_EQ(plc_.blocks().back().values[0], 0);
+  EXPECT_EQ(ticks_->step(20'000), HalFault::kRefused);
+  plc_.stuck = false;
+  expect_return_without_a_step(plc_, *output_, *ticks_);
+}
+
+TEST_F(ModbusOutputLoss, PeerThatIsGoneIsDetectedAndComesBackWithoutAStep) {
+  plc_.gone = true;
+  report("peer gone", ticks_->until_refused(20'000));
+  ticks_->run(150ms, 20'000);
+  plc_.gone = false;
+  expect_return_without_a_step(plc_, *output_, *ticks_);
+}
+
+TEST_F(ModbusOutputLoss, AnswersThatAreTooLateAreALoss) {
+  plc_.late_ms = 100;
+  report("late answers", ticks_->until_refused(20'000));
+  plc_.late_ms = 0;
+  expect_return_without_a_step(plc_, *output_, *ticks_);
+}
+
+TEST_F(ModbusOutputLoss, SlowAnswersDelayNoTickAndMakeNoLargerStep) {
+  plc_.late_ms = 10;
+  ticks_->run(400ms, -20'000);
+  EXPECT_LT(ticks_->slow_write(), 200us);
+  EXPECT_EQ(plc_.blocks().back().valid & 1, 1);
+  EXPECT_LT(plc_.blocks().back().values[0], 0);
+  EXPECT_LE(largest_step(plc_.blocks()), kMostStep);
+}
+
+// A board that begins while the controller is not ready must not believe that its correction is used.
+TEST(ModbusOutputStart, CorrectionWithoutAValidBitDoesNotGrow) {
+  Plc plc;
+  std::string error;
+  const auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  EXPECT_EQ(output->write_correction(0, AxisTravel(1000)), HalFault::kRefused) << "no tick was at zero";
+  EXPECT_EQ(output->write_correction(0, AxisTravel(0)), HalFault::kNone);
+  Ticks ticks(*output);
+  ticks.run(40ms, 0);
+  EXPECT_EQ(ticks.step(1000), HalFault::kNone);
+}
+
+TEST_F(ModbusOutputLoss, ShortOutageIsNoLossAndMakesNoStep) {
+  plc_.gone = true;
+  ticks_->run(25ms, -20'000);
+  plc_.gone = false;
+  ticks_->run(200ms, -20'000);
+  EXPECT_EQ(plc_.blocks().back().valid & 1, 1);
+  EXPECT_EQ(plc_.blocks().back().values[0], -2000);
+  EXPECT_LE(largest_step(plc_.blocks()), kMostStep);
+}
+
+TEST_F(ModbusOutputLoss, TicksThatStandStillLeaveNothingValid) {
+  std::this_thread::sleep_for(kDetected);
+  EXPECT_EQ(plc_.blocks().back().valid & 1, 0);
+  EXPECT_EQ(ticks_->step(20'000), HalFault::kRefused) << "the tick learns of it";
+  expect_return_without_a_step(plc_, *output_, *ticks_);
+}
+
+// A board without an image writes nothing; its first image begins at zero, without a fault.
+TEST(ModbusOutputStart, BoardThatBeginsLateIsNotRefused) {
+  Plc plc;
+  std::string error;
+  const auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  EXPECT_EQ(output->write_correction(0, AxisTravel(0)), HalFault::kNone);
+  std::this_thread::sleep_for(kDetected);
+  EXPECT_EQ(plc.blocks().back().valid, 0) << "no tick, nothing valid";
+  Ticks ticks(*output);
+  for (int i = 0; i < 60; ++i) EXPECT_EQ(ticks.step(0), HalFault::kNone);
+  for (int i = 0; i < 60; ++i) EXPECT_EQ(ticks.step(20'000), HalFault::kNone);
+  EXPECT_NE(output->account().find(" 0 losses"), std::string::npos) << output->account();
+}
+
+TEST_F(ModbusOutputLoss, EndOfTheBoardLeavesNothingValid) {
+  output_.reset();
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(plc_.blocks().back().valid, 0);
+  EXPECT_EQ(plc_.blocks().back().values[0], 0);
+}
+
+TEST_F(ModbusOutputLoss, SecondBoardIsRefused) {
+  std::string error;
+  EXPECT_EQ(open(plc_, error), nullptr);
+  EXPECT_NE(error.find("another board writes"), std::string::npos) << error;
+  EXPECT_EQ(ticks_->step(20'000), HalFault::kNone) << "the first one goes on";
+}
+
+TEST(ModbusOutputOpen, NamesWhatIsMissing) {
+  std::string error;
+  Plc plc;
+  plc.stuck = true;
+  EXPECT_EQ(open(plc, error), nullptr);
+  EXPECT_NE(error.find("does not return the sequence number"), std::string::npos) << error;
+  plc.gone = true;
+  EXPECT_EQ(open(plc, error), nullptr);
+  EXPECT_NE(error.find("does not answer"), std::string::npos) << error;
+  EXPECT_EQ(plc.blocks().back().valid, 0) << "nothing was valid";
+}
+
+TEST(ModbusOutputRange, BeyondTheRangeIsHeldAndCounted) {
+  Plc plc;
+  std::string error;
+  const auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  EXPECT_EQ(output->within_range(0, AxisTravel(5'000'000)), AxisTravel(1'000'000));
+  EXPECT_EQ(output->within_range(0, AxisTravel(-5'000'000)), AxisTravel(-1'000'000));
+  output->write_correction(0, AxisTravel(5'000'000));
+  EXPECT_EQ(output->held_at_end(0), 1u);
+  EXPECT_EQ(output->held_at_end(1), 0u);
+  EXPECT_EQ(output->write_correction(2, AxisTravel(0)), HalFault::kNoDevice);
+}
+
+}  // namespace
+}  // namespace vernier::modbus_output_test

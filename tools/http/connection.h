@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <httplib.h>
+
+#include <chrono>
+#include <string>
+
+namespace vernier::http {
+
+using Clock = std::chrono::steady_clock;
+
+/// A client's connection and the received bytes that no request has used.
+struct Connection {
+  explicit Connection(int socket);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// Reads the bytes that are there, without waiting. False: the client has closed the connection.
+  bool take_bytes();
+  bool has_header() const { return bytes.find("\r\n\r\n") != std::string::npos; }
+
+  int fd;
+  std::string peer;  // address of the client
+  std::string bytes;
+  Clock::time_point due;
+};
+
+/// The connection as the library reads and writes it during one request: no wait is longer than `pause`, and
+/// none goes beyond `end`. tool.
+class RequestStream : public httplib::Stream {
+ public:
+  RequestStream(Connection& connection, Clock::duration pause, Clock::time_point end)
+      : connection_(connection), pause_(pause), end_(end) {}
+  /// Removes the bytes that the request used.
+  ~RequestStream() override { connection_.bytes.erase(0, at_); }
+  RequestStream(const RequestStream&) = delete;
+  RequestStream& operator=(const RequestStream&) = delete;
+
+  bool is_readable() const override;
+  bool is_writable() const override;
+  ssize_t read(char* bytes, std::size_t size) override;
+  ssize_t write(const char* bytes, std::size_t size) override;
+  void get_remote_ip_and_port(std::string& ip, int& port) const override;
+  void get_local_ip_and_port(std::string& ip, int& port) const override;
+  socket_t socket() const override { return connection_.fd; }
+
+ private:
+  bool wait(short events) const;
+
+  Connection& connection_;
+  Clock::duration pause_;
+  Clock::time_point end_;
+  std::size_t at_ = 0;  // used bytes of the connection
+};
+
+}  // namespace vernier::http

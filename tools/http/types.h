@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <chrono>
+#include <cstddef>
+
+namespace vernier::http {
+
+/// Limits of a server. The times are those of local networks: a header of a few kilobytes takes milliseconds.
+struct ServerLimits {
+  std::size_t threads = 8;  // requests that are answered together
+  /// Connections whose request header is not complete; the library cannot serve sockets above 1023.
+  std::size_t most_waiting = 200;
+  std::chrono::milliseconds header{5000};     // from the first byte of a header to its last
+  std::chrono::milliseconds idle{30'000};     // without a byte
+  std::chrono::milliseconds request{60'000};  // reading a body and writing the answer
+  std::chrono::milliseconds pause{5000};      // between two bytes of a body or of an answer
+};
+
+}  // namespace vernier::http

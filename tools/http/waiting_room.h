@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <httplib.h>
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "tools/http/connection.h"
+#include "tools/http/types.h"
+
+namespace vernier::http {
+
+/// Answers one request. last: the connection is closed after it. False: the connection cannot be used again.
+using Answer = std::function<bool(httplib::Stream& stream, bool last)>;
+
+/// The connections of a GatedServer: one thread waits for headers, several threads answer. As the library's
+/// task queue it runs a task immediately, because a task only brings a connection (`enter`). tool.
+class WaitingRoom : public httplib::TaskQueue {
+ public:
+  WaitingRoom(const ServerLimits& limits, Answer answer);
+  ~WaitingRoom() override { shutdown(); }
+  WaitingRoom(const WaitingRoom&) = delete;
+  WaitingRoom& operator=(const WaitingRoom&) = delete;
+
+  void enqueue(std::function<void()> task) override { task(); }
+  /// Closes the connections; returns after the last handler has returned.
+  void shutdown() override;
+  /// Takes a connection that was just accepted.
+  void enter(int socket);
+
+ private:
+  using Kept = std::unique_ptr<Connection>;
+  void watch();
+  void answer_requests();
+  void wake() const;
+  void admit(std::list<Kept>& waiting);
+  void read(std::list<Kept>& waiting, std::list<Kept>::iterator one);
+  void make_room(std::list<Kept>& waiting) const;
+  void hand_over(Kept connection);
+
+  const ServerLimits limits_;
+  const Answer answer_;
+  int wake_ = -1;  // eventfd
+  std::mutex guard_;
+  std::condition_variable something_ready_;
+  std::deque<Kept> entered_, ready_;
+  std::set<int> answered_;  // sockets of the requests that are answered now
+  bool ended_ = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace vernier::http
