@@ -60,7 +60,12 @@ constexpr std::array kFigures = {"rms_before_um",
                                  "probability",
                                  "max_after_um",
                                  "check_rms_before_um",
-                                 "check_rms_after_um"};
+                                 "check_rms_after_um",
+                                 "rms_urad",
+                                 "check_rms_urad",
+                                 "noise_urad",
+                                 "rms_after_urad",
+                                 "check_rms_after_urad"};
 
 /// Throws std::logic_error naming the key. The library writes numbers that are not finite as null.
 void require_figures(const nlohmann::ordered_json& json, bool figure, const std::string& name) {

@@ -2,6 +2,7 @@
 #include "tools/commands/manners.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -107,6 +108,38 @@ std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error) 
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   const auto meant = text::word_meant(word, names);
   return meant ? "\"" + word + "\": no option of this command; did you mean " + *meant + "?" : "";
+}
+
+void require_known_dashes(const CLI::App& vernier, const std::vector<std::string>& arguments) {
+  const CLI::App* command = &vernier;
+  std::size_t at = 0;
+  for (; at < arguments.size(); ++at) {
+    const CLI::App* const next = command_named(*command, arguments[at]);
+    if (next == nullptr) break;
+    command = next;
+  }
+  const CLI::Option* before = nullptr;  // takes the next word as its value
+  for (; at < arguments.size() && arguments[at] != "--"; ++at) {
+    const std::string& word = arguments[at];
+    const bool value = before != nullptr && before->get_items_expected_max() > 0;
+    before = word.starts_with('-') ? command->get_option_no_throw(word) : nullptr;
+    if (value || before != nullptr || word.size() < 3 || word[0] != '-' ||
+        std::isalpha(static_cast<unsigned char>(word[1])) == 0)
+      continue;
+    const std::string name = word.substr(1, word.find('=') - 1);
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& known : option->get_lnames()) names.push_back(known);
+    const auto begun = std::find_if(names.begin(), names.end(),
+                                    [&](const std::string& known) { return known.starts_with(name); });
+    const auto meant = begun != names.end() ? std::optional(*begun) : text::word_meant(name, names);
+    const bool glued = command->get_option_no_throw(word.substr(0, 2)) != nullptr;  // -oFILE
+    if (!meant && glued) continue;
+    throw text::InputError("\"" + word + "\": " +
+                           (meant
+                                ? "did you mean --" + *meant + "? An option of several letters has two dashes"
+                                : "no option of this command; --help lists them"));
+  }
 }
 
 void take_plain_numbers(CLI::App& vernier) {

@@ -17,6 +17,10 @@ void require_known_commands(const CLI::App& vernier, const std::vector<std::stri
 /// text. tool.
 std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error);
 
+/// Throws InputError at a word of several letters behind one dash ("-out z.xml") that begins or resembles the
+/// name of an option; the parser reads -out as -o with the value "ut". tool.
+void require_known_dashes(const CLI::App& vernier, const std::vector<std::string>& arguments);
+
 /// Makes every option of a number accept finite decimals only, and every count only values that are not
 /// negative. The parser accepts "nan", "0x1f" and -1, and no range excludes nan. tool.
 void take_plain_numbers(CLI::App& vernier);

@@ -105,6 +105,7 @@ int run(const std::vector<std::string>& arguments) {
     return kDone;
   }
   vernier::commands::require_known_commands(app, arguments);
+  vernier::commands::require_known_dashes(app, arguments);
   app.parse_complete_callback([&] {
     vernier::commands::require_files_in_their_places(app, arguments);
     require_places(app);

@@ -256,6 +256,8 @@ class Diagnoser {
       finding.rms_after_um = fitted.fit.after.rms_um;
       finding.check_rms_before_um = base_.check.rms_um;
       finding.check_rms_after_um = fitted.fit.check.rms_um;
+      finding.rms_after_urad = fitted.fit.after.rms_urad;
+      finding.check_rms_after_urad = fitted.fit.check.rms_urad;
       if (base_.chi_square > 0) finding.share = 1 - fitted.fit.chi_square / base_.chi_square;
       finding.score = finder_.score_alone(item);
       finding.p_value = finder_.p_value(item);

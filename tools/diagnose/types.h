@@ -32,7 +32,8 @@ struct CandidateFinding {
   std::string add;
   std::optional<std::size_t> axis;  // axis that drives it, else the axis of the transform on which it acts
   std::vector<fit::ParameterEstimate> parameters;
-  std::optional<double> rms_after_um, check_rms_before_um, check_rms_after_um;
+  std::optional<double> rms_after_um, check_rms_before_um, check_rms_after_um;  // of lengths
+  std::optional<double> rms_after_urad, check_rms_after_urad;                   // of rotations
   double share = 0, p_value = 1;
   double score = 0;       // decrease of the extended BIC; above 6 is evidence
   bool accepted = false;  // is in the stepwise model

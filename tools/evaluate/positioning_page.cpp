@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "tools/format/columns.h"
@@ -49,6 +50,41 @@ Json column(const Json& targets, const char* key, std::size_t sense) {
   return values;
 }
 
+/// Mean, mean - 2 s and mean + 2 s of a direction, and its single runs: the form of the plot in the standard.
+void add_curves(Json& curves, const Json& targets, std::size_t sense, const std::string& unit) {
+  const std::string way = sense == 0 ? "forward" : "backward";
+  curves.push_back({{"name", "mean " + way},
+                    {"unit", unit},
+                    {"values", column(targets, "mean", sense)},
+                    {"colour", sense}});
+  for (const double times : {-2.0, 2.0}) {
+    Json values = Json::array();
+    for (const Json& target : targets)
+      values.push_back(target["mean"][sense].is_null() ? Json(nullptr)
+                                                       : Json(target["mean"][sense].get<double>() +
+                                                              times * target["s"][sense].get<double>()));
+    curves.push_back({{"name", "mean \u00b1 2 s " + way},
+                      {"unit", unit},
+                      {"values", values},
+                      {"colour", sense},
+                      {"style", "dashed"}});
+  }
+  std::size_t runs = 0;
+  for (const Json& target : targets) runs = std::max(runs, target["readings"][sense].size());
+  for (std::size_t run = 0; run < runs; ++run) {
+    Json values = Json::array();
+    for (const Json& target : targets) {
+      const Json& list = target["readings"][sense];
+      values.push_back(run < list.size() ? list[run] : Json(nullptr));
+    }
+    curves.push_back({{"name", "runs " + way},
+                      {"unit", unit},
+                      {"values", values},
+                      {"colour", sense},
+                      {"style", "points"}});
+  }
+}
+
 }  // namespace
 
 std::optional<double> characteristic(const PositioningResult& result, const std::string& name) {
@@ -89,8 +125,13 @@ Json positioning_json(const PositioningResult& result, const PositioningFile& fi
       {"sense", file.sense_from_order ? "from the order of the rows"
                                       : format::axis_column(format::AxisQuantity::kSense, words.axis)}};
   for (const auto& [key, value] : words.header) json["header"][key] = value;
-  for (const TargetResult& at : result.targets) {
+  for (std::size_t k = 0; k < result.targets.size(); ++k) {
+    const TargetResult& at = result.targets[k];
     Json one = {{"target", at.target}, {"n", {at.count[0], at.count[1]}}};
+    for (const std::vector<double>& list : file.readings[k].deviation) {
+      one["readings"].push_back(Json::array());
+      for (const double deviation : list) one["readings"].back().push_back(deviation * factor);
+    }
     for (std::size_t sense = 0; sense < 2; ++sense) {
       const bool there = at.count[sense] > 0;
       one["mean"].push_back(there ? Json(at.mean[sense] * factor) : Json(nullptr));
@@ -144,8 +185,15 @@ Json positioning_page(const Json& json, const PositioningWords& words) {
   const std::string position = json["position_unit"] == "mm" ? "mm" : "deg";
   Json plot = {
       {"x", {{"name", words.axis}, {"unit", position}, {"values", column(json["targets"], "target", 0)}}}};
-  plot["y"] = {{{"name", "mean forward"}, {"unit", unit}, {"values", column(json["targets"], "mean", 0)}},
-               {{"name", "mean backward"}, {"unit", unit}, {"values", column(json["targets"], "mean", 1)}}};
+  plot["y"] = Json::array();
+  for (const std::size_t sense : {0U, 1U})
+    if (std::any_of(json["targets"].begin(), json["targets"].end(),
+                    [&](const Json& target) { return !target["mean"][sense].is_null(); }))
+      add_curves(plot["y"], json["targets"], sense, unit);
+  plot["caption"] =
+      "Deviation at each target: mean of the runs (line), mean \u00b1 2 s (dashed; the envelope of A), and "
+      "each run "
+      "(point).";
   Json first = {{"title", "Positioning of axis " + words.axis + " (ISO 230-2)"}, {"numbers", tiles}};
   if (json.contains("budget")) {
     Json rows = Json::array();
@@ -169,7 +217,7 @@ Json positioning_page(const Json& json, const PositioningWords& words) {
               {{{"caption", "in " + unit},
                 {"columns", {"", "is", "value", "U (k = 2)", "tolerance", "verdict"}},
                 {"rows", table}}}}},
-            {{"title", "Mean deviations"}, {"plots", {plot}}},
+            {{"title", "Deviations"}, {"plots", {plot}}},
             {{"title", "Targets"},
              {"tables",
               {{{"caption", "position in " + position + ", all else in " + unit},

@@ -35,7 +35,7 @@ CorrectionResult correct(const model::Machine& machine, const model::States& sta
   solving.only_reachable = true;
   if (!options.with_rotary && solving.axes.empty())
     throw text::InputError({machine.file, 0}, "",
-                           "this machine has no linear axis: correct with its rotary axes");
+                           "this machine has no linear axis; correct with all its axes: --rotary");
   InverseResult solved = solve(machine, nominal, states, solving);
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     result.offset[i] = solved.states.axis[i] - states.axis[i];

@@ -314,7 +314,7 @@ class Oddities {
           "nominal is the value that the control uses, mostly 0 for an error");
     if (!item.hidden && item.nominal && item.unit == "mm" && std::abs(item.value - *item.nominal) > 50)
       findings_.warn(item.line, item.name,
-                     fmt::format("{} mm off its nominal", text::number_text(item.value - *item.nominal)),
+                     fmt::format("{:.6g} mm off its nominal", item.value - *item.nominal),
                      "µm written as mm?");
   }
 
@@ -346,8 +346,7 @@ class Oddities {
                        "µm? Axes are in mm");
     }
     if (axis.min && axis.max && axis.rotary && *axis.max - *axis.min < 7)
-      findings_.warn(axis.line, axis.name,
-                     fmt::format("turns by {} deg only", text::number_text(*axis.max - *axis.min)),
+      findings_.warn(axis.line, axis.name, fmt::format("turns by {:.6g} deg only", *axis.max - *axis.min),
                      "radians? Angles are in deg");
     if (axis.max_correction && *axis.max_correction > (axis.rotary ? 10 : 5))
       findings_.warn(axis.line, axis.name,

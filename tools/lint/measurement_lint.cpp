@@ -18,6 +18,7 @@
 #include "tools/model/chain/prediction.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
+#include "tools/model/measurement_names.h"
 #include "tools/sheet/encoding.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet.h"
@@ -244,7 +245,8 @@ class Look {
         findings_.error(table_.header_line, axis.name, "the column of this axis is missing",
                         meant && text::letters_apart(axis.name, *meant) == 0
                             ? "there is " + *meant + ": names have capitals where the machine file has them"
-                            : "");
+                            : "if the axis stood still, add its position: vernier import table FILE " +
+                                  model::set_of_axis(axis) + " -o NEW.csv");
       }
     look_for_motion();
   }

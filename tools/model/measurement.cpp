@@ -71,12 +71,26 @@ class Builder {
   }
 
   void read_axes() {
+    require_axes();
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
       const Axis& axis = machine_.axes[i];
-      reader_.require(axis.name, "the column of this axis is missing");
       result_.states.axis[i] =
           reader_.numbers(axis.name, format::dimension_of(AxisQuantity::kPosition, axis.rotary), true);
     }
+  }
+
+  /// One message for all missing axes: the file of one axis lacks all others of the machine.
+  void require_axes() const {
+    std::vector<const Axis*> missing;
+    for (const Axis& axis : machine_.axes)
+      if (!reader_.has(axis.name)) missing.push_back(&axis);
+    if (missing.empty()) return;
+    std::string set;
+    for (const Axis* const axis : missing) set += " " + set_of_axis(*axis);
+    throw text::InputError(reader_.header(), missing.front()->name,
+                           "the column of this axis is missing; if the axis stood still, add its position: "
+                           "vernier import table " +
+                               reader_.header().file + set + " -o NEW.csv");
   }
 
   /// Reads the corrections that a board added. Axis positions are the commanded ones until the

@@ -22,4 +22,9 @@ bool is_no_input_name(const Machine& machine, std::string_view name) {
   return (column != nullptr && !column->later) || is_correction(machine, name);
 }
 
+std::string set_of_axis(const Axis& axis) {
+  return "--set \"" + format::axis_heading(format::AxisQuantity::kPosition, axis.name, axis.rotary) +
+         "=POSITION\"";
+}
+
 }  // namespace vernier::model

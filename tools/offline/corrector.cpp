@@ -18,6 +18,13 @@ double CorrectionSummary::largest_um(const model::Machine& machine) const {
   return maths::kUmPerMm * std::sqrt(squares);
 }
 
+double CorrectionSummary::largest_deg(const model::Machine& machine) const {
+  double most = 0;
+  for (std::size_t i = 0; i < largest.size(); ++i)
+    if (machine.axes[i].rotary) most = std::max(most, largest[i]);
+  return most;
+}
+
 Corrector::Corrector(const model::Machine& machine, CorrectorOptions options)
     : machine_(machine), nominal_(model::nominal_machine(machine)), options_(options) {
   summary_.largest.assign(machine.axes.size(), 0);

@@ -26,6 +26,8 @@ struct CorrectionSummary {
 
   /// Returns the largest correction of the linear axes together, um.
   double largest_um(const model::Machine& machine) const;
+  /// Returns the largest correction of any rotary axis, deg.
+  double largest_deg(const model::Machine& machine) const;
 };
 
 /// Computes commands with the correction: axis positions that bring the tool of the machine with errors to

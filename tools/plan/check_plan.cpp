@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/check_plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +13,7 @@
 #include "tools/maths/median.h"
 #include "tools/model/measurement.h"
 #include "tools/plan/offered_poses.h"
+#include "tools/text/words.h"
 
 namespace vernier::plan {
 namespace {
@@ -22,6 +25,10 @@ using Eigen::VectorXd;
 constexpr std::size_t kCheckOffered = 400;  // poses from which a short check is selected
 /// Standard deviations above which a change is visible.
 constexpr double kShown = 5;
+/// Motion of the tool point by a change of 1, um, below which the motion is rounding: 5e-9 um is the last
+/// digit of a position of 20 m.
+constexpr double kRounding_um = 1e-8;
+constexpr std::size_t kNamed = 12;  // entries of a printed list
 
 /// Information of the chosen readings: sums over their rows.
 struct Told {
@@ -40,9 +47,11 @@ class CheckPlanner {
     // tool point.
     const double per_pose = options.reading_um / std::sqrt(static_cast<double>(kCheckOffered));
     moves_um_ = per_pose * all_.columns.colwise().norm();
-    for (std::size_t j = 0; j < all_.suspects.size(); ++j)
-      if (!all_.suspects[j].of_instrument && moves_um_[static_cast<Index>(j)] > 0)
-        looked_.push_back(static_cast<Index>(j));
+    for (std::size_t j = 0; j < all_.suspects.size(); ++j) {
+      if (all_.suspects[j].of_instrument) continue;
+      const auto at = static_cast<Index>(j);
+      (moves_um_[at] > kRounding_um ? looked_ : at_rest_).push_back(at);
+    }
   }
 
   CheckPlan plan() {
@@ -50,16 +59,18 @@ class CheckPlanner {
     CheckPlan plan;
     const std::vector<std::size_t> way = nearest_way(machine_, offered_, chosen);
     plan.states = model::select_states(offered_, way);
-    const VectorXd amounts = amounts_of(told_by(chosen));
+    const Told told = told_by(chosen);
+    const VectorXd amounts = amounts_of(told);
     for (const Index j : looked_) {
       const check::Suspect& suspect = all_.suspects[static_cast<std::size_t>(j)];
-      if (!seen(amounts, j)) {
+      if (!seen(told, amounts, j)) {
         plan.not_seen.push_back(suspect.name);
         continue;
       }
       const double change = kShown / std::sqrt(amounts[j]);
       plan.shows.push_back({suspect, change, change * moves_um_[j]});
     }
+    for (const Index j : at_rest_) plan.not_seen.push_back(all_.suspects[static_cast<std::size_t>(j)].name);
     std::stable_sort(plan.shows.begin(), plan.shows.end(),
                      [](const Shown& a, const Shown& b) { return a.tool_um > b.tool_um; });
     plan.random_um = random_um(chosen.size());
@@ -112,11 +123,12 @@ class CheckPlanner {
     return sum;
   }
 
-  /// A change that needs a motion of the tool of a metre or more to be visible counts as
-  /// invisible.
-  bool seen(const VectorXd& amounts, Index j) const {
-    constexpr double kMost_um = 1e6;  // a larger change means another machine
-    return amounts[j] > 0 && kShown / std::sqrt(amounts[j]) * moves_um_[j] < kMost_um;
+  /// False if nearly all information on a change is lost to the set-up and the uncertainty of the fit: the
+  /// change is the same as another set-up. A set-up counts as free down to 1e-9 of its information
+  /// (amounts_of), which a parameter then keeps.
+  bool seen(const Told& told, const VectorXd& amounts, Index j) const {
+    constexpr double kKept = 1e-6;  // between 1e-9 and 1e-3, the least that a precise fit leaves
+    return amounts[j] > kKept * told.gram(j, j);
   }
 
   std::vector<std::size_t> choose() const {
@@ -141,10 +153,11 @@ class CheckPlanner {
   }
 
   double worst_um(const std::vector<std::size_t>& poses) const {
-    const VectorXd amounts = amounts_of(told_by(poses));
+    const Told told = told_by(poses);
+    const VectorXd amounts = amounts_of(told);
     double worst = 0;
     for (const Index j : looked_)
-      if (seen(amounts, j)) worst = std::max(worst, kShown / std::sqrt(amounts[j]) * moves_um_[j]);
+      if (seen(told, amounts, j)) worst = std::max(worst, kShown / std::sqrt(amounts[j]) * moves_um_[j]);
     return worst;
   }
 
@@ -164,14 +177,39 @@ class CheckPlanner {
   model::States offered_;
   check::SuspectColumns all_;
   MatrixXd spread_;
-  VectorXd moves_um_;          // of the tool point by a change of 1, rms over the poses
-  std::vector<Index> looked_;  // tested parameters of the machine
+  VectorXd moves_um_;           // of the tool point by a change of 1, rms over the poses
+  std::vector<Index> looked_;   // tested parameters of the machine
+  std::vector<Index> at_rest_;  // of these, such that do not move the tool point
 };
 
 }  // namespace
 
 CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options) {
   return CheckPlanner(machine, options).plan();
+}
+
+std::string check_plan_text(const CheckPlan& plan, double reading_um) {
+  std::string text =
+      fmt::format("{} poses of {:g} um show from which change on:\n", plan.states.count, reading_um);
+  const std::size_t named = std::min(plan.shows.size(), kNamed);
+  for (std::size_t i = 0; i < named; ++i)
+    text += fmt::format("  {:<36} {:>10.3g} {:<4} ({:.3g} um at the tool)\n", plan.shows[i].suspect.name,
+                        plan.shows[i].change, plan.shows[i].suspect.unit, plan.shows[i].tool_um);
+  if (plan.shows.size() > named)
+    text += fmt::format("  and {} others, from {:.3g} um at the tool on\n", plan.shows.size() - named,
+                        plan.shows.back().tool_um);
+  if (!plan.not_seen.empty()) {
+    std::vector<std::string> first = plan.not_seen;
+    first.resize(std::min(first.size(), kNamed));
+    text += "not identifiable (no motion of the tool point, or the same as another set-up): " +
+            text::joined(first, ", ");
+    if (first.size() < plan.not_seen.size())
+      text += fmt::format(" and {} others", plan.not_seen.size() - first.size());
+    text += '\n';
+  }
+  const double worst = plan.shows.empty() ? 0 : plan.shows.front().tool_um;
+  return text + fmt::format("the same number of random poses gives {:.3g} um, these poses {:.3g} um\n",
+                            plan.random_um, worst);
 }
 
 std::string check_plan_csv(const model::Machine& machine, const CheckPlan& plan, double reading_um) {

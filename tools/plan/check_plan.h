@@ -24,9 +24,9 @@ struct Shown {
 
 /// A short measurement that shows the most probable changes of a fitted machine.
 struct CheckPlan {
-  model::States states;      // in the order in which they are measured
-  std::vector<Shown> shows;  // the change with the largest motion of the tool comes first
-  std::vector<std::string> not_seen;
+  model::States states;               // in the order in which they are measured
+  std::vector<Shown> shows;           // the change with the largest motion of the tool comes first
+  std::vector<std::string> not_seen;  // not identifiable: no motion of the tool, or that of another set-up
   double random_um =
       0;  // the first of `shows`, from the same number of random poses (median of several samples)
 };
@@ -38,6 +38,9 @@ struct CheckPlan {
 /// without range. tool.
 CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options = {});
 
+/// Describes for a person what the poses show: the largest changes, a count of the others, and parameters
+/// that are not identifiable.
+std::string check_plan_text(const CheckPlan& plan, double reading_um);
 /// Returns a measurement file with the poses of the plan. The readings must be filled in.
 std::string check_plan_csv(const model::Machine& machine, const CheckPlan& plan, double reading_um);
 

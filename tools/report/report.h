@@ -30,7 +30,7 @@ std::string compare_report_html(const nlohmann::ordered_json& result);
 ///   title, machine, files[], sections[{title, prose[], numbers[{label, value, unit, hint, strong}],
 ///     ladder[{label, rms_um, check_rms_um}], tables[{caption, columns[], rows[][]}], parameters[],
 ///     field: {axes[], counts[], point_mm[][3], deviation_um[][3], max_um} (arrows over a volume),
-///     plots[{x: {name, unit, values[]}, y[{name, unit, values[]}], bars, log, caption}],
+///     plots[{x: {name, unit, values[]}, y[{name, unit, values[], colour, style}], bars, log, caption}],
 ///     detail (as above), notes[]}]
 /// tool.
 std::string improvement_report_html(const nlohmann::ordered_json& result);
@@ -45,7 +45,8 @@ std::string diagnose_report_html(const nlohmann::ordered_json& result);
 
 /// Makes the page of `improve`: the error after each step. ladder[{effect, add, label, rms_um,
 /// check_rms_um}], noise_um, and all keys of the page of diagnose; simulation{rms_before_um, rms_after_um,
-/// max_after_um, ticks}; steps[{title, prose[], findings[], explanation}]. tool.
+/// max_before_um, max_after_um, ticks}; pictures[] (tools/results/detail.h: before_after_pictures);
+/// steps[{title, prose[], findings[], explanation}]. tool.
 std::string improve_report_html(const nlohmann::ordered_json& result);
 
 /// Largest number of observations of one kind that a page draws.

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "tools/maths/factors.h"
 #include "tools/results/circles.h"
@@ -226,6 +228,65 @@ void add_detail(ordered_json& result, const model::Machine& machine, const model
   detail["circular"] = circular_detail(machine, m, residual);
   add_worst(detail, m, residual);
   result["detail"] = std::move(detail);
+}
+
+namespace {
+
+constexpr std::size_t kMostPictures = 3, kMostPoints = 4000;
+constexpr double kLeastShare = 0.05;  // of the variance, from which on a column shows a pattern
+
+/// One picture: the residuals of one kind of reading against a column.
+ordered_json picture(const std::string& observation, const std::string& column, const std::string& unit,
+                     const model::Column& x, const model::Measurement& m, const Eigen::VectorXd& before,
+                     const Eigen::VectorXd& after) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < m.observations.size(); ++i)
+    if (format::name_of(m.observations[i].kind) == observation) rows.push_back(i);
+  ordered_json json = {{"observation", observation},
+                       {"unit", ""},
+                       {"column", column},
+                       {"column_unit", unit},
+                       {"x", {}},
+                       {"before", {}},
+                       {"after", {}},
+                       {"check", {}}};
+  for (std::size_t k = 0; k < rows.size(); k += 1 + rows.size() / kMostPoints) {
+    const model::Observation& o = m.observations[rows[k]];
+    const auto at = static_cast<Eigen::Index>(rows[k]);
+    json["unit"] = format::report_unit_of(o.kind);
+    json["x"].push_back(x[static_cast<Eigen::Index>(o.row)]);
+    json["before"].push_back(in_report_unit(o.kind, before[at]));
+    json["after"].push_back(in_report_unit(o.kind, after[at]));
+    json["check"].push_back(m.check[o.row]);
+  }
+  return json;
+}
+
+}  // namespace
+
+ordered_json before_after_pictures(const ordered_json& findings, const model::Machine& machine,
+                                   const model::Measurement& m, const Eigen::VectorXd& before,
+                                   const Eigen::VectorXd& after) {
+  ordered_json list = ordered_json::array();
+  std::set<std::pair<std::string, std::string>> shown;
+  const auto add = [&](const std::string& observation, const std::string& wanted) {
+    if (list.size() >= kMostPictures || !shown.emplace(observation, wanted).second) return;
+    each_column(machine, m,
+                [&](const std::string& name, const std::string& unit, const char*, const model::Column& x) {
+                  if (name == wanted) list.push_back(picture(observation, name, unit, x, m, before, after));
+                });
+  };
+  for (const ordered_json& finding : findings)
+    if (finding["column"].is_string() && finding["share_alone"].get<double>() >= kLeastShare)
+      add(finding["observation"].get<std::string>(), finding["column"].get<std::string>());
+  if (!list.empty()) return list;
+  const model::Column row =
+      model::Column::LinSpaced(static_cast<Eigen::Index>(m.rows()), 1, static_cast<double>(m.rows()));
+  std::set<std::string> kinds;
+  for (const model::Observation& o : m.observations)
+    if (list.size() < kMostPictures && kinds.insert(format::name_of(o.kind)).second)
+      list.push_back(picture(format::name_of(o.kind), "row", "", row, m, before, after));
+  return list;
 }
 
 }  // namespace vernier::results

@@ -31,4 +31,12 @@ nlohmann::ordered_json circular_detail(const model::Machine& machine, const mode
 /// Returns the ISO 230-4 numbers of every circular test among the rows (a list, empty without such tests).
 nlohmann::ordered_json circular_json(const model::Machine& machine, const model::Measurement& measurement);
 
+/// Residuals of two models against the columns of the strongest findings (findings_json): [{observation, unit
+/// (um or urad), column, column_unit, x[], before[], after[], check[]}], at most three pictures of 4000
+/// readings. Without findings against the row. `before`, `after`: one per observation, mm or deg. tool.
+nlohmann::ordered_json before_after_pictures(const nlohmann::ordered_json& findings,
+                                             const model::Machine& machine,
+                                             const model::Measurement& measurement,
+                                             const Eigen::VectorXd& before, const Eigen::VectorXd& after);
+
 }  // namespace vernier::results

@@ -53,6 +53,8 @@ Json candidate_json(const diagnose::CandidateFinding& finding, const model::Mach
   json["rms_after_um"] = text::or_null(finding.rms_after_um);
   json["check_rms_before_um"] = text::or_null(finding.check_rms_before_um);
   json["check_rms_after_um"] = text::or_null(finding.check_rms_after_um);
+  json["rms_after_urad"] = text::or_null(finding.rms_after_urad);
+  json["check_rms_after_urad"] = text::or_null(finding.check_rms_after_urad);
   json["share"] = finding.share;
   json["p_value"] = finding.p_value;
   json["score"] = finding.score;
@@ -137,6 +139,9 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
   json["rms_um"] = text::or_null(diagnosis.base.after.rms_um);
   json["check_rms_um"] = text::or_null(diagnosis.base.check.rms_um);
   json["noise_um"] = text::or_null(diagnosis.base.noise_um);
+  json["rms_urad"] = text::or_null(diagnosis.base.after.rms_urad);
+  json["check_rms_urad"] = text::or_null(diagnosis.base.check.rms_urad);
+  json["noise_urad"] = text::or_null(fit::noise_urad(measurement));
   json["noise_model"] = noise_json(diagnosis.noise, diagnosis.noise_unit);
   json["n_obs"] = diagnosis.base.before.count;
   json["n_params"] = diagnosis.base.parameters.size();

@@ -42,7 +42,9 @@ ordered_json shared(const model::Machine& machine, const model::Measurement& m,
           {"rms_urad", text::or_null(fit.rms_urad)},
           {"check_rms_urad", text::or_null(check.rms_urad)},
           {"max_urad", text::or_null(fit.max_urad)},
+          {"check_max_urad", text::or_null(check.max_urad)},
           {"noise_um", text::or_null(fit::noise_um(m))},
+          {"noise_urad", text::or_null(fit::noise_urad(m))},
           {"n_obs", observations_of_fit_rows(m)},
           {"n_check", check.count},
           {"n_params", parameters},
@@ -213,6 +215,10 @@ ordered_json stretches_json(const model::Measurement& m, const Eigen::VectorXd& 
 
 std::string number_or_dash(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.4g} {}", *value, unit) : std::string("-");
+}
+
+std::string error_or_dash(const std::optional<double>& um, const std::optional<double>& urad) {
+  return um ? number_or_dash(um, "um") : number_or_dash(urad, "urad");
 }
 
 ordered_json noise_json(const fit::NoiseModel& noise, const fit::NoiseUnit& unit) {

@@ -32,5 +32,7 @@ nlohmann::ordered_json noise_json(const fit::NoiseModel& noise, const fit::Noise
 
 /// A number for people: four significant digits, "-" without a value.
 std::string number_or_dash(const std::optional<double>& value, const char* unit);
+/// An error for people: of the lengths in um, of a measurement of angles alone in urad, "-" without a value.
+std::string error_or_dash(const std::optional<double>& um, const std::optional<double>& urad);
 
 }  // namespace vernier::results

@@ -91,16 +91,6 @@ bool is_numeric(const std::string& cell, const Sheet& sheet) {
   return plain_number(cell, sheet.decimal_comma).has_value();
 }
 
-/// A row of data: as many numbers as words, and at least one. Dates are neither.
-bool is_data(const Sheet& sheet, std::size_t row) {
-  std::size_t numbers = 0, filled = 0;
-  for (const std::string& cell : sheet.rows[row]) {
-    filled += cell.empty() || is_date(cell) ? 0 : 1;
-    numbers += !cell.empty() && is_numeric(cell, sheet) ? 1 : 0;
-  }
-  return numbers > 0 && 2 * numbers >= filled && (numbers > 1 || filled == 1 || sheet.rows[row].size() <= 2);
-}
-
 /// A row that contains only units, at least two of them (or all of a narrow table).
 bool is_units(const std::vector<std::string>& row) {
   std::size_t units = 0;
@@ -156,6 +146,15 @@ Heading heading_of_two(const std::string& upper, const std::string& lower) {
 }
 
 }  // namespace
+
+bool is_row_of_data(const Sheet& sheet, std::size_t row) {
+  std::size_t numbers = 0, filled = 0;
+  for (const std::string& cell : sheet.rows[row]) {
+    filled += cell.empty() || is_date(cell) ? 0 : 1;
+    numbers += !cell.empty() && is_numeric(cell, sheet) ? 1 : 0;
+  }
+  return numbers > 0 && 2 * numbers >= filled && (numbers > 1 || filled == 1 || sheet.rows[row].size() <= 2);
+}
 
 std::optional<std::string> unit_meant(std::string_view word) {
   const std::string bare = without_brackets(format::usual_spelling(word));
@@ -214,9 +213,13 @@ Heading parse_heading(std::string_view cell) {
 SheetTable parts_of_sheet(const Sheet& sheet) {
   SheetTable table;
   std::size_t first = 0;
-  while (first < sheet.rows.size() && !is_data(sheet, first)) ++first;
+  while (first < sheet.rows.size() && !is_row_of_data(sheet, first)) ++first;
   if (first == sheet.rows.size())
-    throw text::InputError({sheet.file, sheet.line.front()}, "", "no row of this table contains numbers");
+    throw text::InputError(
+        {sheet.file, sheet.line.front()}, "",
+        "no row of this table contains numbers" +
+            (sheet.sheets.size() > 1 ? "; choose the sheet with --sheet: " + text::joined(sheet.sheets, ", ")
+                                     : ""));
   table.first_data = first;
   std::size_t heading = first;
   if (heading > 0 && is_units(sheet.rows[heading - 1])) table.units_row = --heading;

@@ -32,6 +32,9 @@ struct SheetTable {
   std::optional<std::size_t> upper_row;  // of headings in two lines the first
 };
 
+/// A row of data: as many numbers as words, and at least one. Dates are neither.
+bool is_row_of_data(const Sheet& sheet, std::size_t row);
+
 /// Finds the parts: the first row that is mostly numbers begins the data. Throws InputError if no row does.
 /// tool.
 SheetTable parts_of_sheet(const Sheet& sheet);

@@ -18,15 +18,6 @@ struct Line {
   std::size_t number = 0;
 };
 
-/// True if a line begins with the text that a spreadsheet writes for a failed formula, in English or German.
-/// It is a row.
-bool begins_with_error_value(const std::string& line) {
-  for (const char* word : {"#REF!", "#N/A", "#DIV/0!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!", "#NV",
-                           "#BEZUG!", "#WERT!", "#ZAHL!"})
-    if (line.starts_with(word)) return true;
-  return false;
-}
-
 std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std::string& comment) {
   std::vector<Line> lines;
   std::size_t number = 0;
@@ -109,15 +100,45 @@ void make_even(Sheet& sheet) {
   for (auto& row : sheet.rows) row.resize(width);
 }
 
+/// Cells of a line of aligned text, with at least two blanks or a tab between them: headings may have words.
+std::vector<std::string> aligned_cells(const std::string& line) {
+  std::vector<std::string> cells;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t end = std::min({line.find("  ", at), line.find('\t', at), line.size()});
+    if (std::string cell = text::trimmed(line.substr(at, end - at)); !cell.empty())
+      cells.push_back(std::move(cell));
+    at = std::max(end, at + 1);
+    while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
+  }
+  return cells;
+}
+
+/// The most frequent number of cells in a line.
+std::size_t usual_width(const std::vector<std::vector<std::string>>& rows) {
+  std::map<std::size_t, std::size_t> count;
+  for (const auto& row : rows) ++count[row.size()];
+  const auto most = std::max_element(count.begin(), count.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == count.end() ? 0 : most->first;
+}
+
 void split(Sheet& sheet, const std::vector<Line>& lines) {
+  std::vector<std::vector<std::string>> rows;
   for (const Line& line : lines) {
-    std::vector<std::string> cells =
-        text::fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number});
-    if (cells.size() > kMostColumns)
+    rows.push_back(text::fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number}));
+    if (rows.back().size() > kMostColumns)
       throw text::InputError({sheet.file, line.number}, "",
-                             std::to_string(cells.size()) + " columns separated by " +
+                             std::to_string(rows.back().size()) + " columns separated by " +
                                  separator_word(sheet.separator) + ": a sheet has at most " +
                                  std::to_string(kMostColumns) + "; split the file, or give the separator");
+  }
+  const std::size_t width = usual_width(rows);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Line& line = lines[i];
+    std::vector<std::string>& cells = rows[i];
+    if (sheet.separator == ' ' && cells.size() > width)
+      if (std::vector<std::string> aligned = aligned_cells(line.text); aligned.size() <= width)
+        cells = std::move(aligned);
     if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
       continue;
     sheet.rows.push_back(std::move(cells));
@@ -168,7 +189,52 @@ void guess_decimal(Sheet& sheet) {
   if (sheet.separator == ',' && comma == 0) sheet.decimal_comma = false;
 }
 
+/// The decimal sign of the cells that are text. The numbers of a workbook have none; they get the same sign,
+/// so that one rule reads all cells.
+void settle_decimal(Sheet& sheet, const std::vector<std::vector<char>>& is_number,
+                    std::optional<bool> decimal_comma) {
+  Sheet texts = sheet;
+  const auto each_number = [&](Sheet& of, const auto& change) {
+    for (std::size_t row = 0; row < is_number.size(); ++row)
+      for (std::size_t k = 0; k < is_number[row].size(); ++k)
+        if (is_number[row][k] != 0) change(of.rows[row][k]);
+  };
+  each_number(texts, [](std::string& cell) { cell.clear(); });
+  texts.separator = '\0';  // no comma separates the cells
+  if (!decimal_comma) guess_decimal(texts);
+  sheet.decimal_comma = decimal_comma.value_or(texts.decimal_comma);
+  sheet.decimal_doubtful = !decimal_comma && texts.decimal_doubtful;
+  if (sheet.decimal_comma)
+    each_number(sheet, [](std::string& cell) { std::replace(cell.begin(), cell.end(), '.', ','); });
+}
+
+void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetFormat& format) {
+  WorkbookSheet read = read_workbook(bytes, sheet.file, format.sheet);
+  sheet.workbook = true;
+  sheet.sheet = read.name;
+  sheet.sheets = std::move(read.all);
+  std::vector<std::vector<char>> is_number;
+  for (std::size_t i = 0; i < read.rows.size(); ++i) {
+    if (read.line[i] <= format.skip) continue;
+    if (!format.comment.empty() && read.rows[i].front().starts_with(format.comment) &&
+        !begins_with_error_value(read.rows[i].front()))
+      continue;
+    sheet.rows.push_back(std::move(read.rows[i]));
+    sheet.line.push_back(read.line[i]);
+    is_number.push_back(std::move(read.is_number[i]));
+  }
+  make_even(sheet);
+  settle_decimal(sheet, is_number, format.decimal_comma);
+}
+
 }  // namespace
+
+bool begins_with_error_value(const std::string& line) {
+  for (const char* word : {"#REF!", "#N/A", "#DIV/0!", "#VALUE!", "#NAME?", "#NUM!", "#NULL!", "#NV",
+                           "#BEZUG!", "#WERT!", "#ZAHL!"})
+    if (line.starts_with(word)) return true;
+  return false;
+}
 
 bool is_workbook(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"); }
 
@@ -199,20 +265,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
   if (bytes.starts_with("\xD0\xCF\x11\xE0"))
     throw text::InputError({file, 0}, "", "a workbook of the old kind (.xls): save it as .xlsx or as CSV");
   if (is_workbook(bytes)) {
-    WorkbookSheet read = read_workbook(bytes, file, format.sheet);
-    sheet.workbook = true;
-    sheet.sheet = read.name;
-    for (std::size_t i = 0; i < read.rows.size(); ++i) {
-      if (read.line[i] <= format.skip) continue;
-      if (!format.comment.empty() && read.rows[i].front().starts_with(format.comment) &&
-          !begins_with_error_value(read.rows[i].front()))
-        continue;
-      sheet.rows.push_back(std::move(read.rows[i]));
-      sheet.line.push_back(read.line[i]);
-    }
-    make_even(sheet);
-    // Its numbers are numbers; only cells that are text may have a decimal comma.
-    sheet.decimal_comma = format.decimal_comma.value_or(false);
+    read_from_workbook(sheet, bytes, format);
   } else {
     sheet.encoding = encoding_of(bytes);
     const std::string text = utf8_of(bytes, sheet.encoding);

@@ -15,14 +15,16 @@ struct SheetFormat {
   std::optional<bool> decimal_comma;  // guessed where absent
   std::size_t skip = 0;               // lines at the top that are no table
   std::string comment = "#";          // lines that begin with it are skipped; empty: no such lines
+  std::optional<std::size_t> table;   // of several tables below each other, from 1 (keep_table)
   std::string sheet;                  // of a workbook, by name or number; empty: the first with rows
 };
 
 /// The cells of a table, and the settings with which the table was read.
 struct Sheet {
   std::string file;
-  bool workbook = false;  // xlsx
-  std::string sheet;      // its name in the workbook
+  bool workbook = false;            // xlsx
+  std::string sheet;                // its name in the workbook
+  std::vector<std::string> sheets;  // names of all of the workbook
   Encoding encoding = Encoding::kUtf8;
   char separator = ',';
   bool decimal_comma = false;
@@ -30,6 +32,10 @@ struct Sheet {
   std::vector<std::vector<std::string>> rows;  // cells without blanks around them; as many in each
   std::vector<std::size_t> line;               // 1-based, of each row
 };
+
+/// True if a line begins with the text that a spreadsheet writes for a failed formula, in English or German.
+/// It is a row.
+bool begins_with_error_value(const std::string& line);
 
 /// True if the first bytes are those of a workbook (a zip with a sheet).
 bool is_workbook(std::string_view bytes);

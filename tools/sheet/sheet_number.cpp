@@ -33,9 +33,11 @@ bool take_thousands(std::string& text, char sign) {
   std::size_t start = 0;
   while (start < text.size() && !is_digit(text[start])) ++start;
   if (first <= start || first - start > 3 || text[start] == '0') return false;
-  for (std::size_t at = first; at < text.size() && text[at] == sign; at += 4)
+  std::size_t at = first;
+  for (; at < text.size() && text[at] == sign; at += 4)
     for (std::size_t k = 1; k <= 3; ++k)
       if (at + k >= text.size() || !is_digit(text[at + k])) return false;
+  if (at < text.size() && is_digit(text[at])) return false;  // a group of four: 100,5045
   text.erase(std::remove(text.begin(), text.end(), sign), text.end());
   return true;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <zip.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -98,22 +99,34 @@ class Reader {
   }
 
   WorkbookSheet read(const std::string& wanted) {
-    std::string names;
+    std::vector<std::string> names;
+    std::optional<WorkbookSheet> found;
     std::size_t number = 0;
     for (const pugi::xml_node entry : child(workbook_.document_element(), "sheets").children()) {
-      const std::string name = entry.attribute("name").value();
-      names += (names.empty() ? "" : ", ") + name;
+      names.emplace_back(entry.attribute("name").value());
       ++number;
-      if (!wanted.empty() && wanted != name && wanted != std::to_string(number)) continue;
+      if (found && (!wanted.empty() || is_table(*found))) continue;
+      if (!wanted.empty() && wanted != names.back() && wanted != std::to_string(number)) continue;
       WorkbookSheet sheet = cells_of(entry);
-      if (!wanted.empty() || !sheet.rows.empty()) return sheet;
+      if (!wanted.empty() || is_table(sheet) || (!found && !sheet.rows.empty())) found = std::move(sheet);
+    }
+    if (found) {
+      found->all = std::move(names);
+      return std::move(*found);
     }
     if (wanted.empty()) throw text::InputError({file_, 0}, "", "no sheet of this workbook contains a cell");
-    throw text::InputError({file_, 0}, wanted,
-                           "the workbook has no sheet of this name; its sheets are " + names);
+    throw text::InputError(
+        {file_, 0}, wanted,
+        "the workbook has no sheet of this name; its sheets are " + text::joined(names, ", "));
   }
 
  private:
+  /// Two rows with two numbers each: a cover sheet has a serial number and a date.
+  static bool is_table(const WorkbookSheet& sheet) {
+    return std::count_if(sheet.is_number.begin(), sheet.is_number.end(), [](const std::vector<char>& row) {
+             return std::count(row.begin(), row.end(), 1) >= 2;
+           }) >= 2;
+  }
   void load(pugi::xml_document& document, const std::string& text, const std::string& name) const {
     const auto result =
         document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_ws_pcdata);
@@ -161,7 +174,7 @@ class Reader {
   }
 
   WorkbookSheet cells_of(const pugi::xml_node& entry) const {
-    WorkbookSheet sheet{entry.attribute("name").value(), {}, {}};
+    WorkbookSheet sheet{entry.attribute("name").value(), {}, {}, {}, {}};
     pugi::xml_document document;
     read_part(part_of(entry), document);
     std::size_t row_number = 0, filled = 0, empty = 0;
@@ -170,6 +183,7 @@ class Reader {
       if (row_number > kMostRows)
         throw text::InputError({file_, 0}, sheet.name, "a row beyond the last of the format");
       std::vector<std::string> cells;
+      std::vector<char> numbers;
       bool any = false;
       for (const pugi::xml_node cell : row.children()) {
         const std::size_t column = column_of(cell, cells.size());
@@ -183,13 +197,16 @@ class Reader {
             throw text::InputError({file_, row_number}, cell.attribute("r").value(),
                                    "nearly all cells up to here are empty: the sheet contains no table");
           cells.resize(column + 1);
+          numbers.resize(column + 1);
         }
         ++filled;
         cells[column] = value;
+        numbers[column] = is_number(cell) ? 1 : 0;
         any = true;
       }
       if (!any) continue;
       sheet.rows.push_back(std::move(cells));
+      sheet.is_number.push_back(std::move(numbers));
       sheet.line.push_back(row_number);
     }
     return sheet;
@@ -206,6 +223,11 @@ class Reader {
     return column == 0 ? next : column - 1;
   }
 
+  static bool is_number(const pugi::xml_node& cell) {
+    const std::string_view type = cell.attribute("t").value();
+    return type.empty() || type == "n";
+  }
+
   std::string value_of(const pugi::xml_node& cell, std::size_t row) const {
     const std::string_view type = cell.attribute("t").value();
     if (type == "inlineStr") return text_of(child(cell, "is"));
@@ -218,7 +240,7 @@ class Reader {
     }
     // Stored with 17 digits, but shown with the 15 digits of a spreadsheet: 200.00509999999997 is
     // 200.0051.
-    const auto number = type.empty() || type == "n" ? text::parse_number(value) : std::nullopt;
+    const auto number = is_number(cell) ? text::parse_number(value) : std::nullopt;
     if (number && shows_date(cell)) return date_text(*number, from_1904_);
     return number ? text::number_text(*text::parse_number(fmt::format("{:.15g}", *number))) : value;
   }

@@ -14,11 +14,14 @@ struct WorkbookSheet {
   std::string name;
   std::vector<std::vector<std::string>> rows;  // of different lengths; empty cells are empty
   std::vector<std::size_t> line;               // row number in the sheet
+  std::vector<std::vector<char>> is_number;    // of each cell: stored as a number, not as text
+  std::vector<std::string> all;                // names of all sheets of the workbook
 };
 
-/// Reads the sheet with this name or number (from 1). Empty: the first sheet that contains cells. Throws
-/// InputError: not a workbook, a sheet that does not exist (the error lists the sheets), a part of more than
-/// 256 MB. tool.
+/// Reads the sheet with this name or number (from 1). Empty: the first sheet with two rows of two numbers,
+/// not a cover sheet; in a workbook without such a sheet the first that contains cells. Throws InputError:
+/// not a workbook, a sheet that does not exist (the error lists the sheets), a part of more than 256 MB.
+/// tool.
 WorkbookSheet read_workbook(const std::string& bytes, const std::string& file, const std::string& sheet);
 
 }  // namespace vernier::sheet

@@ -6,9 +6,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "tools/kinematics/inverse.h"
+#include "tools/maths/decompositions.h"
+#include "tools/model/chain/chain.h"
 #include "tools/text/error.h"
 
 namespace vernier::tolerance {
@@ -17,9 +20,10 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-/// Points of a feature: on each circle, circles of a cylinder, points along an edge of a plane. Twelve points
-/// determine the first three harmonics of a circle, five a curve of fourth degree.
-constexpr int kOnCircle = 12, kCircles = 3, kOnEdge = 5;
+/// Least and largest number of points on a circle. Twelve points determine the first three harmonics.
+constexpr std::size_t kLeastOnCircle = 12, kMostOnCircle = 384;
+/// Circles of a cylinder, points along an edge of a plane. Five points determine a curve of fourth degree.
+constexpr int kCircles = 3, kOnEdge = 5;
 
 struct SurfaceSample {
   Vector3d point, direction;
@@ -32,7 +36,7 @@ std::array<Vector3d, 2> across(const Vector3d& axis) {
   return {first, axis.cross(first)};
 }
 
-std::vector<SurfaceSample> samples_of(const PartFeature& feature) {
+std::vector<SurfaceSample> samples_of(const PartFeature& feature, std::size_t on_circle) {
   std::vector<SurfaceSample> samples;
   if (feature.kind == PartFeatureKind::kPoint) return {{feature.at, feature.direction}};
   const auto [u, v] = across(feature.direction);
@@ -48,9 +52,9 @@ std::vector<SurfaceSample> samples_of(const PartFeature& feature) {
   }
   const int circles = feature.length_mm > 0 ? kCircles : 1;
   for (int circle = 0; circle < circles; ++circle)
-    for (int k = 0; k < kOnCircle; ++k) {
+    for (std::size_t k = 0; k < on_circle; ++k) {
       const double height = circles > 1 ? circle / (circles - 1.0) - 0.5 : 0;
-      const double angle = 2 * std::numbers::pi * k / kOnCircle;
+      const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(on_circle);
       const Vector3d out = std::cos(angle) * u + std::sin(angle) * v;
       samples.push_back(
           {feature.at + height * feature.length_mm * feature.direction + 0.5 * feature.diameter_mm * out,
@@ -141,7 +145,68 @@ void set_senses(const model::Machine& machine, std::size_t first, std::size_t co
   }
 }
 
+Eigen::Matrix3Xd directions_of(const std::vector<SurfaceSample>& samples) {
+  Eigen::Matrix3Xd direction(3, static_cast<Index>(samples.size()));
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    direction.col(static_cast<Index>(i)) = samples[i].direction;
+  return direction;
+}
+
+/// Size and form of the error of the fitted machine on these points.
+struct CircleError {
+  double size = 0, form = 0;
+};
+
+CircleError circle_error(const model::Machine& machine, const model::States& states,
+                         const Eigen::Matrix3Xd& direction) {
+  const Eigen::Matrix3Xd error = model::forward(machine, states).position -
+                                 model::forward(model::nominal_machine(machine), states).position;
+  Eigen::VectorXd outward = error.cwiseProduct(direction).colwise().sum().transpose();
+  const double mean = outward.mean();
+  // The shift of the middle is no form. Its direction along the axis is not in `direction`.
+  Eigen::MatrixXd design(direction.cols(), 4);
+  design << direction.transpose(), Eigen::VectorXd::Ones(direction.cols());
+  outward -= design * maths::least_norm(design, outward);
+  return {2 * mean, outward.maxCoeff() - outward.minCoeff()};
+}
+
+/// Points on the circles of a feature; 0 for one without circles.
+std::size_t on_circle_of(const model::Machine& machine, const PointSolver& solver, const PartFeature& feature,
+                         const model::States& start) {
+  if (feature.kind != PartFeatureKind::kCylinder) return 0;
+  return points_on_circle(machine, [&](std::size_t count) {
+    const std::vector<SurfaceSample> samples = samples_of(feature, count);
+    model::States states = solver.solve_all(feature, samples, start);
+    set_senses(machine, 0, samples.size(), states);
+    return std::pair(std::move(states), directions_of(samples));
+  });
+}
+
 }  // namespace
+
+std::size_t points_on_circle(
+    const model::Machine& machine,
+    const std::function<std::pair<model::States, Eigen::Matrix3Xd>(std::size_t)>& placed) {
+  constexpr double kAgree_mm = 5e-5,
+                   kShare = 0.02;  // 0.05 um: below the resolution of a roundness instrument
+  std::map<std::size_t, CircleError> known;
+  const auto error = [&](std::size_t count) {
+    if (const auto found = known.find(count); found != known.end()) return found->second;
+    const auto [states, direction] = placed(count);
+    return known[count] = circle_error(machine, states, direction);
+  };
+  std::size_t count = kLeastOnCircle;
+  for (; 2 * count <= kMostOnCircle; count *= 2) {
+    const CircleError few = error(count), twice = error(2 * count + 1),
+                      thrice = error(3 * count + 1);  // no angle but the first is the same
+    const double agree = std::max(kAgree_mm, kShare * thrice.form);
+    const auto far = [&](const CircleError& one) {
+      return std::abs(one.size - few.size) > agree || std::abs(one.form - few.form) > agree;
+    };
+    if (!far(twice) && !far(thrice)) break;
+  }
+  return count;
+}
 
 PlacedPart place_part(const model::Machine& machine, const PartDrawing& part, const model::States& at) {
   PlacedPart placed;
@@ -150,11 +215,9 @@ PlacedPart place_part(const model::Machine& machine, const PartDrawing& part, co
   std::vector<model::States> parts;
   std::size_t count = 0;
   for (const PartFeature& feature : part.features) {
-    const std::vector<SurfaceSample> samples = samples_of(feature);
-    PlacedFeature one{feature, count, samples.size(), {}};
-    one.direction.resize(3, static_cast<Index>(samples.size()));
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      one.direction.col(static_cast<Index>(i)) = samples[i].direction;
+    const std::vector<SurfaceSample> samples =
+        samples_of(feature, on_circle_of(machine, solver, feature, start));
+    PlacedFeature one{feature, count, samples.size(), directions_of(samples)};
     parts.push_back(solver.solve_all(feature, samples, start));
     count += samples.size();
     placed.features.push_back(std::move(one));

@@ -19,8 +19,8 @@ namespace {
 
 using Eigen::Index;
 
-/// Evaluated points per stretch of a path, and their largest total; number of points on a circle.
-constexpr std::size_t kOnStretch = 12, kMostOfPath = 400, kOnWhole = 24;
+/// Evaluated points per stretch of a path, and their largest total.
+constexpr std::size_t kOnStretch = 12, kMostOfPath = 400;
 
 /// Moves that form one feature.
 struct ProgramCut {
@@ -49,8 +49,8 @@ class CutCollector {
     cut.stretches.push_back(stretch.states);
   }
 
-  /// Returns all stretches of a cut together, with points evenly along the path.
-  model::States points_of(const ProgramCut& cut, const model::Machine& nominal) const {
+  /// Returns all stretches of a cut together, with points evenly along the path, on a circle `on_circle`.
+  model::States points_of(const ProgramCut& cut, const model::Machine& nominal, std::size_t on_circle) const {
     std::vector<std::pair<const model::States*, std::size_t>> all;
     std::vector<double> way;
     Eigen::Vector3d last = Eigen::Vector3d::Zero();
@@ -65,7 +65,7 @@ class CutCollector {
     }
     // The last point of a circle is its first point.
     const std::size_t count =
-        cut.circle ? kOnWhole
+        cut.circle ? on_circle
                    : std::min(kMostOfPath, std::max<std::size_t>(2, kOnStretch * cut.stretches.size()));
     const double steps = static_cast<double>(cut.circle ? count : count - 1);
     model::States picked = model::select_states(cut.stretches.front(), std::vector<std::size_t>(count, 0));
@@ -138,13 +138,20 @@ PlacedPart program_part(const model::Machine& machine, const std::string& text, 
   offline::corrected_program(text, file, at, known, reading, corrector);
   if (collector.cuts.empty()) throw text::InputError({file, 0}, file, "no cutting move (G1, G2, G3)");
   PlacedPart part;
+  part.program = true;
   std::vector<model::States> all;
   std::size_t count = 0;
   const model::Machine nominal = model::nominal_machine(machine);
   for (const ProgramCut& cut : collector.cuts) {
-    const model::States states = collector.points_of(cut, nominal);
-    const Eigen::Matrix3Xd points = model::forward(nominal, states).position;
     PlacedFeature one;
+    const auto circle = [&](std::size_t on_circle) {
+      model::States states = collector.points_of(cut, nominal, on_circle);
+      make_circle(model::forward(nominal, states).position, one.feature, one.direction);
+      return std::pair(std::move(states), one.direction);
+    };
+    const model::States states =
+        collector.points_of(cut, nominal, cut.circle ? points_on_circle(machine, circle) : 0);
+    const Eigen::Matrix3Xd points = model::forward(nominal, states).position;
     one.first = count;
     one.count = states.count;
     one.feature.kind = cut.circle ? PartFeatureKind::kCylinder : PartFeatureKind::kPath;

@@ -56,6 +56,97 @@ TEST_F(Manners, MistypedCommandIsNamedWithTheOneMeant) {
   EXPECT_TRUE(said("\"--outptu\": no option of this command; did you mean --output?")) << said_;
 }
 
+TEST_F(Manners, WordBehindOneDashIsNamedWithTheOneMeant) {
+  EXPECT_EQ(run("vernier fit m.xml rows.csv -out z.xml"), 1);
+  EXPECT_TRUE(said("\"-out\": did you mean --output?")) << said_;
+  EXPECT_EQ(run("vernier fit m.xml rows.csv -jsn=r.json"), 1);
+  EXPECT_TRUE(said("\"-jsn=r.json\": did you mean --json?")) << said_;
+  EXPECT_EQ(run("vernier import table sheet.csv -decimal comma -o a.csv"), 1);
+  EXPECT_TRUE(said("\"-decimal\": did you mean --decimal?")) << said_;
+  EXPECT_EQ(run("vernier fit m.xml rows.csv -qqq"), 1);
+  EXPECT_TRUE(said("\"-qqq\": no option of this command; --help lists them")) << said_;
+  EXPECT_EQ(run("vernier import table sheet.csv -oread.csv --set -note=a"), 1);  // a value of --set
+  EXPECT_FALSE(said("did you mean")) << said_;
+  EXPECT_EQ(run("vernier import table sheet.csv -oread.csv"), 0) << said_;
+  EXPECT_TRUE(fs::exists(folder_ + "/read.csv"));
+}
+
+TEST_F(Manners, AxisThatStoodStillIsAddedAsTheMessageTells) {
+  write_file(folder_ + "/one.csv", "X[mm],x[mm]\n0,0\n100,100.01\n300,300.02\n");
+  EXPECT_EQ(run("vernier fit m.xml one.csv -o f.xml"), 1);
+  ASSERT_TRUE(said("vernier import table one.csv --set \"Q[mm]=POSITION\" -o NEW.csv")) << said_;
+  EXPECT_EQ(
+      run("vernier import table one.csv --set \"Q[mm]=7\" -o NEW.csv && vernier fit m.xml NEW.csv -o f.xml"),
+      0)
+      << said_;
+}
+
+TEST_F(Manners, CheckStatesItsVerdictAndTheFileThatItDoesNotWrite) {
+  write_file(
+      folder_ + "/c.xml",
+      "<machine><variables><static><k value=\"0\" nominal=\"0\" unit=\"um/m\"/><BaseShift X=\"0\" Y=\"0\" "
+      "Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/></static><machineaxes><X min=\"0\" max=\"600\"/></machineaxes>"
+      "</variables><transforms><sixdof X=\"X+k*X/1000000\"/></transforms></machine>");
+  for (const auto& [name, reversal_mm] : {std::pair{"a.csv", 0.0}, {"b.csv", 0.0}, {"gap.csv", 0.04}}) {
+    std::string rows = "X[mm],dirX,x[mm],u[um]\n";
+    for (int i = 0; i < 40; ++i)  // readings scattered by 1 um, in a fixed order
+      rows += std::to_string(15 * i) + (i % 4 < 2 ? ",1," : ",-1,") +
+              std::to_string(15 * i + (i % 4 < 2 ? 0 : reversal_mm) + 0.001 * ((7 * i) % 5 - 2)) + ",1.4\n";
+    write_file(folder_ + "/" + name, rows);
+  }
+  ASSERT_EQ(run("vernier fit c.xml a.csv -o f.xml"), 0) << said_;
+  EXPECT_EQ(run("vernier check f.xml b.csv -o right.xml"), 0);
+  EXPECT_TRUE(said("verdict: valid") && said("right.xml is not written: no parameter of the machine changed"))
+      << said_;
+  EXPECT_EQ(run("vernier check f.xml gap.csv -o right.xml"), 2);
+  EXPECT_TRUE(said("verdict: changed. ") &&
+              said("vernier: verdict changed, but no machine file is written: ") &&
+              said("is no free parameter of f.xml; diagnose a longer measurement, and fit"))
+      << said_;
+  EXPECT_FALSE(fs::exists(folder_ + "/right.xml"));
+}
+
+TEST_F(Manners, RecordsInAnglesOnlyHaveFiguresInAngles) {
+  write_file(folder_ + "/a.xml",
+             "<machine><variables><static><BaseShift X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" "
+             "rZ=\"0\"/></static><machineaxes><X min=\"0\" max=\"600\"/></machineaxes></variables>"
+             "<transforms><sixdof X=\"X\"/></transforms></machine>");
+  std::string rows = "X[mm],ry[arcsec],u[arcsec],role\n";
+  for (int i = 0; i < 60; ++i)  // pitch of 8 arcsec, readings scattered by 0.3, in a fixed order
+    rows += std::to_string(10 * i) + "," +
+            std::to_string(8e-6 * (10 * i - 300) * (10 * i - 300) + 0.2 * ((7 * i) % 5 - 2)) + ",0.3," +
+            (i % 4 == 3 ? "check" : "fit") + "\n";
+  write_file(folder_ + "/a.csv", rows);
+  EXPECT_EQ(run("vernier improve a.xml a.csv -o out --yes --json r.json"), 0) << said_;
+  EXPECT_TRUE(said("the model as given, fitted: fit rows ") && said("urad") && !said("rows -")) << said_;
+  const std::string json = read_file(folder_ + "/r.json");
+  for (const char* key : {"rms_before_urad", "rms_urad", "check_rms_urad", "noise_urad"})
+    EXPECT_EQ(json.find(std::string("\"") + key + "\": null"), std::string::npos) << key;
+  for (const char* command : {"fit a.xml a.csv -o f.xml", "compare a.xml a.csv", "diagnose a.xml a.csv"}) {
+    EXPECT_EQ(run(std::string("vernier ") + command), 0) << said_;
+    EXPECT_FALSE(said("rows    -") || said("noise           -") || said(" -            -")) << said_;
+  }
+}
+
+TEST_F(Manners, FitOfFewReadingsIsReadAgain) {
+  // Fewer readings than parameters: nothing is left over that shows a noise.
+  ASSERT_EQ(run("vernier new gantry --axis X:0:1200 --axis Y:0:800 --axis Z:-150:0 -o g.xml"), 0) << said_;
+  write_file(folder_ + "/g.csv",
+             "X[mm],Y[mm],Z[mm],x[mm],u[um]\n0,400,-50,0.001,0.5\n300,400,-50,300.004,0.5\n"
+             "600,400,-50,600.009,0.5\n900,400,-50,900.011,0.5\n");
+  ASSERT_EQ(run("vernier fit g.xml g.csv -o gf.xml"), 0) << said_;
+  EXPECT_EQ(run("vernier compare gf.xml g.csv"), 0) << said_;
+}
+
+TEST_F(Manners, RobotIsCorrectedAsTheMessageTells) {
+  ASSERT_EQ(run("vernier new robot -o r.xml && vernier set r.xml th1=0.01 -o e.xml"), 0) << said_;
+  write_file(folder_ + "/p.csv", "J1[deg],J2[deg],J3[deg],J4[deg],J5[deg],J6[deg]\n10,-80,80,10,80,10\n");
+  EXPECT_EQ(run("vernier correct e.xml p.csv -o c.csv"), 1);
+  EXPECT_TRUE(said("no linear axis; correct with all its axes: --rotary")) << said_;
+  EXPECT_EQ(run("vernier correct e.xml p.csv -o c.csv --rotary"), 0);
+  EXPECT_TRUE(said("corrections up to 0.01 deg;")) << said_;
+}
+
 TEST_F(Manners, NumbersOfOptionsAreFiniteDecimalsAndCountsCount) {
   for (const char* line :
        {"vernier correct m.xml rows.csv -o c.csv --deviation nan",
@@ -127,7 +218,8 @@ TEST_F(Manners, ImportThatFailsSaysWhatItUnderstood) {
   write_file(folder_ + "/odd.csv", "Soll;Ist\n0;0,1\n5;5,1\n");
   EXPECT_EQ(run("vernier import table odd.csv -o odd_read.csv"), 1);
   EXPECT_TRUE(said("columns separated by semicolon, decimal comma") &&
-              said("nothing measured among the columns"))
+              said("nothing measured among the columns") &&
+              said("--column \"X[mm]=Soll\" --column \"x[mm]=Ist\" for a measured position"))
       << said_;
   EXPECT_FALSE(said("this command reads it")) << said_;
   EXPECT_EQ(run("vernier import table odd.csv -o odd_read.csv --column 'X[mm]=Soll' --column 'x[mm]=Ist'"), 0)

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -211,6 +212,33 @@ TEST(EvaluateCommand, WritesNumbersReportAndVerdict) {
   EXPECT_EQ(WEXITSTATUS(status), 2);
   EXPECT_NE(read_file(folder + "/out.txt").find("A cannot be tested"), std::string::npos);
   fs::remove_all(folder);
+}
+
+TEST(PositioningPage, EnvelopeOfTheMeansIsTheAccuracyAndEveryRunIsAPoint) {
+  const PositioningFile file = read_positioning(read_file(kData), kData, "X", "x");
+  PositioningWords words;
+  words.axis = "X";
+  const auto json = positioning_json(evaluate_positioning(file.readings), file, words);
+  double low = 1e9, high = -1e9;
+  std::size_t points = 0, dashed = 0;
+  const auto page = positioning_page(json, words);
+  for (const auto& section : page["sections"])
+    if (section.contains("plots"))
+      for (const auto& curve : section["plots"][0]["y"]) {
+        const std::string style = curve.value("style", "");
+        dashed += style == "dashed" ? 1 : 0;
+        for (const auto& value : curve["values"]) {
+          if (value.is_null()) continue;
+          points += style == "points" ? 1 : 0;
+          if (style != "dashed") continue;
+          low = std::min(low, value.get<double>());
+          high = std::max(high, value.get<double>());
+        }
+      }
+  EXPECT_EQ(dashed, 4u);
+  EXPECT_EQ(points, 5u * 5u * 2u);  // targets, runs, directions
+  EXPECT_EQ(json["characteristics"][0]["name"], "A");
+  EXPECT_NEAR(high - low, json["characteristics"][0]["value"].get<double>(), 1e-9);
 }
 
 }  // namespace

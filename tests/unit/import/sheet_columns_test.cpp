@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "tools/import/tables/wide_sheet.h"
+#include "tools/sheet/several_tables.h"
 #include "tools/text/files.h"
 
 namespace vernier::sheet_columns_test {
@@ -20,6 +21,7 @@ std::string import(const std::string& bytes, SheetWishes wishes = {},
                    const std::function<void(SheetWishes&, const SheetTable&)>& say = {}) {
   try {
     Sheet sheet = read_sheet(bytes, "s.csv", wishes.format);
+    keep_table(sheet, wishes.format.table);
     SheetTable table = parts_of_sheet(sheet);
     unfold_runs(sheet, table);
     if (say) say(wishes, table);
@@ -113,6 +115,35 @@ const Case kCases[] = {
     {"SensesWithoutNumbers", "Z [mm];Abw. + [µm];Abw. - [µm];Abw. + [µm];Abw. - [µm]\n0;1;2;3;4\n9;1;2;3;4\n",
      "Z[mm],dirZ,run,z[mm]\n0,1,1,0.001\n9,1,1,9.001\n0,-1,1,0.002\n9,-1,1,9.002\n0,1,2,0.003\n"
      "9,1,2,9.003\n0,-1,2,0.004\n9,-1,2,9.004\n"},
+    {"RunsWithoutDirections", "X soll [mm];Messung 1 [mm];Messung 2 [mm]\n0;0,1;0,2\n9;9,1;9,2\n",
+     "X[mm],run,x[mm]\n0,1,0.1\n9,1,9.1\n0,2,0.2\n9,2,9.2\n"},
+    {"OneRunWithoutDirection", "X soll [mm];Lauf 1 + [um];Lauf 1 - [um];Lauf 2 [um]\n0;1;2;3\n9;1;2;3\n",
+     "refused: s.csv:1: \"Lauf 2 [um]\": the other runs have an approach direction"},
+    {"MeanBesideTheRuns", "X [mm];1+ [µm];1- [µm];Mittelwert [µm]\n0;1;2;1,5\n9;1;2;1,5\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n9,1,1,9.001\n0,-1,1,0.002\n9,-1,1,9.002\n"},
+    {"MeanDeviationBesideTheReading",
+     "X [mm];Abweichung [µm];mittlere Abw. (Mittelwert) [µm]\n0;1;2\n9;1;2\n",
+     "X[mm],x[mm]\n0,0.001\n9,9.001\n"},
+    {"MeanAlone", "X soll [mm];Mittelwert\n0;0,1\n9;9,1\n",
+     "such as --column \"x[mm]=Mittelwert\" for a measured position, or --deviation \"X[um]=Mittelwert\" for "
+     "a "
+     "deviation"},
+    {"MeanDeviationAlone", "X soll [mm];Abweichung Mittelwert [µm]\n0;1\n9;2\n",
+     "X[mm],x[mm]\n0,0.001\n9,9.002\n"},
+    {"AlignedTextWithHeadingsOfTwoWords",
+     "Portal 4, hall of the north, March\nCmd X    Cmd Y    Meas X   Meas Y\n[mm]     [mm]     [mm]     "
+     "[mm]\n"
+     "0.00     0.00     0.002    0.001\n100.00   50.00    100.004  50.002\n",
+     "X[mm],Y[mm],x[mm],y[mm]\n0.00,0.00,0.002,0.001\n100.00,50.00,100.004,50.002\n"},
+    {"AlignedTextWithUnitsInTheHeadings",
+     " Nominal X (mm)   Actual X (mm)   T (degC)\n 0.0  0.2  20.1\n 9.0  9.1  20.2\n",
+     "X[mm],x[mm],T[degC]\n0.0,0.2,20.1\n9.0,9.1,20.2\n"},
+    {"TwoTablesBelowEachOther", "Lauf 1\nX [mm];x [mm]\n0;1\n9;10\n\nLauf 2\nX [mm];x [mm]\n0;2\n9;11\n",
+     "refused: s.csv:6: a second line of headings: the file has 2 tables (first line: 1, 6); import each "
+     "with "
+     "--table 1"},
+    {"RowsWithoutReadingsBeginNoTable", "X [mm];x [mm];y [mm];Dir\n0;1;2;+\n;n/a;-;+\n9;10;11;+\n",
+     "X[mm],x[mm],y[mm],dirX\n0,1,2,1\n,,,1\n9,10,11,1\n"},
     {"TheSameRunTwice", "Z [mm];1+ [um];1+ [um]\n0;1;2\n9;1;2\n",
      "refused: s.csv:1: \"1+ [um]\": this run occurs twice in this direction"},
     {"ThermometersAreNoRuns", "X[mm];x[mm];T1 [°C];T2 [°C]\n1;2;20;21\n2;3;20;21\n",
@@ -203,6 +234,27 @@ TEST(SheetWish, DeviationIsAddedToThePosition) {
                      assign_deviation(wishes, "X=Anzeige");
                    }),
             "X[mm],x[mm],Stift\n100,100.0015,a\n200,200.0025,b\n");
+}
+
+TEST(SheetWish, OneOfSeveralTablesIsRead) {
+  const std::string two = "Lauf 1\nX [mm];x [mm]\n0;1\n9;10\n\nLauf 2\nX [mm];x [mm]\n0;2\n9;11\n";
+  SheetWishes wishes;
+  wishes.format.table = 2;
+  EXPECT_EQ(import(two, wishes), "X[mm],x[mm]\n0,2\n9,11\n");
+  wishes.format.table = 1;
+  EXPECT_EQ(import(two, wishes), "X[mm],x[mm]\n0,1\n9,10\n");
+  wishes.format.table = 3;
+  EXPECT_NE(import(two, wishes).find("\"3\": no such table: the file has 2 tables"), std::string::npos);
+}
+
+TEST(SheetWish, TheSameInEveryRowIsAReadingToo) {
+  SheetWishes wishes;
+  ColumnMap map;
+  add_constant(map, "x[mm]=0");
+  wishes.constants = map.columns;
+  EXPECT_EQ(import("X [mm];T\n1;20\n2;21\n", wishes), "X[mm],T,x[mm]\n1,20,0\n2,21,0\n");
+  EXPECT_NE(import("X [mm];x [mm]\n1;20\n", wishes).find("--set would give it a second time"),
+            std::string::npos);
 }
 
 TEST(SheetWish, UnknownHeadingIsNamedWithThoseThatAreThere) {

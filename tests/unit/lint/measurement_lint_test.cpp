@@ -76,7 +76,9 @@ const Case kCases[] = {
     {"WrongDimension", "X[deg],Y[mm],Z[mm],x[mm]\n1,2,3,4\n",
      "\"X[deg]\": this column needs a unit, for example mm"},
     {"NameTwice", "X[mm],X[mm],Y[mm],Z[mm],x[mm]\n1,1,2,3,4\n", "\"X\": this column occurs twice"},
-    {"AxisMissing", "X[mm],Y[mm],x[mm]\n1,2,3\n", "\"Z\": the column of this axis is missing"},
+    {"AxisMissing", "X[mm],Y[mm],x[mm]\n1,2,3\n",
+     "\"Z\": the column of this axis is missing -- if the axis stood still, add its position: vernier import "
+     "table FILE --set \"Z[mm]=POSITION\" -o NEW.csv"},
     {"AxisInSmallLetters", "X[mm],Y[mm],z[mm],x[mm]\n1,2,3,4\n", "there is z: names have capitals"},
     {"NothingMeasured", "X[mm],Y[mm],Z[mm]\n1,2,3\n", "no measured column"},
     {"WildCell", along_x("9999"), "s.csv:9: warning: \"9999\": x differs "},

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/check_plan.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "tools/fit/fit.h"
@@ -90,6 +92,27 @@ TEST(CheckPlan, MorePosesSeeSmallerChanges) {
   const Machine machine = fitted(random);
   EXPECT_LT(check_plan(machine, options(16)).shows.front().tool_um,
             check_plan(machine, options(8)).shows.front().tool_um);
+}
+
+TEST(CheckPlan, SummarisesWhatNoPoseIdentifies) {
+  // z0 is the same as a set-up, th turns the tool point about itself.
+  const Machine start = parse_machine(R"XML(<machine name="c"><variables><static>
+    <z0 value="0" nominal="0" unit="mm"/><th value="0" nominal="0" unit="deg"/><kx value="0" nominal="0"/>
+    <BaseShift X="0" Y="0" Z="0" rX="0" rY="0" rZ="0"/></static>
+    <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes></variables>
+    <transforms branch="tool"><sixdof n="1" X="X+kx*X"/><sixdof n="2" Y="Y"/><sixdof n="3" Z="Z+z0"/>
+    <sixdof n="4" rY="90"/><sixdof n="5" X="0.1" rY="th"/><sixdof n="6" X="-0.1*cos(th)" Z="-0.1*sin(th)"/>
+    </transforms></machine>)XML",
+                                      "c.xml");
+  std::mt19937_64 random(6);
+  const Machine machine = fit::fit(start, measured(start, offered_poses(start, 60, 5000), random)).machine;
+  const CheckPlan plan = check_plan(machine, options());
+  EXPECT_THAT(plan.not_seen, testing::IsSupersetOf({"z0", "th"}));
+  for (const Shown& one : plan.shows) EXPECT_LT(one.tool_um, 1000) << one.suspect.name;
+  const std::string text = check_plan_text(plan, 2);
+  EXPECT_THAT(text, testing::HasSubstr("not identifiable (no motion of the tool point"));
+  EXPECT_THAT(text, testing::HasSubstr("z0"));
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 16);
 }
 
 TEST(CheckPlan, NeedsAFittedMachine) { EXPECT_THROW(check_plan(model()), InputError); }

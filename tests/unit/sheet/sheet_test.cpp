@@ -71,7 +71,9 @@ TEST(SheetNumber, ReadsEverySignThatSpreadsheetsWrite) {
                              {"abc", false, nullptr},
                              {"", false, nullptr},
                              {"1234,567", false, nullptr},
-                             {"1,23,456", false, nullptr}};
+                             {"1,23,456", false, nullptr},
+                             {"100,5045", false, nullptr},
+                             {"1,234,5678", false, nullptr}};
   for (const Number& one : kNumbers) {
     const auto plain = plain_number(one.cell, one.comma);
     EXPECT_EQ(plain.value_or("none"), one.plain == nullptr ? "none" : one.plain)

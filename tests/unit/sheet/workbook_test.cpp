@@ -7,6 +7,7 @@
 #include <map>
 
 #include "tools/sheet/dates.h"
+#include "tools/sheet/sheet.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 
@@ -70,6 +71,15 @@ TEST(Workbook, CellsOfTheFirstSheetThatHasSome) {
             (std::vector<std::string>{"200", "200.0011", "", "zurück"}));  // a cell that is not there
 }
 
+TEST(Workbook, CoverSheetIsNotTheTable) {
+  const WorkbookSheet sheet = read_workbook(bytes_of("cover.xlsx"), "b.xlsx", "");
+  EXPECT_EQ(sheet.name, "Daten");
+  EXPECT_EQ(sheet.all, (std::vector<std::string>{"Deckblatt", "Daten", "Leer"}));
+  EXPECT_EQ(sheet.rows.size(), 4u);
+  EXPECT_EQ(read_workbook(bytes_of("cover.xlsx"), "b.xlsx", "1").rows[1],
+            (std::vector<std::string>{"Auftrag", "4711"}));
+}
+
 TEST(Workbook, SheetIsTakenByNameOrNumber) {
   EXPECT_EQ(read_workbook(bytes_of("survey.xlsx"), "b.xlsx", "2").name, "Messung");
   EXPECT_TRUE(read_workbook(bytes_of("survey.xlsx"), "b.xlsx", "Deckblatt").rows.empty());
@@ -105,6 +115,29 @@ TEST(Workbook, PrefixedElementsInlineTextAndMissingReferencesAreRead) {
   EXPECT_EQ(sheet.rows[0], (std::vector<std::string>{"X [in]", "", "x [in]"}));
   EXPECT_EQ(sheet.rows[2], (std::vector<std::string>{"2", "", "2"}));
   EXPECT_EQ(sheet.line[2], 3u);
+}
+
+TEST(Workbook, NumbersStoredAsTextAndNumbersGetOneDecimalSign) {
+  const auto cell = [](const char* type, const char* value) {
+    return std::string("<c") + type + "><is><t>" + value + "</t></is><v>" + value + "</v></c>";
+  };
+  const std::string text = " t=\"inlineStr\"";
+  const auto rows_of = [&](const char* first, const char* second) {
+    return read_sheet(
+        workbook_of("", "<row>" + cell(text.c_str(), "X [mm]") + cell(text.c_str(), "x [mm]") +
+                            "</row><row>" + cell("", "100.5") + cell(text.c_str(), first) + "</row><row>" +
+                            cell("", "200") + cell(text.c_str(), second) + "</row>"),
+        "b.xlsx");
+  };
+  const Sheet comma = rows_of("100,5045", "200,0095");
+  EXPECT_TRUE(comma.decimal_comma);
+  EXPECT_FALSE(comma.decimal_doubtful);
+  EXPECT_EQ(comma.rows[1], (std::vector<std::string>{"100,5", "100,5045"}));
+  const Sheet point = rows_of("100.504", "200.0095");
+  EXPECT_FALSE(point.decimal_comma);
+  EXPECT_EQ(point.rows[1], (std::vector<std::string>{"100.5", "100.504"}));
+  EXPECT_TRUE(rows_of("1,504", "2,009").decimal_doubtful);
+  EXPECT_THROW(rows_of("100,5045", "200.0095"), InputError);
 }
 
 TEST(Workbook, BrokenFilesAreRefused) {

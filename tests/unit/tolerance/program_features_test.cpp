@@ -3,8 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "tests/unit/tolerance/plate.h"
+#include "tools/model/chain/chain.h"
 #include "tools/text/error.h"
+#include "tools/tolerance/feature_values.h"
 
 namespace vernier::tolerance_test {
 
@@ -40,6 +46,61 @@ TEST(ProgramFeatures, CirclesAreCirclesAndTheRestIsPaths) {
                                                        static_cast<Eigen::Index>(part.features[2].count));
   EXPECT_EQ(senses.minCoeff(), -1);
   EXPECT_EQ(senses.maxCoeff(), 1);
+}
+
+/// A cyclic error of X of 3 um with this period.
+Machine cyclic(const std::string& period_mm) {
+  return parse_machine(
+      R"XML(<machine name="cyclic"><variables><static><a value="0.003" nominal="0" unit="mm"/></static>
+      <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes></variables>
+      <transforms branch="tool"><sixdof n="1" X="X+a*cos(360*X/)XML" +
+          period_mm + R"XML()"/><sixdof n="2" Y="Y"/><sixdof n="3" Z="Z"/></transforms></machine>)XML",
+      "cyclic.xml");
+}
+
+/// Size or form of the last feature, um.
+double um_of(const Machine& machine, const PlacedPart& part, PartCharacteristic what) {
+  const PartValues values = part_values(part, PartFrame::kMachine, "p");
+  const Eigen::Matrix3Xd error =
+      forward(machine, part.states).position - forward(nominal_machine(machine), part.states).position;
+  const Eigen::VectorXd rows = values.map * Eigen::VectorXd(error.reshaped());
+  double value = std::nan("");
+  for (const CharacteristicValue& one : values.values)
+    if (one.what == what) value = 1000 * one.of(rows);
+  return value;
+}
+
+TEST(ProgramFeatures, OneBoreIsTheSameAsAFeatureAndAsAProgram) {
+  for (const char* period : {"40", "10", "5", "2.5", "1.3"}) {
+    const Machine machine = cyclic(period);
+    const PlacedPart program = read(machine, "G21 G90\nG0 X10 Y0 Z0\nG3 X10 Y0 I-10 J0 F300\nG0 Z10\n");
+    const PlacedPart feature = place_part(
+        machine, parse_part("feature,kind,x,y,z,diameter\nbore,cylinder,300,200,-100,20\n", "p.csv"),
+        at_rest(machine));
+    // Many points, as the reference: mean and range of the radial error a cos(360 x / p) cos(angle).
+    constexpr std::size_t kDense = 5000;
+    double mean = 0, cosine = 0;
+    std::vector<double> radial;
+    for (std::size_t k = 0; k < kDense; ++k) {
+      const double angle = 2 * M_PI * static_cast<double>(k) / kDense, x = 300 + 10 * std::cos(angle);
+      radial.push_back(3 * std::cos(2 * M_PI * x / std::stod(period)) * std::cos(angle));
+      mean += radial.back() / kDense;
+      cosine += 2 * radial.back() * std::cos(angle) / kDense;
+    }
+    const double reference = 2 * mean;
+    double low = 1e9, high = -1e9;
+    for (std::size_t k = 0; k < kDense; ++k) {
+      const double rest = radial[k] - mean - cosine * std::cos(2 * M_PI * static_cast<double>(k) / kDense);
+      low = std::min(low, rest);
+      high = std::max(high, rest);
+    }
+    for (const PlacedPart* part : {&program, &feature}) {
+      // Two per cent of the form are permitted (points_on_circle), 0.05 um at least.
+      EXPECT_NEAR(um_of(machine, *part, PartCharacteristic::kSize), reference, 0.15) << period;
+      EXPECT_NEAR(um_of(machine, *part, PartCharacteristic::kForm), high - low, 0.05 * (high - low))
+          << period;
+    }
+  }
 }
 
 TEST(ProgramFeatures, AProgramThatCutsNothingIsRefused) {

@@ -119,6 +119,61 @@ async function aMachineOfOnesOwn(page) {
   ]);
 }
 
+/** A run along one axis, on a machine of three: the page asks where the others stood. A cover sheet, two instruments, a robot. */
+async function axesThatStood(page) {
+  const machine = await page.evaluate("document.getElementById('machine').value");
+  const rows = await page.evaluate("document.getElementById('measurement').value");
+  await view(page, 'project');
+  await page.drop([{ name: 'laser_x.csv', text: 'X[mm],x[mm]\n0,0.001\n300,300.004\n600,600.009\n900,900.011\n' }]);
+  await page.until("document.getElementById('stood-Y')", 'the page to ask where Y stood');
+  await page.type('#stood-Y', '400');
+  await page.type('#stood-Z', '-50,5');
+  await page.type('#stood-u', '0,5');
+  await picture(page, 'first_axes', '#stood-room .controls');
+  await page.click('#stood-add');
+  await page.until(measurement('laser_x_with_axes.csv'), 'the file with all axes');
+  assert.ok(readFileSync(join(folder, 'laser_x_with_axes.csv'), 'utf8').includes('0,0.001,400,-50.5,0.5'));
+  await view(page, 'compare');
+  await page.until("document.getElementById('compare-figures')", 'the comparison');
+  await view(page, 'project');
+  await page.drop([{ name: 'cover.xlsx', bytes: bytes('sheets/cover.xlsx') }]);
+  await page.until(
+    "document.getElementById('imported')?.textContent.includes('sheet \"Daten\" of Deckblatt, Daten')",
+    'the sheet behind the cover',
+  );
+  await page.click('#read-differently');
+  await page.choose('#sheet-of-workbook', 'Deckblatt');
+  await page.until("document.querySelector('#import-box .error')?.textContent.includes('nothing measured')", 'the cover to be refused');
+  // Fitted, without check rows: the sheet states what the fit did not have.
+  execFileSync(vernier, ['fit', machine, 'laser_x_with_axes.csv', '-o', join(top, 'plain.xml')], { cwd: folder, stdio: 'ignore' });
+  await page.drop([{ name: 'plain.xml', bytes: readFileSync(join(top, 'plain.xml')) }]);
+  await page.until("document.getElementById('machine').value === 'plain.xml'", 'the fitted machine');
+  await view(page, 'board');
+  await page.until("document.querySelector('#safety tbody tr')", 'the sheet');
+  const sheet = await text(page, '#view-board');
+  assert.ok(sheet.includes('Is the set-up of the instrument kept out of the axes?') && !sheet.includes('no fit wrote this file'), sheet);
+  assert.equal(await page.evaluate("document.querySelector('#safety [data-rule=check-rows] .answer').textContent"), 'not known');
+  await view(page, 'project');
+  const whole = (name) => ({ name, text: 'X[mm],Y[mm],Z[mm],x[mm]\n0,1,-2,0.001\n300,1,-2,300.004\n600,1,-2,600.009\n' });
+  await page.drop([whole('one.csv'), whole('two.csv')]);
+  await page.until(measurement('one.csv + two.csv'), 'two instruments together');
+  const link = (name) => `<link name="${name}"/>`;
+  await page.drop([
+    {
+      name: 'arm.urdf',
+      text: `<robot name="arm">${['base', 'l1', 'tip'].map(link).join('')}
+        <joint name="J1" type="revolute"><parent link="base"/><child link="l1"/><axis xyz="0 0 1"/><limit lower="-3" upper="3"/></joint>
+        <joint name="J2" type="revolute"><parent link="l1"/><child link="tip"/><origin xyz="0.4 0 0.1"/><axis xyz="0 1 0"/><limit lower="-2" upper="2"/></joint>
+        </robot>`,
+    },
+  ]);
+  await page.until("document.getElementById('machine').value === 'arm.xml'", 'the machine file of the robot');
+  await page.choose('#measurement', rows);
+  await page.choose('#machine', machine);
+  await view(page, 'compare');
+  await page.until("document.getElementById('compare-figures')", 'the comparison');
+}
+
 /** A report with a head, a tolerance and its verdict; one that is not met is an answer and no error. */
 async function handOver(page) {
   await page.until("!document.getElementById('handover-positioning').disabled", 'the reports');
@@ -136,6 +191,8 @@ async function handOver(page) {
   const report = readFileSync(join(folder, 'iso230-2_X.html'), 'utf8');
   assert.ok(report.includes('Muster &amp; Sohn') && report.includes('<dd>4711</dd>'), 'its head');
   assert.ok(report.includes('not met'), 'its verdict');
+  await page.until("document.getElementById('handover-answer').textContent.startsWith('Not met: ')", 'the verdict on the page');
+  assert.equal(await attribute(page, '#job-state', 'state'), 'no', 'a missed tolerance is an answer, not a failure');
   assert.equal(await page.evaluate("document.querySelectorAll('.view:not([hidden]) .error:not(:empty)').length"), 0);
 }
 
@@ -144,6 +201,7 @@ async function begin(page) {
   await filesAsTheyCame(page);
   await aMachineOfOnesOwn(page);
   await handOver(page);
+  await axesThatStood(page);
 }
 
 /** What is shown of a model: uncertainties and what they rest on, legend and words of a point, the sheet, names of the shop. */
@@ -273,4 +331,5 @@ async function everywhere(page) {
 }
 
 assert.ok(bin);
-await journey({ begin, shown, everywhere });
+// The refusals that axesThatStood asks for: an answer of the program, and no exception of the page.
+await journey({ begin, shown, everywhere }, { begin: /status of 422 .*\/api\/(rows|sheet)/ });

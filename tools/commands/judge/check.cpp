@@ -60,8 +60,10 @@ std::string put_right(const CheckArguments& arguments, model::Machine machine, c
     parameters.set(machine, values);
     return model::update_machine_text(text::read_file(arguments.machine), machine, false);
   }
-  throw text::LimitNotMet("\"" + answer.changed.front().suspect.name +
-                          "\" is no parameter of this machine file: diagnose a longer measurement, and fit");
+  throw text::LimitNotMet(fmt::format(
+      "verdict {}, but no machine file is written: {} is no free parameter of {}; diagnose a longer "
+      "measurement, and fit",
+      check::verdict_name(answer.verdict), answer.changed.front().suspect.name, machine.file));
 }
 
 void run_check(const CheckArguments& arguments) {
@@ -93,8 +95,11 @@ void run_check(const CheckArguments& arguments) {
   fmt::print(out, "verdict: {}. {}\n", check::verdict_name(answer.verdict), answer.explanation);
   fmt::print(out, "evidence for a change: {:.3g} over {} check{}, alarm threshold {:g}\n", answer.evidence,
              history.checks.size(), history.checks.size() == 1 ? "" : "s", answer.alarm);
-  if (!arguments.output.empty() && answer.verdict == check::CheckVerdict::kChanged)
+  if (arguments.output.empty()) return;
+  if (answer.verdict == check::CheckVerdict::kChanged)
     text::write_file(arguments.output, put_right(arguments, machine, rows, answer));
+  else
+    fmt::print(out, "{} is not written: no parameter of the machine changed\n", arguments.output);
 }
 
 }  // namespace

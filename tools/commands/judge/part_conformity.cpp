@@ -105,6 +105,7 @@ Json conformity_json(const model::Machine& machine, const ConformityArguments& a
   Json json = {
       {"machine", machine.name},
       {"part", arguments.part.path},
+      {"motion", part.program ? "program" : "at-rest"},
       {"trials", result.trials},
       {"seed", result.seed},
       {"settled", result.settled},
@@ -156,11 +157,20 @@ std::string least_known(const tolerance::CharacteristicResult& one) {
   return fmt::format("{} ({:.0f} %)", most->name, 100 * most->variance);
 }
 
+/// What the machine does at a point: the same bore may differ as a feature and as a program by this alone.
+std::string motion_words(const tolerance::PlacedPart& part) {
+  return part.program
+             ? "Motion: as in the part program, with its speeds, directions and reversals."
+             : "Motion: at rest at each point, approached from the point before (no feed). A part program "
+               "adds speeds and reversals.";
+}
+
 void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
                       const tolerance::PartConformity& result) {
   fmt::print(
       out, "{} trials, seed {}, {}\n", result.trials, result.seed,
       result.exact ? "each through the whole chain" : "linear in the uncertain parameters of the machine");
+  fmt::print(out, "{}\n", motion_words(part));
   if (!result.settled) fmt::print(out, "the trials stopped before the ends of the intervals converged\n");
   for (const std::string& name : result.stale) fmt::print(out, "set by hand since the fit: {}\n", name);
   for (const std::string& range : result.outside)
@@ -219,8 +229,8 @@ std::string conformity_page(const model::Machine& machine, const ConformityArgum
        {"sections",
         {{{"title", "Features"},
           {"prose",
-           {fmt::format("{} trials (seed {}) over the covariance of the last fit, GUM supplement 1.",
-                        result.trials, result.seed)}},
+           {fmt::format("{} trials (seed {}) over the covariance of the last fit, GUM supplement 1. {}",
+                        result.trials, result.seed, motion_words(part))}},
           {"tables", {table}},
           {"notes", notes}}}}}));
 }

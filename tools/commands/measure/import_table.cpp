@@ -129,7 +129,9 @@ void add_table_kind(CLI::App& kind) {
   kind.add_option("--decimal", arguments->words.decimal, "decimal sign; default: detected and printed")
       ->check(CLI::IsMember({"point", "comma"}));
   kind.add_option("--sheet", arguments->words.sheet,
-                  "sheet of a workbook, name or number; default: the first with cells");
+                  "sheet of a workbook, name or number; default: the first with rows of numbers");
+  kind.add_option("--table", arguments->words.table,
+                  "of several tables below each other, the number of this one, from 1");
   kind.add_option("--skip", arguments->words.skip, "number of lines at the top to skip");
   kind.add_option("--comment", arguments->words.comment,
                   "lines that begin with it are skipped; none: no such lines; default: #");

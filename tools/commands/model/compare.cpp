@@ -119,14 +119,15 @@ void print_failure(std::FILE* out, const nlohmann::ordered_json& json) {
 }
 
 void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
-  fmt::print(out, "rms fit rows    {}   max {}\n", results::number_or_dash(value_of(json, "rms_um"), "um"),
-             results::number_or_dash(value_of(json, "max_um"), "um"));
-  fmt::print(out, "rms check rows  {}   max {}\n",
-             results::number_or_dash(value_of(json, "check_rms_um"), "um"),
-             results::number_or_dash(value_of(json, "check_max_um"), "um"));
-  if (const auto rotations = value_of(json, "rms_urad"))
+  const auto error = [&](const std::string& what) {
+    return results::error_or_dash(value_of(json, (what + "_um").c_str()),
+                                  value_of(json, (what + "_urad").c_str()));
+  };
+  fmt::print(out, "rms fit rows    {}   max {}\n", error("rms"), error("max"));
+  fmt::print(out, "rms check rows  {}   max {}\n", error("check_rms"), error("check_max"));
+  if (const auto rotations = value_of(json, "rms_urad"); rotations && value_of(json, "rms_um"))
     fmt::print(out, "rms rotations   {}\n", results::number_or_dash(rotations, "urad"));
-  fmt::print(out, "noise           {}\n", results::number_or_dash(value_of(json, "noise_um"), "um"));
+  fmt::print(out, "noise           {}\n", error("noise"));
   if (const auto& known = json["prediction_std_um"]; !known.is_null())
     fmt::print(out, "uncertainty of the model  {:.4g} um on average over these rows, {:.4g} um at most\n",
                known["rms"].get<double>(), known["max"].get<double>());

@@ -31,23 +31,22 @@ struct DiagnoseArguments {
   ReportHeader header;
 };
 
-void print_ladder(std::FILE* out, const diagnose::Diagnosis& d) {
+void print_ladder(std::FILE* out, const diagnose::Diagnosis& d, const model::Measurement& m) {
   fmt::print(out, "{:<58} {:>12} {:>12}\n", "stepwise model", "fit rows", "check rows");
   const diagnose::LadderStep* before = nullptr;
   for (const diagnose::LadderStep& step : d.ladder) {
     const bool lengths = step.rms_um.has_value();
-    const std::optional<double>&check = lengths ? step.check_rms_um : step.check_rms_urad,
-          &fit = lengths ? step.rms_um : step.rms_urad;
+    const std::optional<double>& check = lengths ? step.check_rms_um : step.check_rms_urad;
     const bool rises =
         before != nullptr && check && *check > (lengths ? before->check_rms_um : before->check_rms_urad);
-    const char* const unit = lengths ? "um" : "urad";
     fmt::print(out, "  {:<56} {:>12} {:>12}{}\n",
                step.effect.empty() ? "the model as given" : "+ " + step.said,
-               results::number_or_dash(fit, unit), results::number_or_dash(check, unit),
+               results::error_or_dash(step.rms_um, step.rms_urad),
+               results::error_or_dash(step.check_rms_um, step.check_rms_urad),
                rises ? "  the check rows do not confirm this step" : "");
     before = &step;
   }
-  fmt::print(out, "  {:<56} {:>12}\n", "noise", results::number_or_dash(d.base.noise_um, "um"));
+  fmt::print(out, "  {:<56} {:>12}\n", "noise", results::error_or_dash(d.base.noise_um, fit::noise_urad(m)));
 }
 
 void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
@@ -56,8 +55,8 @@ void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
              "check rows", "p");
   for (const diagnose::CandidateFinding& c : d.candidates) {
     fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.spoken,
-               c.score, results::number_or_dash(c.rms_after_um, "um"),
-               results::number_or_dash(c.check_rms_after_um, "um"), c.p_value);
+               c.score, results::error_or_dash(c.rms_after_um, c.rms_after_urad),
+               results::error_or_dash(c.check_rms_after_um, c.check_rms_after_urad), c.p_value);
     if (!c.why_not.empty()) fmt::print(out, "    not accepted: {}\n", c.why_not);
     if (!c.confounded_with.empty())
       fmt::print(out, "    alike in these data: {}\n", fmt::join(c.confounded_with, ", "));
@@ -98,7 +97,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "verdict: {}\n{}\n\n", diagnose::verdict_name(diagnosis.verdict), diagnosis.explanation);
-  print_ladder(out, diagnosis);
+  print_ladder(out, diagnosis, m);
   fmt::print(out, "\n");
   print_candidates(out, diagnosis);
   for (const std::string& next : diagnosis.next_measurement) fmt::print(out, "measure next: {}\n", next);

@@ -102,15 +102,17 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
   for (const auto& [name, std] : result.priors)
     fmt::print(out, "held near nominal as if measured there: {} with std {:g}\n", name, std);
   print_weakest(out, result);
-  fmt::print(out, "rms before      {}\n", results::number_or_dash(result.before.rms_um, "um"));
-  fmt::print(out, "rms fit rows    {}   max {}\n", results::number_or_dash(result.after.rms_um, "um"),
-             results::number_or_dash(result.after.max_um, "um"));
-  fmt::print(out, "rms check rows  {}   max {}\n", results::number_or_dash(result.check.rms_um, "um"),
-             results::number_or_dash(result.check.max_um, "um"));
-  if (result.after.rms_urad)
-    fmt::print(out, "rms rotations   {} before {}\n", results::number_or_dash(result.after.rms_urad, "urad"),
-               results::number_or_dash(result.before.rms_urad, "urad"));
-  fmt::print(out, "noise           {}\n", results::number_or_dash(result.noise_um, "um"));
+  const fit::RoleStatistics &before = result.before, &after = result.after, &check = result.check;
+  using results::error_or_dash;
+  fmt::print(out, "rms before      {}\n", error_or_dash(before.rms_um, before.rms_urad));
+  fmt::print(out, "rms fit rows    {}   max {}\n", error_or_dash(after.rms_um, after.rms_urad),
+             error_or_dash(after.max_um, after.max_urad));
+  fmt::print(out, "rms check rows  {}   max {}\n", error_or_dash(check.rms_um, check.rms_urad),
+             error_or_dash(check.max_um, check.max_urad));
+  if (after.rms_um && after.rms_urad)
+    fmt::print(out, "rms rotations   {} before {}\n", results::number_or_dash(after.rms_urad, "urad"),
+               results::number_or_dash(before.rms_urad, "urad"));
+  fmt::print(out, "noise           {}\n", error_or_dash(result.noise_um, fit::noise_urad(m)));
   if (!result.noise.independent())
     fmt::print(out, "correlated errors, in every uncertainty below: {}\n",
                fit::in_words(result.noise, fit::noise_unit(m)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -13,6 +14,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
 #include "tools/report/report.h"
+#include "tools/results/detail.h"
 #include "tools/results/diagnosis_json.h"
 #include "tools/results/results.h"
 #include "tools/results/safety_json.h"
@@ -37,12 +39,14 @@ struct ImproveArguments {
 /// A step of the stepwise model that was accepted, and the machine file with it.
 struct ModelStep {
   std::string label, effect, add, file, text;
-  std::optional<double> rms_um, check_rms_um;
+  std::optional<double> rms_um, check_rms_um;      // of lengths
+  std::optional<double> rms_urad, check_rms_urad;  // of rotations
 };
 
 bool agreed(const ImproveArguments& arguments, const diagnose::LadderStep& step, std::FILE* out) {
-  fmt::print(out, "+ {}: fit rows {}, check rows {}\n", step.said, results::number_or_dash(step.rms_um, "um"),
-             results::number_or_dash(step.check_rms_um, "um"));
+  fmt::print(out, "+ {}: fit rows {}, check rows {}\n", step.said,
+             results::error_or_dash(step.rms_um, step.rms_urad),
+             results::error_or_dash(step.check_rms_um, step.check_rms_urad));
   if (arguments.yes) return true;
   fmt::print(out, "  add it? [y/n] ");
   std::fflush(out);
@@ -68,16 +72,26 @@ Json replayed(const ModelStep& model_step, const model::Measurement& rows, const
     const compile::CompiledMachine compiled = compile::compile_machine(machine, model_step.text, {});
     const auto image = compile::load_image(compiled.image, machine);
     const simulate::ReplayResult r = simulate::replay(*image, m, {});
-    const auto rms = [&](const Eigen::VectorXd& residual, bool check) {
-      return text::or_null(fit::role_statistics(m, residual, check).rms_um);
+    Json json = {{"label", model_step.label}, {"ticks", r.ticks}, {"saturated", r.saturated}};
+    const auto put = [&](const std::string& key, const Eigen::VectorXd& residual, bool check) {
+      const fit::RoleStatistics statistics = fit::role_statistics(m, residual, check);
+      json[key + "_um"] = text::or_null(statistics.rms_um);
+      json[key + "_urad"] = text::or_null(statistics.rms_urad);
     };
-    return {{"label", model_step.label},
-            {"ticks", r.ticks},
-            {"saturated", r.saturated},
-            {"rms_before_um", rms(r.before, false)},
-            {"rms_after_um", rms(r.after, false)},
-            {"check_rms_before_um", rms(r.before, true)},
-            {"check_rms_after_um", rms(r.after, true)}};
+    put("rms_before", r.before, false);
+    put("rms_after", r.after, false);
+    put("check_rms_before", r.before, true);
+    put("check_rms_after", r.after, true);
+    const auto largest = [&](const Eigen::VectorXd& residual, auto member) {
+      const std::optional<double> fit = fit::role_statistics(m, residual, false).*member;
+      const std::optional<double> check = fit::role_statistics(m, residual, true).*member;
+      return text::or_null(fit && check ? std::max(*fit, *check) : fit ? fit : check);
+    };
+    json["max_before_um"] = largest(r.before, &fit::RoleStatistics::max_um);
+    json["max_after_um"] = largest(r.after, &fit::RoleStatistics::max_um);
+    json["max_before_urad"] = largest(r.before, &fit::RoleStatistics::max_urad);
+    json["max_after_urad"] = largest(r.after, &fit::RoleStatistics::max_urad);
+    return json;
   } catch (const text::InputError& error) {
     return {{"label", model_step.label}, {"why_not", error.what()}};
   } catch (const text::LimitNotMet& error) {
@@ -119,18 +133,20 @@ class Improver {
     if (round == 0) {
       text::make_folder(arguments_.output);
       first_diagnosis_ = last_;
-      take({"the given model after a fit", "", "", "", d.ladder[0].text, d.ladder[0].rms_um,
-            d.ladder[0].check_rms_um});
+      const diagnose::LadderStep& given = d.ladder[0];
+      take({"the given model after a fit", "", "", "", given.text, given.rms_um, given.check_rms_um,
+            given.rms_urad, given.check_rms_urad});
       fmt::print(out_, "the model as given, fitted: fit rows {}, check rows {}\n",
-                 results::number_or_dash(d.ladder[0].rms_um, "um"),
-                 results::number_or_dash(d.ladder[0].check_rms_um, "um"));
+                 results::error_or_dash(given.rms_um, given.rms_urad),
+                 results::error_or_dash(given.check_rms_um, given.check_rms_urad));
     }
     fmt::print(out_, "verdict: {}. {}\n", diagnose::verdict_name(d.verdict), d.explanation);
     if (d.verdict != diagnose::Verdict::kMissingEffect) return false;
     for (std::size_t i = 1; i < d.ladder.size(); ++i) {
       const diagnose::LadderStep& step = d.ladder[i];
       if (!agreed(arguments_, step, out_)) return false;
-      take({"+ " + step.said, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um});
+      take({"+ " + step.said, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um,
+            step.rms_urad, step.check_rms_urad});
     }
     const model::Machine before = machine_;
     text_ = model_steps_.back().text;
@@ -147,15 +163,15 @@ class Improver {
   }
 
   void finish() {
-    Json json = {{"machine", first_.name},
-                 {"files", arguments_.survey.measurements},
-                 {"verdict", last_["verdict"]},
-                 {"explanation", last_["explanation"]},
-                 {"noise_um", last_["noise_um"]}};
-    json["rms_before_um"] = first_diagnosis_["rms_um"];
-    json["check_rms_before_um"] = first_diagnosis_["check_rms_um"];
-    json["rms_um"] = last_["rms_um"];
-    json["check_rms_um"] = last_["check_rms_um"];
+    Json json = {{"machine", first_.name},        {"files", arguments_.survey.measurements},
+                 {"verdict", last_["verdict"]},   {"explanation", last_["explanation"]},
+                 {"noise_um", last_["noise_um"]}, {"noise_urad", last_["noise_urad"]}};
+    for (const std::string unit : {"_um", "_urad"}) {
+      json["rms_before" + unit] = first_diagnosis_["rms" + unit];
+      json["check_rms_before" + unit] = first_diagnosis_["check_rms" + unit];
+      json["rms" + unit] = last_["rms" + unit];
+      json["check_rms" + unit] = last_["check_rms" + unit];
+    }
     json["candidates"] = first_diagnosis_["candidates"];
     json["next_measurement"] = last_["next_measurement"];
     for (const ModelStep& model_step : model_steps_) {
@@ -165,16 +181,34 @@ class Improver {
                    {"machine", model_step.file}};
       step["rms_um"] = text::or_null(model_step.rms_um);
       step["check_rms_um"] = text::or_null(model_step.check_rms_um);
+      step["rms_urad"] = text::or_null(model_step.rms_urad);
+      step["check_rms_urad"] = text::or_null(model_step.check_rms_urad);
       json["ladder"].push_back(step);
     }
     simulate(json);
     judge(json);
     const std::string page = arguments_.output + "/improve.html";
-    text::write_file(page, report::improve_report_html(arguments_.header.on(json)));
+    Json shown = json;
+    shown["pictures"] = pictures();
+    text::write_file(page, report::improve_report_html(arguments_.header.on(std::move(shown))));
     text::write_file(arguments_.output + "/improve.json", json.dump(1) + "\n");
     write_json(arguments_.json, json);
     fmt::print(out_, "written to {}: {} machine files, improve.json, improve.html\n", arguments_.output,
                model_steps_.size());
+  }
+
+  /// Residuals of the given and of the last model against what explained the first ones; none without an
+  /// effect.
+  Json pictures() const {
+    if (model_steps_.size() < 2) return Json::array();
+    const auto residuals_of = [&](const ModelStep& step) {
+      const model::Machine machine = model::parse_machine(step.text, step.file);
+      return fit::residuals(machine, model::rebind(all_rows_, first_, machine));
+    };
+    const Eigen::VectorXd before = residuals_of(model_steps_.front()),
+                          after = residuals_of(model_steps_.back());
+    if (before.size() != after.size()) return Json::array();
+    return results::before_after_pictures(first_diagnosis_["findings"], first_, all_rows_, before, after);
   }
 
   /// The same fall in the 1 kHz loop: the correction of the first and of the last machine.
@@ -187,12 +221,15 @@ class Improver {
         fmt::print(out_, "1 kHz loop, {}: not run: {}\n", model_step->label, r["why_not"].get<std::string>());
         continue;
       }
-      const auto um = [&](const char* key) {
-        return r[key].is_null() ? std::string("-") : fmt::format("{:.4g} um", r[key].get<double>());
+      const auto figure = [&](const std::string& key) -> std::optional<double> {
+        return r[key].is_null() ? std::nullopt : std::optional(r[key].get<double>());
+      };
+      const auto error = [&](const std::string& key) {
+        return results::error_or_dash(figure(key + "_um"), figure(key + "_urad"));
       };
       fmt::print(out_, "1 kHz loop, {}: fit rows {} -> {}, check rows {} -> {}\n", model_step->label,
-                 um("rms_before_um"), um("rms_after_um"), um("check_rms_before_um"),
-                 um("check_rms_after_um"));
+                 error("rms_before"), error("rms_after"), error("check_rms_before"),
+                 error("check_rms_after"));
       json["simulation"] = r;
       if (model_steps_.size() == 1) break;
     }

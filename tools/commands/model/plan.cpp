@@ -102,14 +102,7 @@ void run_check_plan(const PlanArguments& arguments) {
   if (!arguments.gcode.empty())
     text::write_file(arguments.gcode, plan::poses_gcode(machine, plan.states, "check of " + machine.name));
   write_json(arguments.json, json);
-  std::FILE* out = human_stream(arguments.json);
-  fmt::print(out, "{} poses of {:g} um show from which change on:\n", plan.states.count, options.reading_um);
-  for (const plan::Shown& one : plan.shows)
-    fmt::print(out, "  {:<36} {:>10.3g} {:<4} ({:.3g} um at the tool)\n", one.suspect.name, one.change,
-               one.suspect.unit, one.tool_um);
-  if (!plan.not_seen.empty()) fmt::print(out, "not seen at all: {}\n", text::joined(plan.not_seen, ", "));
-  fmt::print(out, "the same number of random poses gives {:.3g} um, these poses {:.3g} um\n", plan.random_um,
-             worst);
+  fmt::print(human_stream(arguments.json), "{}", plan::check_plan_text(plan, options.reading_um));
 }
 
 /// Without measurements: where to measure a machine for the first time.

@@ -10,6 +10,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/kinematics/at.h"
+#include "tools/kinematics/inverse.h"
 #include "tools/offline/part_program.h"
 #include "tools/offline/positions.h"
 #include "tools/text/assurance.h"
@@ -63,6 +64,15 @@ text::Assurance assurance_of(const CorrectArguments& arguments, const offline::C
   return assurance;
 }
 
+/// "12.3 um", "0.0123 deg" of a robot, both of a machine of both kinds whose rotary axes correct too.
+std::string largest_corrections(const offline::CorrectionSummary& summary, const model::Machine& machine,
+                                bool with_rotary) {
+  const std::string um = fmt::format("{:.4g} um", summary.largest_um(machine));
+  const std::string deg = fmt::format("{:.4g} deg", summary.largest_deg(machine));
+  if (kinematics::linear_axes(machine).empty()) return deg;
+  return with_rotary && summary.largest_deg(machine) > 0 ? um + " and " + deg : um;
+}
+
 void run_correct(const CorrectArguments& arguments) {
   const model::Machine read = read_model(arguments.machine);
   const model::Machine machine = arguments.tool.empty() ? read : kinematics::tooled(read, arguments.tool);
@@ -114,8 +124,8 @@ void run_correct(const CorrectArguments& arguments) {
   text::write_file(arguments.output, result);
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
-  fmt::print(out, "{}: {} positions, corrections up to {:.4g} um", arguments.output, summary.positions,
-             summary.largest_um(machine));
+  fmt::print(out, "{}: {} positions, corrections up to {}", arguments.output, summary.positions,
+             largest_corrections(summary, machine, options.with_rotary));
   if (json.contains("moves"))
     fmt::print(out, "; {} moves as {}, {} of them arcs", json["moves"].get<std::size_t>(),
                json["moves_written"].get<std::size_t>(), json["arcs_written"].get<std::size_t>());

@@ -52,19 +52,22 @@ struct RepeatPool {
   }
 };
 
-std::optional<double> repeat_noise_um(const model::Measurement& m) {
+/// Factor from mm or deg to um or urad.
+double report_factor(bool rotations) { return rotations ? maths::kUradPerDeg : maths::kUmPerMm; }
+
+std::optional<double> repeat_noise(const model::Measurement& m, bool rotations) {
   struct PoseReadings {
     double sum = 0, squares = 0;
     std::size_t count = 0;
   };
   std::map<std::pair<std::vector<double>, int>, PoseReadings> groups;
   for (const model::Observation& o : m.observations) {
-    if (m.check[o.row] != 0 || model::is_rotation(o.kind)) continue;
+    if (m.check[o.row] != 0 || model::is_rotation(o.kind) != rotations) continue;
     std::vector<double> key = row_conditions(m, o.row);
     for (const model::Column& correction : m.correction)
       key.push_back(std::round(correction[static_cast<Eigen::Index>(o.row)] / kCorrectionStep));
     PoseReadings& group = groups[{std::move(key), static_cast<int>(o.kind)}];
-    const double value = o.value * maths::kUmPerMm;
+    const double value = o.value * report_factor(rotations);
     // A running mean loses fewer digits than sums of squares about the group's first value.
     ++group.count;
     const double step = value - group.sum;
@@ -79,6 +82,15 @@ std::optional<double> repeat_noise_um(const model::Measurement& m) {
   }
   if (freedom < kLeastRepeatFreedom) return std::nullopt;
   return std::sqrt(squares / static_cast<double>(freedom));
+}
+
+std::optional<double> noise_of(const model::Measurement& m, bool rotations) {
+  if (!has_uncertainty(m)) return repeat_noise(m, rotations);
+  RepeatPool pool;
+  for (const model::Observation& o : m.observations)
+    if (m.check[o.row] == 0 && model::is_rotation(o.kind) == rotations)
+      pool.add(model::uncertainty_of(m, o) * report_factor(rotations));
+  return pool.rms();
 }
 
 }  // namespace
@@ -123,14 +135,8 @@ bool has_uncertainty(const model::Measurement& m) {
   return any;
 }
 
-std::optional<double> noise_um(const model::Measurement& m) {
-  if (!has_uncertainty(m)) return repeat_noise_um(m);
-  RepeatPool pool;
-  for (const model::Observation& o : m.observations)
-    if (m.check[o.row] == 0 && !model::is_rotation(o.kind))
-      pool.add(model::uncertainty_of(m, o) * maths::kUmPerMm);
-  return pool.rms();
-}
+std::optional<double> noise_um(const model::Measurement& m) { return noise_of(m, false); }
+std::optional<double> noise_urad(const model::Measurement& m) { return noise_of(m, true); }
 
 NoiseUnit noise_unit(const model::Measurement& m) {
   const bool with_u = has_uncertainty(m);

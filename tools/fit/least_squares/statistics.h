@@ -33,6 +33,8 @@ std::vector<double> row_conditions(const model::Measurement& m, std::size_t row)
 /// from repeats: rows with the same axes, corrections, motion, inputs and candidates in any run (pooled
 /// standard deviation, at least 5 degrees of freedom). Without u and without repeats the result is nullopt.
 std::optional<double> noise_um(const model::Measurement& m);
+/// The same for the rotations, urad.
+std::optional<double> noise_urad(const model::Measurement& m);
 
 /// Returns the unit of a weighted reading.
 NoiseUnit noise_unit(const model::Measurement& m);

@@ -259,9 +259,10 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
 /// Returns independent noise of the size of the residual.
 NoiseModel white_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                        const Eigen::MatrixXd& fitted, double least_own, const NoiseThresholds& limits) {
-  const Likelihood likelihood(layout, held(residual, limits.held), fitted, least_own);
   NoiseModel model;
   model.in_time = layout.in_time;
+  if (residual.size() <= fitted.cols()) return model;  // no reading is left over to show any noise
+  const Likelihood likelihood(layout, held(residual, limits.held), fitted, least_own);
   model.log_likelihood = -likelihood({}, &model.own) / 2;
   return model;
 }

@@ -316,6 +316,24 @@ void settle_display(const sheet::SheetTable& table, std::vector<SheetColumn>& co
   }
 }
 
+bool names_statistic(const sheet::Heading& heading) {
+  const std::vector<std::string> words = heading_words(heading.name);
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return says_statistic(text::in_small_letters(word)); });
+}
+
+/// The mean or the spread of the readings in the columns beside it is no further reading.
+void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& columns) {
+  const Readings readings(columns);
+  bool reading = false;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    reading |= !names_statistic(table.headings[k]) &&
+               (columns[k].use == SheetColumn::Use::kDeviation || readings.contain(columns[k]));
+  for (std::size_t k = 0; reading && k < columns.size(); ++k)
+    if (columns[k].why == "by its heading" && names_statistic(table.headings[k]))
+      leave(columns[k], "computed from the readings beside it");
+}
+
 /// A sign that is stated: in the heading of a deviation, or in a title for all of them.
 void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                   std::vector<SheetColumn>& columns) {
@@ -473,6 +491,37 @@ std::string angle_of(const std::string& axis, const text::Place& place) {
       "with what was measured");
 }
 
+/// Assignments that read a table in which nothing was recognised as measured, with its own headings.
+std::string assignments_to_try(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
+                               const Guess& guess) {
+  const auto axis = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& column) {
+    return column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name);
+  });
+  std::string position, reading, unit;
+  bool actual = false;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
+        is_known_name(column.name))
+      continue;
+    const Guess::Bare bare = Guess::bare(table.headings[k].name);
+    if (bare == Guess::Bare::kTarget && axis == columns.end() && position.empty()) {
+      position =
+          fmt::format("--column \"{}={}\" ", column.unit.empty() ? "X[mm]" : "X", table.headings[k].text);
+    } else if (reading.empty() || (bare == Guess::Bare::kActual && !actual)) {
+      reading = table.headings[k].text;
+      unit = column.unit;
+      actual = bare == Guess::Bare::kActual;
+    }
+  }
+  const std::string name = axis == columns.end() ? "X" : axis->name;
+  if (reading.empty()) reading = "HEADING";
+  return fmt::format(
+      "{}--column \"{}{}={}\" for a measured position, or {}--deviation \"{}{}={}\" for a deviation",
+      position, text::in_small_letters(name), unit.empty() ? "[mm]" : "", reading, position, name,
+      unit.empty() ? "[um]" : "", reading);
+}
+
 /// One cell as the measurement file writes it.
 std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, const std::string& cell,
                       std::size_t row) {
@@ -562,6 +611,8 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
         wishes.format.decimal_comma = value == "comma";
       else if (name == "skip" && skip)
         wishes.format.skip = *skip;
+      else if (name == "table" && skip)
+        wishes.format.table = *skip;
       else if (name == "sheet")
         wishes.format.sheet = value;
       else if (name == "comment")
@@ -569,10 +620,10 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
       else if (name == "unit" && sheet::unit_meant(value))
         wishes.unit = *sheet::unit_meant(value);
       else
-        throw text::InputError(
-            place, name,
-            "not understood; known are column, deviation, leave, set, separator, decimal, skip, sheet, "
-            "comment, unit");
+        throw text::InputError(place, name,
+                               "not understood; known are column, deviation, leave, set, separator, decimal, "
+                               "skip, table, sheet, "
+                               "comment, unit");
     }
   }
 }
@@ -586,6 +637,7 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
     text += std::string("separator = ") +
             (sheet.separator == ' ' ? "space" : sheet::separator_word(sheet.separator)) + "\n";
   text += std::string("decimal = ") + (sheet.decimal_comma ? "comma" : "point") + "\n";
+  if (wishes.format.table) text += "table = " + std::to_string(*wishes.format.table) + "\n";
   if (wishes.format.skip > 0) text += "skip = " + std::to_string(wishes.format.skip) + "\n";
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
@@ -618,6 +670,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   }
   settle_axis(sheet, table, columns, guess);
   settle_display(table, columns, guess);
+  leave_statistics(table, columns);
   settle(sheet, table, columns, guess);
   settle_signs(sheet, table, columns);
   keep_names_apart(table, columns);
@@ -636,9 +689,14 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                            const std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
   ImportTable result{sheet.file, {}, {}};
   const Guess guess(wishes);
-  const Readings readings(columns);
   std::string without;
-  bool measured = false;
+  // The same value in every row (--set) is a column too.
+  std::vector<SheetColumn> all = columns;
+  for (const MappedColumn& constant : wishes.constants)
+    all.push_back({SheetColumn::Use::kColumn, constant.name, constant.unit, "as given"});
+  const Readings readings(all);
+  bool measured = std::any_of(all.begin() + static_cast<std::ptrdiff_t>(columns.size()), all.end(),
+                              [&](const SheetColumn& column) { return readings.contain(column); });
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     const bool geometry = guess.is_axis(column.name) ||
@@ -658,9 +716,9 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   if (!measured)
     throw text::InputError(heading, "",
                            "nothing measured among the columns (" + format::reading_column_names() +
-                               ", or a deviation of an axis): assign one, such as --column "
-                               "\"x[mm]=HEADING\" or --deviation \"X[um]=HEADING\"; --preview shows what "
-                               "was understood");
+                               ", or a deviation of an axis): assign one, such as " +
+                               assignments_to_try(table, columns, guess) +
+                               "; --preview shows what was understood");
   for (std::size_t k = 0; k < columns.size(); ++k)
     check_quantity(columns[k], guess, table.headings[k].text, heading);
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
@@ -722,9 +780,14 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       settle_senses(sheet, result.line, table.headings[k].text == made.name, made.cells);
     result.columns.push_back(std::move(made));
   }
-  for (const MappedColumn& constant : wishes.constants)
+  for (const MappedColumn& constant : wishes.constants) {
+    if (result.find(constant.name) != nullptr)
+      throw text::InputError(
+          heading, constant.name,
+          "the table has this column: --set would give it a second time (--leave its heading)");
     result.columns.push_back(
         {constant.name, constant.unit, std::vector<std::string>(result.line.size(), constant.constant)});
+  }
   return result;
 }
 

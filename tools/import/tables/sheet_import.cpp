@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include "tools/import/tables/wide_sheet.h"
+#include "tools/sheet/several_tables.h"
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace vernier::importer {
 namespace {
@@ -18,6 +20,7 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   }
   if (!words.comment.empty()) wishes.format.comment = words.comment == "none" ? "" : words.comment;
   if (words.skip) wishes.format.skip = *words.skip;
+  if (words.table) wishes.format.table = words.table;
   if (!words.sheet.empty()) wishes.format.sheet = words.sheet;
   if (!words.axes.empty()) wishes.axes = words.axes;
   if (!words.unit.empty()) {
@@ -40,6 +43,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   SheetReading result;
   result.wishes = wishes_of(words, std::move(wishes));
   result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
+  sheet::keep_table(result.sheet, result.wishes.format.table);
   result.table = sheet::parts_of_sheet(result.sheet);
   result.runs = unfold_runs(result.sheet, result.table);
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
@@ -54,10 +58,14 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
 }
 
 std::string how_read(const sheet::Sheet& sheet) {
-  if (sheet.workbook) return "workbook, sheet \"" + sheet.sheet + "\"";
+  const std::string doubt =
+      sheet.decimal_doubtful ? " (it could separate thousands as well: give --decimal)" : "";
+  if (sheet.workbook)
+    return "workbook, sheet \"" + sheet.sheet + "\"" +
+           (sheet.sheets.size() > 1 ? " of " + text::joined(sheet.sheets, ", ") : "") +
+           (sheet.decimal_comma ? ", numbers stored as text have a decimal comma" + doubt : "");
   return fmt::format("{}, columns separated by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
-                     sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point",
-                     sheet.decimal_doubtful ? " (it could separate thousands as well: give --decimal)" : "");
+                     sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point", doubt);
 }
 
 std::string becomes(const SheetColumn& column) {

@@ -12,7 +12,7 @@ namespace vernier::importer {
 /// Description of a spreadsheet by the user, in the words of `vernier import table`; empty: detected.
 struct SheetWords {
   std::string separator, decimal, comment, sheet, unit;
-  std::optional<std::size_t> skip;
+  std::optional<std::size_t> skip, table;
   std::vector<std::string> columns, deviations, constants, left;
   std::vector<std::string> axes;  // of the machine, if it is known
 };

@@ -21,6 +21,9 @@ const WordSet kMeasuredWords = {"ist",     "istwert", "istposition", "measured",
 const WordSet kDeviationWords = {"abweichung", "abweichungen", "deviation", "deviations", "dev",
                                  "error",      "errors",       "fehler",    "err",        "delta",
                                  "diff",       "abw",          "differenz", "difference", "ecart"};
+const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte",       "mean",  "average",
+                                 "avg",    "mw",         "durchschnitt",      "stdev", "stdabw",
+                                 "stabw",  "spannweite", "standardabweichung"};
 const WordSet kForthWords = {"1",   "+1",  "+",        "forward", "fwd",    "forth",
                              "up",  "pos", "positive", "positiv", "vor",    "vorwärts",
                              "hin", "auf", "plus",     "cw",      "\u2191", "\u2192"};
@@ -68,6 +71,7 @@ std::vector<std::string> heading_words(const std::string& name) {
 
 bool says_target(const std::string& word) { return kTargetWords.contains(word); }
 bool says_measured(const std::string& word) { return kMeasuredWords.contains(word); }
+bool says_statistic(const std::string& word) { return kStatisticWords.contains(word); }
 bool says_deviation(const std::string& word) { return kDeviationWords.contains(word); }
 
 int sense_said(std::string_view word) {

@@ -15,6 +15,8 @@ std::vector<std::string> heading_words(const std::string& name);
 // Meaning of a word, in small letters, for a column, in the languages of shop floors.
 bool says_target(const std::string& word);
 bool says_measured(const std::string& word);
+/// A mean or a spread, which a spreadsheet computes from its readings: "Mittelwert".
+bool says_statistic(const std::string& word);
 bool says_deviation(const std::string& word);
 
 /// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no direction. tool.

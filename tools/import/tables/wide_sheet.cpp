@@ -259,10 +259,18 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   if (data > kMostCells / width / runs.size())
     throw text::InputError({sheet.file, sheet.line[table.heading_row]}, "",
                            "too many rows, a row for each of " + std::to_string(runs.size()) + " runs");
+  // Runs of a survey without approach directions have none, and no column of directions.
+  const bool directed =
+      std::any_of(runs.begin(), runs.end(), [](const RunColumn& one) { return one.sense != 0; });
+  for (const RunColumn& one : runs)
+    if (directed && one.sense == 0)
+      throw text::InputError({sheet.file, sheet.line[table.heading_row]}, table.headings[one.column].text,
+                             "the other runs have an approach direction in their heading, this one has none: "
+                             "write + or - behind its number");
   const sheet::Heading readings = heading_of_readings(sheet, table, runs, others);
   std::vector<sheet::Heading> headings;
   for (const std::size_t k : others) headings.push_back(table.headings[k]);
-  headings.push_back({"sense", "sense", "", ""});
+  if (directed) headings.push_back({"sense", "sense", "", ""});
   headings.push_back({format::columns::kRun, format::columns::kRun, "", ""});
   headings.push_back(readings);
   std::vector<std::vector<std::string>> rows;
@@ -276,7 +284,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
       if (sheet.rows[row][one.column].empty()) continue;
       std::vector<std::string> cells;
       for (const std::size_t k : others) cells.push_back(sheet.rows[row][k]);
-      cells.push_back(one.sense == 0 ? "" : std::to_string(one.sense));
+      if (directed) cells.push_back(std::to_string(one.sense));
       cells.push_back(one.run);
       cells.push_back(sheet.rows[row][one.column]);
       rows.push_back(std::move(cells));

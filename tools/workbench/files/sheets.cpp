@@ -68,6 +68,8 @@ Json sheet_preview(const std::string& bytes, const std::string& file, const impo
   const sheet::Sheet& sheet = reading.sheet;
   Json json = {{"how", importer::how_read(sheet)},
                {"workbook", sheet.workbook},
+               {"sheet", sheet.sheet},
+               {"sheets", sheet.sheets},
                {"separator", sheet::separator_word(sheet.separator)},
                {"decimal", sheet.decimal_comma ? "comma" : "point"},
                {"heading_line",
@@ -100,6 +102,8 @@ importer::SheetWords sheet_words(const nlohmann::json& request) {
   words.unit = text_or_none(request, "unit");
   if (const auto skip = request.find("skip"); skip != request.end() && skip->is_number_integer())
     words.skip = static_cast<std::size_t>(std::max<std::int64_t>(0, skip->get<std::int64_t>()));
+  if (const auto table = request.find("table"); table != request.end() && table->is_number_integer())
+    words.table = static_cast<std::size_t>(std::max<std::int64_t>(0, table->get<std::int64_t>()));
   words.columns = list_or_none(request, "column");
   words.deviations = list_or_none(request, "deviation");
   words.left = list_or_none(request, "leave");

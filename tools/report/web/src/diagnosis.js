@@ -1,25 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el, table, tiles } from './dom.js';
 import { number, printed } from './data.js';
-import { ladder } from './plots.js';
+import { beforeAfter, ladder } from './plots.js';
 
 const kVerdicts = {
   'missing-effect': (best) => `Missing: ${best ? title(best) : 'an effect'}${best?.effect === 'custom' ? ', no named physics' : ''}`,
-  ambiguous: () => 'One of several effects: these measurements cannot tell which',
+  ambiguous: (best, result) => openWords(result) ?? 'One of several effects: these measurements cannot distinguish them',
   unexplained: () => 'Something is missing, and nothing known explains it',
   instrument: () => 'The measurement is the likelier cause, not the machine',
   consistent: () => 'Nothing is missing: the residual is noise',
 };
 
-const um = (label, value, strong) => ({ label, value: number(value, 4), unit: 'µm', strong });
+/** Of two possible headlines of an ambiguous verdict: the cause is found, and only periods are open; null if the cause is open. */
+function openWords(result) {
+  const add = result.ladder?.[1]?.add;
+  const first = (result.candidates ?? []).find((one) => add && one.add === add);
+  const open = (result.candidates ?? []).filter((one) => one.accepted && one.aliases?.length);
+  if (!first || first.confounded_with?.length || result.ladder[1].confirmed === false || !open.length) return null;
+  const spoken = (one) => printed(result.ladder.find((step) => step.add === one.add)?.said ?? title(one));
+  const names = open.map(spoken).join('; ');
+  return open.includes(first) ? `Found, but not its period: ${names}` : `Missing: ${title(first)}. The period is open of: ${names}`;
+}
+
+/** A figure of lengths in µm, of a measurement of angles alone in µrad: its value and unit under a key without the unit. */
+const errorOf = (result, key) =>
+  Number.isFinite(result[`${key}_um`]) || !Number.isFinite(result[`${key}_urad`])
+    ? { value: result[`${key}_um`], unit: 'µm' }
+    : { value: result[`${key}_urad`], unit: 'µrad' };
+const error = (label, result, key, strong) => {
+  const { value, unit } = errorOf(result, key);
+  return { label, value: number(value, 4), unit, strong };
+};
 
 /** The verdict in words, with the numbers it rests on. */
 export function verdict(result) {
   const best = result.candidates?.[0];
-  const words = (kVerdicts[result.verdict] ?? (() => result.verdict ?? 'no verdict'))(best);
-  const items = [um('rms, fit rows', result.rms_um, true), um('rms, check rows', result.check_rms_um, true), um('noise', result.noise_um)];
+  const words = (kVerdicts[result.verdict] ?? (() => result.verdict ?? 'no verdict'))(best, result);
+  const items = [
+    error('rms, fit rows', result, 'rms', true),
+    error('rms, check rows', result, 'check_rms', true),
+    error('noise', result, 'noise'),
+  ];
   if (best && (result.verdict === 'missing-effect' || result.verdict === 'ambiguous')) {
-    items.push(um('rms with the first candidate', best.rms_after_um, true), um('… check rows', best.check_rms_after_um, true));
+    items.push(error('rms with the first candidate', best, 'rms_after', true), error('… check rows', best, 'check_rms_after', true));
   }
   const second = typeof result.runner_up === 'string' ? result.runner_up : (result.runner_up?.said ?? result.runner_up?.effect);
   return [
@@ -48,7 +71,8 @@ export const labelled = (result) => (result.ladder ?? []).map((step, i) => ({ ..
 export function falling(result) {
   const steps = labelled(result);
   if (!steps.length) return null;
-  const floor = steps.map((step) => step.noise_um).find(Number.isFinite) ?? result.noise_um;
+  const lengths = steps.some((step) => Number.isFinite(step.rms_um));
+  const floor = lengths ? (steps.map((step) => step.noise_um).find(Number.isFinite) ?? result.noise_um) : result.noise_urad;
   return [
     ladder(steps, Number.isFinite(floor) ? floor : null),
     el('p', { class: 'note' }, 'Check rows are no part of any fit: only their fall is a gain.'),
@@ -62,16 +86,18 @@ export const title = (one) => printed(one.said ?? `${one.effect}${one.axis ? ` o
 export function candidates(result) {
   const list = result.candidates ?? [];
   if (!list.length) return [el('p', {}, 'No candidate.')];
+  const { unit } = errorOf(list[0], 'rms_after');
   const has = (key) => list.some((one) => one[key] !== undefined && one[key] !== null && one[key] !== '');
   const columns = [
     ['cause', true, title],
-    ['term', true, (one) => one.term ?? ''],
-    ['rms after [µm]', false, (one) => number(one.rms_after_um, 4)],
-    ['check rms after [µm]', false, (one) => number(one.check_rms_after_um, 4)],
+    [`rms after [${unit}]`, false, (one) => number(errorOf(one, 'rms_after').value, 4)],
+    [`check rms after [${unit}]`, false, (one) => number(errorOf(one, 'check_rms_after').value, 4)],
     ['share', false, (one) => (Number.isFinite(one.share) ? `${number(100 * one.share, 3)} %` : '–')],
     ['chance', false, (one) => number(one.p_value, 2)],
     ...(has('score') ? [['score', false, (one) => number(one.score, 4)]] : []),
-    ['not distinguished from', true, (one) => (one.confounded_with ?? []).join(', ')],
+    ...(list.some((one) => one.confounded_with?.length)
+      ? [['not distinguished from', true, (one) => (one.confounded_with ?? []).join(', ')]]
+      : []),
     ...(has('why_not') ? [['why not', true, (one) => one.why_not ?? '']] : []),
   ];
   const values = (one) =>
@@ -91,6 +117,7 @@ export function candidates(result) {
         'ul',
         {},
         one.label ? el('li', {}, `In the chain: ${one.label}`) : null,
+        one.term ? el('li', {}, 'Term: ', el('code', {}, one.term)) : null,
         one.signature ? el('li', {}, `Signature: ${one.signature}`) : null,
         values(one) ? el('li', {}, `Fitted: ${values(one)}`) : null,
         one.impostors?.length ? el('li', {}, `Known impostors: ${one.impostors.join(', ')}`) : null,
@@ -103,6 +130,7 @@ export function candidates(result) {
       'Candidates, best first: what each would do alone',
       columns.map(([name, left]) => ({ name, left })),
       list.map((one) => columns.map(([, , text]) => text(one))),
+      { whole: true },
     ),
     ...list.slice(0, 12).map(detail),
   ];
@@ -125,9 +153,24 @@ export function simulated(result) {
   const s = result.simulation;
   if (!s) return null;
   return tiles([
-    um('rms without correction', s.rms_before_um, true),
-    um('rms with correction', s.rms_after_um, true),
-    um('largest with correction', s.max_after_um),
-    { label: 'ticks', value: number(s.ticks, 7) },
+    error('rms without correction, fit rows', s, 'rms_before', true),
+    error('rms with correction, fit rows', s, 'rms_after', true),
+    error('largest without correction', s, 'max_before'),
+    error('largest with correction', s, 'max_after'),
+    { label: 'ticks of 1 ms', value: number(s.ticks, 7) },
   ]);
+}
+
+/** The residuals before the first and after the last effect. */
+export function pictures(result) {
+  const list = result.pictures ?? [];
+  if (!list.length) return null;
+  return [
+    el('div', { class: 'pictures' }, list.map(beforeAfter)),
+    el(
+      'p',
+      { class: 'note' },
+      'Each point is a reading minus the model: before the first effect was added, and after the last. A pattern before that is gone after is explained.',
+    ),
+  ];
 }

@@ -46,12 +46,12 @@ export function section(root, title, ...children) {
   return node;
 }
 
-/** Table of texts; columns: [{name, left}] (left: text, else a right-aligned number). */
-export function table(caption, columns, rows) {
+/** Table of texts; columns: [{name, left}] (left: text, else a right-aligned number). whole: all rows and columns are in sight. */
+export function table(caption, columns, rows, { whole = false } = {}) {
   const cell = (name, column, text) => el(name, { class: column.left ? 'text' : 'num', scope: name === 'th' ? 'col' : null }, text);
   return el(
     'div',
-    { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': caption },
+    { class: whole ? 'scroll whole' : 'scroll', tabindex: '0', role: 'region', 'aria-label': caption },
     el(
       'table',
       {},

@@ -5,22 +5,24 @@ import { circleTable, polarPlot } from './polar.js';
 import { byKind, residualMatrix, unitOf } from './matrix.js';
 import { curves, histogram, ladder } from './plots.js';
 import { volume } from './volume.js';
-import { candidates, falling, next, simulated, verdict } from './diagnosis.js';
+import { candidates, falling, next, pictures, simulated, verdict } from './diagnosis.js';
 import { failure, findingList } from './failure.js';
 
 const root = document.getElementById('report');
 
 function summary(result) {
-  const um = (label, value, hint, strong) => ({ label, value: number(value, 4), unit: 'µm', hint, strong });
+  const angles = !Number.isFinite(result.rms_um) && Number.isFinite(result.rms_urad);
+  const of = (key) => (angles ? result[`${key}_urad`] : result[`${key}_um`]);
+  const um = (label, key, hint, strong) => ({ label, value: number(of(key), 4), unit: angles ? 'µrad' : 'µm', hint, strong });
   const count = (label, value) => ({ label, value: value === undefined || value === null ? '–' : String(value) });
   const items = [
-    um('rms, fit rows', result.rms_um, 'root mean square of measured − model over the fit rows', true),
-    um('rms, check rows', result.check_rms_um, 'the same over rows that no fit has seen', true),
-    um('max, fit rows', result.max_um),
-    um('max, check rows', result.check_max_um),
-    um('noise', result.noise_um, 'of the measurement: from its stated uncertainty or from repeats'),
+    um('rms, fit rows', 'rms', 'root mean square of measured − model over the fit rows', true),
+    um('rms, check rows', 'check_rms', 'the same over rows that no fit has seen', true),
+    um('max, fit rows', 'max'),
+    um('max, check rows', 'check_max'),
+    um('noise', 'noise', 'of the measurement: from its stated uncertainty or from repeats'),
   ];
-  if (Number.isFinite(result.rms_urad)) items.push({ label: 'rms, rotations', value: number(result.rms_urad, 4), unit: 'µrad' });
+  if (!angles && Number.isFinite(result.rms_urad)) items.push({ label: 'rms, rotations', value: number(result.rms_urad, 4), unit: 'µrad' });
   items.push(count('observations', result.n_obs), count('rows excluded', result.n_excluded));
   return tiles(items);
 }
@@ -113,6 +115,7 @@ function diagnosis(result) {
 
 function improvement(result) {
   optional('The error falls', falling(result));
+  optional('Residuals before and after', pictures(result));
   optional('In the control loop', simulated(result));
   if (result.verdict) section(root, 'At the end', verdict(result).filter(Boolean));
   for (const step of result.steps ?? []) {

@@ -81,49 +81,66 @@ export function ladder(steps, noise = null) {
   return el('figure', {}, chart('Rms of fit and check rows at each step', ladderOptions(steps, noise)));
 }
 
-/** What `chart` wants for it. */
+const kLabelWidth = 300, // px of the label of a step
+  kLettersOfLine = 40, // of 13 px in that width
+  kLineHeight = 18;
+
+/** What `chart` wants for it. A measurement of angles alone has steps in µrad. */
 export function ladderOptions(steps, noise = null) {
+  const lengths = steps.some((step) => Number.isFinite(step.rms_um)) || !steps.some((step) => Number.isFinite(step.rms_urad));
+  const unit = lengths ? 'µm' : 'µrad',
+    key = lengths ? 'um' : 'urad';
+  // A row is as high as its label: one of four lines stands over its neighbours else.
+  const lines = Math.max(1, ...steps.map((step) => Math.ceil((step.label ?? '').length / kLettersOfLine)));
+  const rowHeight = Math.max(58, kLineHeight * (lines + 1));
   return () => {
     const c = colours();
-    const bar = (name, key, color) => ({
+    const bar = (name, of, color) => ({
       name,
       type: 'bar',
-      data: steps.map((step) => step[key] ?? null),
+      data: steps.map((step) => step[of] ?? null),
       barMaxWidth: 26,
       itemStyle: { color },
-      label: { show: true, position: 'right', color: c.ink, fontSize: 12, formatter: ({ value }) => number(value, 3) },
+      label: {
+        show: true,
+        position: 'right',
+        color: c.ink,
+        backgroundColor: c.panel,
+        fontSize: 12,
+        formatter: ({ value }) => number(value, 3),
+      },
     });
-    const series = [bar('fit rows', 'rms_um', c.fit)];
-    if (steps.some((step) => Number.isFinite(step.check_rms_um)))
-      series.push(bar('check rows (not seen by the fit)', 'check_rms_um', c.check));
+    const series = [bar('fit rows', `rms_${key}`, c.fit)];
+    if (steps.some((step) => Number.isFinite(step[`check_rms_${key}`])))
+      series.push(bar('check rows (not seen by the fit)', `check_rms_${key}`, c.check));
     if (noise !== null) {
       series[0].markLine = {
         silent: true,
         symbol: 'none',
         data: [{ xAxis: noise }],
         lineStyle: { color: c.trend, type: 'dashed', width: 1.5 },
-        label: { formatter: `noise ${number(noise, 3)} µm`, color: c.ink, position: 'start', distance: 2 },
+        label: { formatter: `noise ${number(noise, 3)} ${unit}`, color: c.ink, position: 'start', distance: 2 },
       };
     }
     return {
-      height: 90 + 58 * steps.length,
+      height: 90 + rowHeight * steps.length,
       option: {
         legend: { ...legendStyle(c), top: 0, left: 0 },
         tooltip: {
           ...tooltipStyle(c),
           trigger: 'axis',
           axisPointer: { type: 'shadow' },
-          valueFormatter: (value) => `${number(value, 4)} µm`,
+          valueFormatter: (value) => `${number(value, 4)} ${unit}`,
         },
         grid: { left: 10, right: 60, top: 34, bottom: noise === null ? 44 : 62, containLabel: true },
-        xAxis: { ...axisStyle(c), type: 'value', min: 0, name: 'rms [µm]', nameLocation: 'middle', nameGap: noise === null ? 28 : 46 },
+        xAxis: { ...axisStyle(c), type: 'value', min: 0, name: `rms [${unit}]`, nameLocation: 'middle', nameGap: noise === null ? 28 : 46 },
         yAxis: {
           ...axisStyle(c),
           type: 'category',
           inverse: true,
           data: steps.map((step) => step.label),
           splitLine: { show: false },
-          axisLabel: { color: c.ink, fontSize: 13, width: 300, overflow: 'break' },
+          axisLabel: { color: c.ink, fontSize: 13, width: kLabelWidth, lineHeight: kLineHeight, overflow: 'break' },
         },
         series,
       },
@@ -131,13 +148,60 @@ export function ladderOptions(steps, noise = null) {
   };
 }
 
-/** Curves over one quantity: {x: {name, unit, values}, y: [{name, unit, values}], bars, log}. */
+/** Residuals of two models over one column: {observation, unit, column, column_unit, x[], before[], after[]}. */
+export function beforeAfter(picture) {
+  const unit = picture.unit === 'urad' ? 'µrad' : 'µm';
+  const x = `${picture.column}${picture.column_unit ? ` [${picture.column_unit}]` : ''}`;
+  return el(
+    'figure',
+    {},
+    chart(`Residual of ${picture.observation} in ${unit} against ${x}, before and after`, () => {
+      const c = colours();
+      const points = (name, values, color) => ({
+        name,
+        type: 'scatter',
+        symbolSize: 4,
+        data: Array.from(picture.x, (at, i) => [at, values[i]]),
+        itemStyle: { color, opacity: 0.8 },
+      });
+      return {
+        height: 280,
+        option: {
+          legend: { ...legendStyle(c), top: 0, right: 8 },
+          tooltip: { ...tooltipStyle(c), valueFormatter: (value) => number(value, 4) },
+          grid: { left: 66, right: 16, top: 30, bottom: 46 },
+          xAxis: {
+            ...axisStyle(c),
+            type: 'value',
+            scale: true,
+            name: x,
+            nameLocation: 'middle',
+            nameGap: 28,
+            splitLine: { show: false },
+            axisLine: { ...axisStyle(c).axisLine, onZero: false },
+          },
+          yAxis: {
+            ...axisStyle(c),
+            type: 'value',
+            name: `residual of ${picture.observation} [${unit}]`,
+            nameLocation: 'middle',
+            nameGap: 44,
+            axisLine: { show: false, onZero: false },
+          },
+          series: [points('before', picture.before, c.check), points('after', picture.after, c.fit)],
+        },
+      };
+    }),
+  );
+}
+
+/** Curves over one quantity: {x: {name, unit, values}, y: [{name, unit, values, colour, style: dashed or points}], bars, log}. */
 export function curves(plotted) {
   const name = (one) => `${one.name}${one.unit ? ` [${one.unit}]` : ''}`;
   return el(
     'figure',
     {},
-    chart(`${plotted.y.map(name).join(', ')} against ${name(plotted.x)}`, () => {
+    chart(`${[...new Set(plotted.y.map(name))].join(', ')} against ${name(plotted.x)}`, () => {
       const c = colours();
       const palette = [c.fit, c.check, c.ccw, c.cw];
       const series = plotted.y.map((one, i) => ({
@@ -146,8 +210,13 @@ export function curves(plotted) {
         showSymbol: false,
         sampling: 'lttb',
         data: Array.from(plotted.x.values, (x, k) => [x, one.values[k]]),
-        itemStyle: { color: palette[i % 4] },
-        lineStyle: { color: palette[i % 4], width: 1.5 },
+        itemStyle: { color: palette[(one.colour ?? i) % 4] },
+        lineStyle: {
+          color: palette[(one.colour ?? i) % 4],
+          width: one.style === 'points' ? 0 : one.style === 'dashed' ? 1 : 1.5,
+          type: one.style === 'dashed' ? 'dashed' : 'solid',
+        },
+        ...(one.style === 'points' ? { showSymbol: true, symbol: 'circle', symbolSize: 4, sampling: undefined } : {}),
       }));
       const unit = plotted.y[0].unit ? ` [${plotted.y[0].unit}]` : '';
       return {
@@ -169,6 +238,7 @@ export function curves(plotted) {
             ...axisStyle(c),
             type: 'value',
             scale: true,
+            axisLine: { ...axisStyle(c).axisLine, onZero: false },
             name: plotted.y.length === 1 ? name(plotted.y[0]) : `value${unit}`,
             nameLocation: 'middle',
             nameGap: 48,

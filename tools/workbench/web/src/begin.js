@@ -71,7 +71,7 @@ export function beginPanel(choose) {
         rows,
         'What was measured: drop any spreadsheet (.xlsx, .csv, .txt), file of a ball bar or an interferometer (.b5r, .rtl) or measurement file above.',
       ),
-      item(machine, 'Which machine: drop its machine file (.xml), or make one below.'),
+      item(machine, 'Which machine: drop its machine file (.xml) or the description of a robot (.urdf), or make one below.'),
       item(false, 'Then go to Compare: where the model fails, and from there along the path at the top.'),
     );
     root.hidden = machine && rows;

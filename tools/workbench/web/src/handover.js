@@ -45,6 +45,7 @@ export function handoverPanel() {
     const list = kHeader.filter((key) => values[key]).map((key) => `${key}=${values[key]}`);
     return list.length ? { header: list } : {};
   };
+  const answer = el('p', { id: 'handover-answer', class: 'verdict', role: 'status' });
   const offer = (name) => links.append(el('a', { href: fileAddress(name), target: '_blank', rel: 'noopener' }, name), ' ');
   const report = (label, id, base, fields_of) =>
     button(
@@ -52,11 +53,13 @@ export function handoverPanel() {
       () =>
         guarded(error, async () => {
           const output = freeName(base(), '.html');
+          answer.textContent = '';
           try {
             await run({ ...fields_of(), ...header(), output });
           } catch (why) {
-            // A tolerance that is not met is an answer: the report says it.
+            // A tolerance that is not met is an answer: the report has the figures.
             if (why.job?.exit !== 2) throw why;
+            answer.textContent = `Not met: ${why.message.replace(/^vernier: /, '')}`;
           }
           offer(output);
         }),
@@ -132,6 +135,7 @@ export function handoverPanel() {
         }),
       ),
     ),
+    answer,
     links,
     error,
   );

@@ -22,15 +22,17 @@ export const panel = (title, ...children) => el('section', { class: 'panel' }, t
 /** Attributes of a button that a machine and rows have to be chosen for. */
 export const needsSubject = { 'data-needs-subject': '', disabled: '' };
 
-/** What stands where there is nothing to show yet. */
+/** What stands where there is nothing to show yet: what to choose, or why the chosen rows cannot be read. */
 export const nothingYet = () =>
-  el(
-    'p',
-    { class: 'note empty' },
-    'Choose a machine and measurements at the top, or take files in under ',
-    el('a', { href: '#project' }, 'Project'),
-    '.',
-  );
+  store.refusal
+    ? el('p', { class: 'error', role: 'alert' }, store.refusal, ' ', el('a', { href: '#project' }, 'Project'))
+    : el(
+        'p',
+        { class: 'note empty' },
+        'Choose a machine and measurements at the top, or take files in under ',
+        el('a', { href: '#project' }, 'Project'),
+        '.',
+      );
 
 /** A chart of the plotting library with its exports. */
 export const figure = (label, options, caption = null) =>

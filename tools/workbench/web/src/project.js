@@ -6,6 +6,7 @@ import { optionFields } from './options.js';
 import { button, panel, showError } from './parts.js';
 import { loadRows } from './rows.js';
 import { importSheet } from './sheet.js';
+import { stoodPanel } from './stood.js';
 import { on, store } from './store.js';
 
 const kKinds = {
@@ -52,9 +53,9 @@ async function isSheet(name) {
 /** The kind of `vernier import` that reads a file of the project without further options. */
 const importerOf = (name) => store.files.find((one) => one.name === name)?.importer;
 
-/** Makes a measurement of a file of the project, as its kind asks for. */
-async function importFile(name, box, repair) {
-  const done = (output) => choose(store.machine, [output]);
+/** Makes a measurement of a file of the project, as its kind asks for. `beside`: measurements to use with it. */
+async function importFile(name, box, repair, beside = []) {
+  const done = (output) => choose(store.machine, [...beside, output]);
   const kind = importerOf(name);
   if (kind) {
     const output = freeName(name.replace(/\.[^.]*$/, ''), '.csv');
@@ -65,15 +66,21 @@ async function importFile(name, box, repair) {
   return importSheet(box, name, done);
 }
 
-/** A dropped file becomes part of the project; what is no measurement file yet is imported. */
-async function take(file, repair, box) {
+/** A dropped file becomes part of the project; what is no measurement file yet is imported. `beside`: measurements to use with it. */
+async function take(file, repair, box, beside) {
   const bytes = await file.arrayBuffer();
   const name = file.name.replace(/[\\/:]/g, '_').replace(/^[.\-~ ]+/, '');
   await putFile(name, bytes);
   await refresh();
   if (/\.xml$/i.test(name)) return choose(name, store.measurements);
-  if (importerOf(name) || (kSheet.test(name) && (await isSheet(name)))) return importFile(name, box, repair);
-  if (/\.csv$/i.test(name)) return choose(store.machine, [name]);
+  if (/\.urdf$/i.test(name)) {
+    const stem = name.replace(/\.[^.]*$/, ''),
+      output = freeName(stem, '.xml');
+    await run({ command: 'new', type: 'robot', urdf: name, output, measurements: freeName(`${stem}_survey`, '.csv') });
+    return choose(output, store.measurements);
+  }
+  if (importerOf(name) || (kSheet.test(name) && (await isSheet(name)))) return importFile(name, box, repair, beside);
+  if (/\.csv$/i.test(name)) return choose(store.machine, [...beside, name]);
   return null;
 }
 
@@ -157,15 +164,22 @@ export function projectView(root) {
   const zone = el(
     'div',
     { class: 'drop', id: 'drop' },
-    el('p', {}, 'Drop what was measured (.csv, .xlsx, .txt, files of an instrument) and machine files (.xml) here, or choose them: '),
+    el(
+      'p',
+      {},
+      'Drop what was measured (.csv, .xlsx, .txt, files of an instrument) and machine files (.xml, .urdf) here, or choose them: ',
+    ),
     pick,
     repair.elements,
   );
   const takeAll = async (files) => {
     error.replaceChildren();
+    // Measurements of one drop belong together: two instruments at one machine.
+    const before = new Set(store.measurements);
     for (const file of files) {
       try {
-        await take(file, repair.values(), box);
+        const beside = store.measurements.filter((name) => !before.has(name));
+        await take(file, repair.values(), box, beside);
       } catch (why) {
         await showBadLine(error, file, why.message);
         return;
@@ -206,6 +220,7 @@ export function projectView(root) {
   root.append(
     panel('Take in', zone, error),
     box,
+    stoodPanel(choose),
     beginPanel(choose),
     panel(
       'Files',

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { getBlob } from './api.js';
+import { getBlob, Refused } from './api.js';
 import { emit, select, selection, store } from './store.js';
 
 const kAcross = { x: 0, y: 1, z: 2 };
@@ -90,18 +90,29 @@ export const measured = () => ({ machine: store.machine, meas: store.measurement
 /** The same for the comparison. */
 export const compared = () => ({ ...measured(), ...(store.datum ? { datum: true } : {}) });
 
-/** Loads the machine and rows that are chosen; everything else follows from the event. */
+/** Loads the machine and rows that are chosen; everything else follows from the event. Rows that cannot be read: `refusal`. */
 export async function loadRows() {
-  if (!store.machine || !store.measurements.length) {
+  const asked = [store.machine, ...store.measurements].join('\n');
+  store.refusal = null;
+  let rows = null;
+  if (store.machine && store.measurements.length) {
+    try {
+      rows = await getBlob('/api/rows', {
+        machine: store.machine,
+        measurement: store.measurements,
+        ...(store.datum ? { datum: '1' } : {}),
+      });
+    } catch (why) {
+      if (!(why instanceof Refused)) throw why;
+      if (asked === [store.machine, ...store.measurements].join('\n')) store.refusal = why.message;
+    }
+  }
+  if (asked !== [store.machine, ...store.measurements].join('\n')) return; // chosen anew in the meantime
+  if (!rows) {
     store.rows = null;
     emit('rows');
     return;
   }
-  const rows = await getBlob('/api/rows', {
-    machine: store.machine,
-    measurement: store.measurements,
-    ...(store.datum ? { datum: '1' } : {}),
-  });
   rows.columns = rows.columns.filter(varies);
   setResiduals(rows, rows.observations.residual);
   const same = store.rows && store.rows.n_rows === rows.n_rows;

@@ -7,13 +7,13 @@ import { emit, on, store } from './store.js';
 
 /** The rules in words for the person at the machine (tools/docs/safety.md has their reasons). */
 const kAsks = {
-  correction: 'How far would it move the machine?',
+  correction: 'Is the largest correction small beside the machine?',
   'max-correction': "Does it stay within each axis' limit?",
-  cancellation: 'Do large terms cancel one another?',
+  cancellation: 'Are there no large terms that cancel one another?',
   uncertainty: 'Is the correction known well enough?',
   'measured-range': 'Was it measured where it works?',
   'input-range': 'Were temperatures and inputs in that range?',
-  'set-up': 'Would the set-up of the instrument reach an axis?',
+  'set-up': 'Is the set-up of the instrument kept out of the axes?',
   converged: 'Did the fit converge?',
   residual: 'Is little left of the readings?',
   outlier: 'Does no single reading stand apart?',
@@ -60,6 +60,17 @@ function safetyTable(rules) {
   );
 }
 
+const kWhyUnknown = {
+  'check-rows': 'the fit had no check rows (column role)',
+  'max-correction': 'no axis has a limit (maxcorrection)',
+};
+
+/** Why rules have no value: no fit wrote the file, else what the fit did not have. */
+function reasonOf(unknown) {
+  if (unknown.includes('converged')) return 'no fit wrote this file.';
+  return `${unknown.map((rule) => kWhyUnknown[rule] ?? rule).join(', ')}.`;
+}
+
 /** The sheet of the machine that is chosen, before anything is compiled; looked at whenever this view is. */
 export function safetyPanel() {
   const box = el('div', { class: 'safety-room' }),
@@ -76,9 +87,9 @@ export function safetyPanel() {
     if (asked !== store.machine) return;
     store.safety = sheet;
     emit('safety');
-    const unknown = sheet ? sheet.rules.filter((one) => one.value === null).length : 0;
-    const holds = unknown
-      ? `What is known holds; ${unknown} of ${sheet.rules.length} rules cannot be evaluated: no fit wrote this file.`
+    const unknown = (sheet?.rules ?? []).filter((one) => one.value === null).map((one) => one.rule);
+    const holds = unknown.length
+      ? `What is known holds; ${unknown.length} of ${sheet.rules.length} rules cannot be evaluated: ${reasonOf(unknown)}`
       : 'Every rule holds.';
     words.textContent = sheet ? (sheet.ok ? holds : `Not safe: ${sheet.refusal}`) : '';
     words.classList.toggle('error', Boolean(sheet) && !sheet.ok);

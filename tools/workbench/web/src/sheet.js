@@ -24,7 +24,7 @@ function likely(preview) {
 const withUnit = (one) => `${one.name}${one.unit ? `[${one.unit}]` : ''}`;
 
 /** What the table of columns and the preview say; all other options of the import have fields. */
-const kInTable = ['file', 'output', 'column', 'deviation', 'leave'];
+const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet'];
 const kOfPreview = [...kInTable, 'separator', 'decimal', 'skip', 'header'];
 
 /** The options of an import without the preview's help: a tracker's and a probe's table. */
@@ -82,6 +82,7 @@ function columnRow(column, k, preview, change) {
 export async function importSheet(box, name, done) {
   const said = new Map();
   let kind = null,
+    sheet = '', // of a workbook; empty: the program's choice
     turn = 0;
   const error = el('div', {});
   const forms = Object.fromEntries(
@@ -96,21 +97,53 @@ export async function importSheet(box, name, done) {
     }
     return Object.fromEntries(Object.entries(lists).filter(([, list]) => list.length));
   };
-  const ask = () => postJson('/api/sheet', { name, machine: store.machine, ...forms.table.values(), ...columns() });
+  const ofSheet = () => (sheet ? { sheet } : {});
+  const ask = () => postJson('/api/sheet', { name, machine: store.machine, ...ofSheet(), ...forms.table.values(), ...columns() });
   const doImport = (preview) =>
     guarded(error, async () => {
       const output = freeName(`${name.replace(/\.[^.]*$/, '')}_read`, '.csv');
-      const options = kind === 'table' ? columns() : ofPreview(preview);
+      const options = kind === 'table' ? { ...ofSheet(), ...columns() } : ofPreview(preview);
       await run({ command: `import ${kind}`, file: name, ...options, ...forms[kind].values(), output });
-      box.replaceChildren(panel(null, el('p', { id: 'imported' }, `${name}: ${preview.how}. Read into `, el('strong', {}, output), '.')));
+      box.replaceChildren(
+        panel(
+          null,
+          el('p', { id: 'imported' }, `${name}: ${preview.how}. Read into `, el('strong', {}, output), '.'),
+          button('Read it differently', () => draw(preview), { class: 'quiet', id: 'read-differently' }),
+        ),
+      );
       await done(output);
     });
+  const sheets = (now) => {
+    const node = choice(
+      'sheet',
+      now.sheets.map((one) => [one, one]),
+      now.sheet,
+      (value) => {
+        sheet = value;
+        said.clear();
+        return draw();
+      },
+    );
+    node.querySelector('select').id = 'sheet-of-workbook';
+    return node;
+  };
+  let read = null; // the last preview that could be read
+  // What cannot be read at all may be read with other options: another line, table or sheet.
+  const refused = () =>
+    box.replaceChildren(
+      panel(
+        `What is in ${name}?`,
+        error,
+        el('div', { class: 'controls' }, read?.sheets.length > 1 ? sheets({ ...read, sheet }) : null, forms.table.elements),
+      ),
+    );
   async function draw(preview = null) {
     const mine = ++turn;
     error.replaceChildren();
     const now = preview ?? (await guarded(error, ask));
     if (mine !== turn) return null; // asked anew in the meantime
-    if (!now) return box.replaceChildren(error);
+    if (!now) return refused();
+    read = now;
     kind ??= likely(now);
     const go = button('Import', () => doImport(now), { id: 'do-import' });
     go.disabled = kind === 'table' && now.message !== null;
@@ -126,6 +159,7 @@ export async function importSheet(box, name, done) {
             kind = value;
             return draw(now);
           }),
+          kind === 'table' && now.sheets.length > 1 ? sheets(now) : null,
           forms[kind].elements,
         ),
         el(
@@ -169,7 +203,10 @@ export async function importSheet(box, name, done) {
   }
   box.replaceChildren(error);
   const first = await guarded(error, ask);
-  if (!first) return;
+  if (!first) {
+    refused();
+    return;
+  }
   kind = likely(first);
   if (first.message === null && kind === 'table') await doImport(first);
   else await draw(first);

@@ -17,6 +17,7 @@ export const store = {
   overlay: null,
   datum: true, // the set-up is fitted before anything is compared
   parameters: [],
+  refusal: null, // why the chosen rows cannot be read
   steps: [], // what was tried in this session, in order: {label, machine, rms_um, check_rms_um, noise_um}
   safety: null,
   uploaded: false,

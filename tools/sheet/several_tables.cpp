@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/sheet/several_tables.h"
+
+#include <iterator>
+#include <string>
+
+#include "tools/sheet/dates.h"
+#include "tools/sheet/heading.h"
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
+
+namespace vernier::sheet {
+namespace {
+
+bool is_number(const Sheet& sheet, std::size_t row, std::size_t column) {
+  return plain_number(sheet.rows[row][column], sheet.decimal_comma).has_value();
+}
+
+/// A word of a heading: no mark of a missing value, no date.
+bool is_word(const std::string& cell) {
+  return !cell.empty() && !begins_with_error_value(cell) && !is_date(cell) &&
+         text::in_small_letters(cell) != "n/a" && cell.find_first_not_of('-') != std::string::npos;
+}
+
+/// No number, and at least two words in columns that have numbers in the row of data before.
+bool is_line_of_headings(const Sheet& sheet, std::size_t row, std::size_t data) {
+  std::size_t words = 0;
+  for (std::size_t k = 0; k < sheet.rows[row].size(); ++k) {
+    if (is_number(sheet, row, k)) return false;
+    words += is_number(sheet, data, k) && is_word(sheet.rows[row][k]) ? 1 : 0;
+  }
+  return words >= 2;
+}
+
+}  // namespace
+
+std::vector<std::size_t> tables_of(const Sheet& sheet) {
+  std::vector<std::size_t> first = {0};
+  bool data = false, headings = false;  // since the table began; since the last row of data
+  std::size_t begin = 0;                // of the rows behind the last row of data
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
+    if (!is_row_of_data(sheet, row)) {
+      headings |= data && is_line_of_headings(sheet, row, begin - 1);
+      continue;
+    }
+    if (data && headings) first.push_back(begin);
+    data = true;
+    headings = false;
+    begin = row + 1;
+  }
+  return first;
+}
+
+void keep_table(Sheet& sheet, std::optional<std::size_t> number) {
+  const std::vector<std::size_t> first = tables_of(sheet);
+  if (!number && first.size() == 1) return;
+  std::string lines;
+  for (const std::size_t row : first) lines += (lines.empty() ? "" : ", ") + std::to_string(sheet.line[row]);
+  const std::string found = std::to_string(first.size()) + " table" + (first.size() == 1 ? "" : "s") +
+                            " (first line: " + lines + ")";
+  if (!number)
+    throw text::InputError({sheet.file, sheet.line[first[1]]}, "",
+                           "a second line of headings: the file has " + found +
+                               "; import each with --table 1 and so on, then give all files to the command");
+  if (*number < 1 || *number > first.size())
+    throw text::InputError({sheet.file, 0}, std::to_string(*number), "no such table: the file has " + found);
+  const auto part = [&](auto& list) {
+    const auto at = [&](std::size_t table) {
+      return table < first.size() ? list.begin() + static_cast<std::ptrdiff_t>(first[table]) : list.end();
+    };
+    list = {std::make_move_iterator(at(*number - 1)), std::make_move_iterator(at(*number))};
+  };
+  part(sheet.rows);
+  part(sheet.line);
+}
+
+}  // namespace vernier::sheet

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "tools/sheet/sheet.h"
+
+namespace vernier::sheet {
+
+/// Index of the first row of each table of a sheet, its titles included. A table begins where a line of
+/// headings follows rows of data, and has data itself. One entry for a sheet of one table. tool.
+std::vector<std::size_t> tables_of(const Sheet& sheet);
+
+/// Keeps the rows of one table, from 1. Without a number the sheet must have one table. Throws InputError
+/// that names the lines of the tables. tool.
+void keep_table(Sheet& sheet, std::optional<std::size_t> number);
+
+}  // namespace vernier::sheet

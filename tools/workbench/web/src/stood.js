@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { el } from '../../../report/web/src/dom.js';
+import { freeName, run } from './api.js';
+import { button, guarded, panel } from './parts.js';
+import { on, store } from './store.js';
+
+/** Columns that the refusal of rows asks for: [name[unit]]; the file that lacks them. */
+function asked(refusal) {
+  const file = refusal?.match(/^(.+?):\d+: /)?.[1];
+  return { file, columns: [...(refusal?.matchAll(/--set "([^"=]+)=POSITION"/g) ?? [])].map((one) => one[1]) };
+}
+
+const number = (id, label, size) => el('input', { type: 'text', inputmode: 'decimal', id, 'aria-label': label, size });
+const value = (input) => input.value.trim().replace(',', '.');
+
+/**
+ * Why the chosen rows cannot be read. Where axes of the machine have no column: fields for where they stood, and for the
+ * uncertainty of the readings; both become columns of a new measurement file. `choose(machine, measurements)`.
+ */
+export function stoodPanel(choose) {
+  const room = el('div', { id: 'stood-room' }),
+    error = el('div', {});
+  const draw = () => {
+    const { file, columns } = asked(store.refusal);
+    if (!store.refusal) return room.replaceChildren();
+    const words = el('p', { class: 'error', role: 'alert' }, store.refusal);
+    if (!columns.length || !file) return room.replaceChildren(panel('These rows cannot be read', words));
+    const fields = columns.map((column) => [column, number(`stood-${column.replace(/\W.*/, '')}`, `${column} stood at`, '8')]);
+    const u = number('stood-u', 'standard uncertainty of the readings, um', '5');
+    const add = button(
+      'Add to every row',
+      () =>
+        guarded(error, async () => {
+          const set = fields.map(([column, input]) => `${column}=${value(input)}`);
+          if (value(u)) set.push(`u[um]=${value(u)}`);
+          const output = freeName(`${file.replace(/\.[^.]*$/, '')}_with_axes`, '.csv');
+          await run({ command: 'import table', file, set, output });
+          await choose(
+            store.machine,
+            store.measurements.map((one) => (one === file ? output : one)),
+          );
+        }),
+      { id: 'stood-add' },
+    );
+    const ready = () => {
+      add.disabled = fields.some(([, input]) => !Number.isFinite(parseFloat(value(input))));
+    };
+    for (const [, input] of fields) input.addEventListener('input', ready);
+    ready();
+    return room.replaceChildren(
+      panel(
+        `Where did the other axes stand in ${file}?`,
+        el('p', {}, 'The machine has axes without a column in this file. If they stood still, state their positions.'),
+        el(
+          'div',
+          { class: 'controls' },
+          fields.map(([column, input]) => el('label', { class: 'choice' }, `${column} `, input)),
+          el('label', { class: 'choice', title: 'if the file has no column u; may stay empty' }, 'standard uncertainty u [um] ', u),
+          add,
+        ),
+        error,
+      ),
+    );
+  };
+  on('rows', draw);
+  draw();
+  return room;
+}
