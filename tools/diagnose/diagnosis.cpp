@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/diagnose/copies.h"
 #include "tools/diagnose/finder.h"
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/proof.h"
@@ -334,7 +335,11 @@ void withdraw_if_the_fit_contradicts(Diagnosis& answer) {
 Diagnosis diagnose(const std::string& text, const model::Machine& given,
                    const model::Measurement& measurement, const DiagnoseOptions& options) {
   model::require_time_order(measurement);
-  Diagnosis answer = searched(text, effects::with_base_row(given), measurement, options);
+  const std::optional<WithoutCopies> distinct = without_copies(measurement);
+  Diagnosis answer =
+      searched(text, effects::with_base_row(given),
+               distinct ? model::select_rows(measurement, distinct->kept) : measurement, options);
+  if (distinct) answer.explanation += " " + distinct->sentence;
   withdraw_if_the_fit_contradicts(answer);
   return answer;
 }

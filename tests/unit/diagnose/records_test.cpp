@@ -221,7 +221,7 @@ TEST(Records, EveryStepOfTheCheckRowsIsTold) {
 
 /// 160 random positions with five readings each. Each position has an error of 1.5 um; its readings agree to
 /// 0.03 um. u is 1.5 um.
-std::string five_readings_of_each_visit(double wave_mm) {
+std::string five_readings_of_each_visit(double wave_mm, double spread = 0.02) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> noise(0, 0.0015);
   std::uniform_real_distribution<double> place(0, 600);
@@ -229,7 +229,7 @@ std::string five_readings_of_each_visit(double wave_mm) {
   for (int visit = 0; visit < 160; ++visit) {
     const double x = std::round(100 * place(random)) / 100, error = wave_mm * sine(x / 70) + noise(random);
     for (int i = 0; i < 5; ++i)
-      text += fmt::format("{:.2f},{:.6f},1.5,r{},{}\n", x, x + error + 0.02 * noise(random), visit / 40,
+      text += fmt::format("{:.2f},{:.6f},1.5,r{},{}\n", x, x + error + spread * noise(random), visit / 40,
                           visit % 4 == 3 ? "check" : "fit");
   }
   return text;
@@ -242,6 +242,14 @@ TEST(Records, ReadingsOfAVisitMayAgreeBetterThanU) {
   const Diagnosis wave = diagnosed(kLinear, five_readings_of_each_visit(0.006));
   EXPECT_EQ(wave.verdict, Verdict::kMissingEffect) << wave.explanation;
   EXPECT_EQ(wave.candidates.at(0).candidate.choice.effect->id, "cyclic-error");
+}
+
+TEST(Records, ExactCopiesOfAReadingCountOnce) {
+  const Diagnosis nothing = diagnosed(kLinear, five_readings_of_each_visit(0, 0));
+  EXPECT_EQ(nothing.verdict, Verdict::kConsistent) << nothing.explanation;
+  EXPECT_NE(nothing.explanation.find("640 of 800 rows repeat"), std::string::npos) << nothing.explanation;
+  const Diagnosis wave = diagnosed(kLinear, five_readings_of_each_visit(0.006, 0));
+  EXPECT_EQ(wave.verdict, Verdict::kMissingEffect) << wave.explanation;
 }
 
 TEST(Records, OutliersDoNotTurnAGrowthIntoADriftOfTheInstrument) {
