@@ -133,11 +133,14 @@ double left_mm(const FitResult& result) {
 void judge(FitResult& result, const model::Machine& machine, const model::Measurement& measurement) {
   result.worst = worst_reading(measurement, result.residual, false);
   result.worst_check = worst_reading(measurement, result.residual, true);
-  const bool misses = left_mm(result) > kAbsurdResidual * result.reach_mm;
+  // A load or a homing error at one place may be large in a measured box that is small.
+  const double size_mm = std::max(result.reach_mm, half_travel_mm(machine));
+  const bool misses = left_mm(result) > kAbsurdResidual * size_mm;
+  const bool misses_box = left_mm(result) > kAbsurdResidual * result.reach_mm;
   // Free tables can follow two swapped columns. The nominal machine cannot, so it is tested too.
   const bool far_off = result.misfit_mm > kFarOff * result.reach_mm;
-  if (result.converged && !misses && !far_off) return;
-  const LikelyMistake likely = likely_mistake(machine, measurement, result.worst);
+  if (result.converged && !misses_box && !far_off) return;
+  const LikelyMistake likely = likely_mistake(machine, measurement, result.worst, !misses);
   const std::string& mistake = likely.sentence;
   if (result.converged && !misses && mistake.empty()) return;
   if (!likely.one_reading) result.mistake = mistake;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <map>
 #include <set>
 
 #include "tools/fit/convention.h"
@@ -137,7 +139,35 @@ std::string cell_out_of_range(const model::Machine& machine, const model::Measur
   return {};
 }
 
+/// Standard deviation of the length readings of each kind about their mean, mm; infinite without lengths.
+double spread_of_lengths(const model::Measurement& rows) {
+  struct Sums {
+    double count = 0, sum = 0, squares = 0;
+  };
+  std::map<model::ObservationKind, Sums> of_kind;
+  for (const model::Observation& o : rows.observations) {
+    if (model::is_rotation(o.kind) || rows.check[o.row] != 0) continue;
+    Sums& sums = of_kind[o.kind];
+    sums.count += 1;
+    sums.sum += o.value;
+    sums.squares += o.value * o.value;
+  }
+  double squares = 0, count = 0;
+  for (const auto& [kind, sums] : of_kind) {
+    squares += sums.squares - sums.sum * sums.sum / sums.count;
+    count += sums.count;
+  }
+  return count > 0 ? std::sqrt(std::max(0.0, squares) / count) : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
+
+double half_travel_mm(const model::Machine& machine) {
+  double squares = 0;
+  for (const model::Axis& axis : machine.axes)
+    if (!axis.rotary && axis.min && axis.max) squares += std::pow(*axis.max - *axis.min, 2);
+  return std::sqrt(squares) / 2;
+}
 
 WorstReading worst_reading(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                            bool check) {
@@ -167,7 +197,7 @@ WorstReading worst_reading(const model::Measurement& measurement, const Eigen::V
 }
 
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
-                             const WorstReading& worst) {
+                             const WorstReading& worst, bool plausible) {
   // Share of chi^2 in one reading; largest remaining share after a mistake is undone; another
   // mistake with so small a remainder is equally likely.
   constexpr double kMostOfAll = 0.5, kFivefold = 0.2, kAsGood = 1.5;
@@ -186,6 +216,7 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
     model::Measurement mended = rows;
     mistake.undo(mended);
     const double left_mm = convention_of(machine, mended, none).misfit_mm;
+    if (plausible && left_mm > kFivefold * spread_of_lengths(mended)) continue;
     if (left_mm < kFivefold * misfit_mm)
       found.push_back({left_mm, positions_out_of_range(machine, mended), mistake.sentence});
   }

@@ -28,8 +28,13 @@ struct LikelyMistake {
 
 /// Returns the reason why readings do not belong to this machine, in one sentence: one gross reading, two
 /// columns swapped, a unit, a sign. Each of these mistakes is tried. A mistake is accepted if its correction
-/// reduces the misfit of the nominal machine fivefold. tool.
+/// reduces the misfit of the nominal machine fivefold. `plausible`: a machine may have a residual of this
+/// size. The correction must then also leave readings that the nominal machine explains: a unit that makes a
+/// deflection small explains nothing. tool.
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
-                             const WorstReading& worst);
+                             const WorstReading& worst, bool plausible);
+
+/// Returns half of the diagonal of the declared ranges of the linear axes, mm; 0 without ranges.
+double half_travel_mm(const model::Machine& machine);
 
 }  // namespace vernier::fit
