@@ -398,7 +398,7 @@ TEST(ModbusTcpWrite, IsDoneOnlyWithTheAnswerToIt) {
   const std::shared_ptr<ModbusLine> line = ModbusLine::tcp("127.0.0.1", far.port(), kWait, error);
   const std::uint16_t values[] = {0x1234, 0xfffe};
   std::uint64_t wrong = 0;
-  for (const std::size_t byte : {1, 3, 5, 6, 7, 8, 9, 10, 11}) {
+  for (const std::size_t byte : {1U, 3U, 5U, 6U, 7U, 8U, 9U, 10U, 11U}) {
     // WHEN one byte of an answer is another: transaction, protocol, length, unit, function, address, number
     far.set([&](const Bytes& q) {
       Bytes reply = truth(q);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/commands/survey.h"
 
+#include "tools/commands/command.h"
 #include "tools/effects/roles.h"
 #include "tools/model/file_set_ups.h"
 #include "tools/model/machine_reader.h"
