@@ -15,8 +15,8 @@ struct Proof {
   double expected = 0;  // its mean if the step is true; the opposite if the step is absent. In both cases its
                         // variance is twice that value.
   /// Returns the required evidence of a step: 20 to 1 if 99 of 100 true steps would reach this value. The
-  /// required evidence is smaller if the step is too small on these rows for 20 to 1, but never below zero. If
-  /// the step is hardly visible on these rows, it must not make them worse.
+  /// required evidence is smaller if the step is too small on these rows for 20 to 1, but never below zero.
+  /// If the step is hardly visible on these rows, it must not make them worse.
   double asked(const ProofThresholds& thresholds) const;
 };
 

@@ -240,12 +240,12 @@ class Decision {
     return "The instrument does not hold still: " + ::vernier::fit::in_words(noise, answer_.noise_unit) + ".";
   }
 
-  /// True if the errors of single readings or poses, beside drift and set-ups, exceed the stated
-  /// uncertainty by more than a too small uncertainty explains. A drift and set-ups may have any size.
+  /// True if the errors of single readings, beside drift, set-ups and poses, exceed the stated
+  /// uncertainty by more than a too small uncertainty explains. The others may have any size.
   bool is_beyond_u() const {
     const fit::NoiseModel& noise = answer_.noise;
     return fit::has_uncertainty(found_.measurement) && !noise.independent() &&
-           std::pow(std::max(noise.own, noise.pose), 2) > limits_.implausible_uncertainty;
+           noise.own * noise.own > limits_.implausible_uncertainty;
   }
 
   /// Is one of the candidates, accepted or not, significant beside the accepted effects and noise

@@ -78,7 +78,8 @@ SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& mach
   for (std::size_t file = 0; file < uses.size(); ++file) {
     const FileUse& use = uses[file];
     if (!use.needs_set_up || !use.on_plain) continue;
-    const std::string name = set_up_of_file(rows.files[file]);
+    std::string name = set_up_of_file(rows.files[file]);
+    if (names.contains(name)) name = set_up_of_file(rows.files[file], true);
     const bool joined = std::any_of(before.begin(), before.end(),
                                     [&](const FileUse& other) { return share_a_word(use, other); });
     before.push_back(use);

@@ -14,7 +14,8 @@ struct SetUpsOfFiles {
   std::vector<std::string> notes;  // one for each added set-up
 };
 
-/// Adds a BaseShift (`setup` = file name without its ending) for each measurement file after the first. The
+/// Adds a BaseShift (`setup` = file name without its ending, with its folder for a second file of
+/// one name) for each measurement file after the first. The
 /// instrument of a second file has its own place. No BaseShift is added for a file that
 /// - has a column `setup`, or has a run label that an earlier file has (one set-up as stated),
 /// - has only rows with role check, or only readings that need no set-up,

@@ -206,9 +206,8 @@ class Builder {
     }
     if (has_word(columns::kSetup))
       states.setup = labels_of(setups_of_rows(reader_.words(columns::kSetup)));
-    else if (has_set_up_of_file())
-      states.setup = labels_of(
-          setups_of_rows(std::vector<std::string>(reader_.rows(), set_up_of_file(result_.files.front()))));
+    else if (const std::string own = set_up_of_this_file(); !own.empty())
+      states.setup = labels_of(setups_of_rows(std::vector<std::string>(reader_.rows(), own)));
     if (has_word(columns::kClock)) states.clock = labels_of(reader_.words(columns::kClock));
     if (has_word(columns::kBlock)) states.block = labels_of(reader_.words(columns::kBlock));
     std::vector<double> seen(states.names(states.clock).size(), 0);
@@ -292,11 +291,14 @@ class Builder {
     return setups;
   }
 
-  /// Does the machine file have a BaseShift for the set-up of this file?
-  bool has_set_up_of_file() const {
-    const std::string name = set_up_of_file(result_.files.front());
-    return std::any_of(machine_.base_shifts.begin(), machine_.base_shifts.end(),
-                       [&](const BaseShift& shift) { return shift.of_setup && shift.run == name; });
+  /// Returns the set-up of this file for which the machine file has a BaseShift; empty if there is none.
+  std::string set_up_of_this_file() const {
+    const std::string &file = result_.files.front(), in_folder = set_up_of_file(file, true);
+    for (const std::string& name : {in_folder, set_up_of_file(file)})
+      if (std::any_of(machine_.base_shifts.begin(), machine_.base_shifts.end(),
+                      [&](const BaseShift& shift) { return shift.of_setup && shift.run == name; }))
+        return name;
+    return {};
   }
 
   /// Are the columns of this name a reading in this file, and not an input of the machine file?
@@ -597,7 +599,11 @@ std::vector<T> pick(const std::vector<T>& all, const std::vector<std::size_t>& k
 
 }  // namespace
 
-std::string set_up_of_file(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+std::string set_up_of_file(const std::string& path, bool with_folder) {
+  const std::filesystem::path file(path);
+  const std::string folder = file.parent_path().filename().string();
+  return (with_folder && !folder.empty() ? folder + "/" : "") + file.stem().string();
+}
 
 Column commanded(const Measurement& m, std::size_t axis) {
   if (m.correction.empty()) return m.states.axis[axis];
@@ -730,8 +736,13 @@ Measurement read_measurement(const std::vector<std::string>& paths, const Machin
                              const ImageCorrection& images) {
   if (paths.empty()) throw text::InputError("no measurement file");
   Measurement all;
+  std::map<std::string, std::string> file_of_text;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    Measurement next = parse_measurement(text::read_file(paths[i]), paths[i], machine, images);
+    const std::string text = text::read_file(paths[i]);
+    if (const auto [known, is_new] = file_of_text.try_emplace(text, paths[i]); !is_new)
+      throw text::InputError(paths[i] + ": these are the readings of " + known->second +
+                             " once more; give each measurement once");
+    Measurement next = parse_measurement(text, paths[i], machine, images);
     if (i == 0)
       all = std::move(next);
     else

@@ -71,9 +71,10 @@ struct Measurement {
   bool has_recorded(std::string_view name) const;
 };
 
-/// Name of the set-up of a measurement file: the file name without folder and ending. The rows of a file
-/// without a column `setup` belong to `<BaseShift setup="NAME">` of the machine file, if there is one. tool.
-std::string set_up_of_file(const std::string& path);
+/// Name of the set-up of a measurement file: the file name without folder and ending; with_folder: with the
+/// name of the folder ("b/survey"), for two files of one name. The rows of a file without a column `setup`
+/// belong to `<BaseShift setup="NAME">` of the machine file, if there is one. tool.
+std::string set_up_of_file(const std::string& path, bool with_folder = false);
 
 /// Returns the standard uncertainty of a reading. For a rotation the result is ua of its row if given, else
 /// u. The result is 0 if the row has no uncertainty. mm or deg. tool.

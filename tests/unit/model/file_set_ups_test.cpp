@@ -51,6 +51,20 @@ TEST(FileSetUps, SecondFileHasItsOwnBaseShiftFromThePlainOne) {
   EXPECT_EQ(set_ups(files, own.text).text, own.text);
 }
 
+TEST(FileSetUps, TwoFilesOfOneNameAreNamedByTheirFolders) {
+  const std::vector<File> files = {{"a/meas.csv", "X[mm],x[mm]\n1,1\n"},
+                                   {"b/meas.csv", "X[mm],x[mm]\n1,1\n"}};
+  const SetUpsOfFiles own = set_ups(files);
+  const Machine machine = parse_machine(own.text, "m.xml");
+  ASSERT_EQ(machine.base_shifts.size(), 2U);
+  const Measurement rows = read(files, machine);
+  const auto word_of = [&](std::size_t row) {
+    return rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)];
+  };
+  EXPECT_EQ(word_of(0), "");
+  EXPECT_EQ(word_of(1), "b/meas");
+}
+
 TEST(FileSetUps, OneFileStatedSetUpsAndCheckFilesStayAsTheyAre) {
   const File one = {"one.csv", "X[mm],x[mm]\n1,1\n"};
   EXPECT_EQ(set_ups({one}).text, kMachine);

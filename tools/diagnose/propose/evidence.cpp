@@ -258,24 +258,21 @@ std::vector<std::vector<Eigen::Index>> Evidence::visits() const {
   return list;
 }
 
-bool Evidence::u_states_error_of_visits(const Eigen::VectorXd& residual) const {
+bool Evidence::poses_are_visits() const {
   if (!with_u_) return false;
   std::set<std::pair<int, int>> poses;  // by kind of reading
-  double within = 0, freedom = 0;
+  double freedom = 0;
   const std::vector<std::vector<Eigen::Index>> all = visits();
   for (const std::vector<Eigen::Index>& readings : all) {
     const auto first = static_cast<std::size_t>(readings.front());
     poses.emplace(static_cast<int>(measurement_.observations[observation_[first]].kind),
                   place_[rows_[first]]);
-    const Eigen::VectorXd part = residual(readings);
-    within += (part.array() - part.mean()).matrix().squaredNorm();
     freedom += static_cast<double>(readings.size()) - 1;
   }
   // Some random positions are near each other by chance.
   const auto revisits = static_cast<double>(all.size() - poses.size());
-  if (revisits > thresholds_.layout.least_revisits * static_cast<double>(all.size())) return false;
-  const double near_u = thresholds_.noise.near_u;
-  return freedom >= thresholds_.evidence.pose_freedom && within < near_u * near_u * freedom;
+  return revisits <= thresholds_.layout.least_revisits * static_cast<double>(all.size()) &&
+         freedom >= thresholds_.evidence.pose_freedom;
 }
 
 void Evidence::weigh_poses(double share) {

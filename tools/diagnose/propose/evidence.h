@@ -68,10 +68,9 @@ class Evidence {
   /// independent variance of the readings (generalised least squares). weigh_poses weights the residual, the
   /// columns and the part that the model absorbs.
   void weigh_poses(double share);
-  /// True if u states the error of a visit to a pose: few poses are visited twice, and the readings of one
-  /// visit scatter by much less than u. The noise model then describes the errors of poses
-  /// (NoiseModel::pose).
-  bool u_states_error_of_visits(const Eigen::VectorXd& residual) const;
+  /// True if few poses are visited twice, and u is given. The noise model then describes the errors that the
+  /// readings of a stay share (NoiseModel::pose), also if u states this error.
+  bool poses_are_visits() const;
   /// From this call on, the noise model `noise` gives the correlation of the readings' errors (generalised
   /// least squares). assume() whitens the residual, the columns and the part that the model absorbs.
   void assume(const fit::NoiseModel& noise);
