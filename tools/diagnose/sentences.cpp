@@ -64,7 +64,7 @@ std::string cause_in_words(const CandidateFinding& cause, const std::string& nex
   std::vector<std::string> beside;  // the stepwise model starts with the given model
   for (std::size_t i = 1; i < steps.size(); ++i)
     if (steps[i].said != cause.candidate.spoken) beside.push_back(steps[i].said);
-  if (cause.candidate.choice.effect->id == "base-drift" && !cause.candidate.choice.runs.empty())
+  if (!cause.candidate.choice.runs.empty())
     text += " An instrument that was set up anew between the runs explains these rows as well.";
   if (!beside.empty()) text += fmt::format(" Beside it: {}.", fmt::join(beside, "; "));
   return text + check_rows_in_words(steps, accepted);

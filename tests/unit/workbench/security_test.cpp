@@ -11,6 +11,7 @@
 #include <csignal>
 
 #include "tests/unit/workbench/rig.h"
+#include "tools/text/error.h"
 
 namespace vernier::security_test {
 
