@@ -7,8 +7,10 @@
 #include <cmath>
 #include <map>
 
+#include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
 #include "tools/format/units.h"
+#include "tools/model/column_reader.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 
