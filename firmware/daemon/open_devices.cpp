@@ -89,6 +89,8 @@ struct DeviceKind {
   const char* name;
   std::vector<const char*> settings;
   Open open;
+  /// The same text for all entries of one device; null: each entry is a separate device.
+  std::string (*device)(const SignalSource& source) = nullptr;
 };
 
 /// The entry for a device of the board file. Throws BoardError for another kind or setting.
@@ -126,6 +128,11 @@ std::string modbus_place(const SignalSource& source) {
   if (!device.empty() && !source.text("address", "").empty()) source.fail("give device or address, not both");
   if (!device.empty()) return device;
   return source.text("address") + ":" + std::to_string(source.whole("port", 502, 1, 65535));
+}
+
+std::string modbus_block(const SignalSource& source) {
+  return modbus_place(source) + " unit " + std::to_string(source.whole("unit", 1, 1, 247)) + " register " +
+         std::to_string(source.whole("register", 0, 65535));
 }
 
 /// A register holds correction / resolution, signed: the scale's codes are shifted by its zero.
@@ -192,7 +199,8 @@ const std::vector<DeviceKind<OpenOutput>> kOutputs = {
     {"modbus-out",
      {"address", "port", "device", "baud", "parity", "unit", "register", "echo", "place", "resolution",
       "range", "polarity", "period_ms", "timeout_ms", "delay_ms"},
-     open_modbus_out},
+     open_modbus_out,
+     modbus_block},
 };
 
 std::unique_ptr<SampledInput> open_modbus(const SignalSource& source, ModbusLines& lines,
@@ -253,9 +261,8 @@ const std::vector<DeviceKind<OpenLinkKind>> kLinks = {
 }  // namespace
 
 std::string device_of_output(const SignalSource& source) {
-  if (source.kind != "modbus-out") return {};
-  return modbus_place(source) + " unit " + std::to_string(source.whole("unit", 1, 1, 247)) + " register " +
-         std::to_string(source.whole("register", 0, 65535));
+  const auto& kind = kind_of(kOutputs, "output", source);
+  return kind.device == nullptr ? "" : kind.device(source);
 }
 
 std::unique_ptr<OutputDevice> open_output(const std::vector<OutputAxis>& axes, std::string& error) {

@@ -2,12 +2,10 @@
 // Modbus sensors on a joined pseudo terminal, whose far end answers by hand: values to the digit, and what a
 // silent, a late, a babbling and a lying peer look like.
 #include <arpa/inet.h>
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -23,6 +21,7 @@
 #include <vector>
 
 #include "hal/linux/modbus/modbus_input.h"
+#include "tests/conformance/raw_terminal.h"
 
 namespace vernier::modbus_input_test {
 namespace {
@@ -46,13 +45,7 @@ Bytes with_crc(Bytes frame) {
 class FarEnd {
  public:
   using Answer = std::function<Bytes(const Bytes&)>;
-  explicit FarEnd(Answer answer) : answer_(std::move(answer)), fd_(::posix_openpt(O_RDWR | O_NOCTTY)) {
-    ::grantpt(fd_), ::unlockpt(fd_);
-    termios raw{};
-    ::tcgetattr(fd_, &raw);
-    ::cfmakeraw(&raw);
-    ::tcsetattr(fd_, TCSANOW, &raw);
-    path_ = ::ptsname(fd_);
+  explicit FarEnd(Answer answer) : answer_(std::move(answer)), fd_(raw_terminal(path_)) {
     thread_ = std::thread([this] { serve(); });
   }
   ~FarEnd() {
@@ -87,8 +80,8 @@ class FarEnd {
 
   std::mutex mutex_;
   Answer answer_;
-  int fd_;
   std::string path_;
+  int fd_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -2,13 +2,12 @@
 #include "tests/conformance/plc.h"
 
 #include <arpa/inet.h>
-#include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
-#include <stdlib.h>
 #include <sys/socket.h>
-#include <termios.h>
 #include <unistd.h>
+
+#include "tests/conformance/raw_terminal.h"
 
 namespace vernier {
 namespace {
@@ -34,13 +33,7 @@ Plc::Plc() : registers_(modbus_mapping_new(0, 0, kRegisters, 0)), context_(modbu
 Plc::Plc(Serial)
     : registers_(modbus_mapping_new(0, 0, kRegisters, 0)),
       context_(modbus_new_rtu("/dev/null", 115200, 'N', 8, 1)),
-      line_(::posix_openpt(O_RDWR | O_NOCTTY)) {
-  ::grantpt(line_), ::unlockpt(line_);
-  termios raw{};
-  ::tcgetattr(line_, &raw);
-  ::cfmakeraw(&raw);
-  ::tcsetattr(line_, TCSANOW, &raw);
-  path_ = ::ptsname(line_);
+      line_(raw_terminal(path_)) {
   modbus_set_socket(context_, line_);
   modbus_set_slave(context_, 1);
   thread_ = std::thread([this] { serve(); });

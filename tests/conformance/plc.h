@@ -50,8 +50,8 @@ class Plc {
 
   modbus_mapping_t* const registers_;
   modbus_t* context_ = nullptr;
-  int listening_ = -1, port_ = 0, line_ = -1;
   std::string path_;
+  int listening_ = -1, port_ = 0, line_ = -1;
   mutable std::mutex guard_;
   std::vector<Block> blocks_;
   std::atomic<bool> stop_{false};

@@ -271,9 +271,9 @@ fit::NoiseModel Finder::noise() const {
 }
 
 void Finder::share_poses() {
+  if (evidence_.poses_are_visits()) return;
   const Eigen::MatrixXd all = maths::orthonormal(pool_.columns(chosen_), 1e-6, nullptr);
   const Eigen::VectorXd left = evidence_.residual() - all * (all.transpose() * evidence_.residual());
-  if (evidence_.poses_are_visits()) return;
   const auto search_with = [this](double share) {
     evidence_.weigh_poses(share);
     pool_.clear();

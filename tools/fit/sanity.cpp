@@ -216,8 +216,7 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
     model::Measurement mended = rows;
     mistake.undo(mended);
     const double left_mm = convention_of(machine, mended, none).misfit_mm;
-    if (plausible && left_mm > kFivefold * spread_of_lengths(mended)) continue;
-    if (left_mm < kFivefold * misfit_mm)
+    if (left_mm < kFivefold * misfit_mm && (!plausible || left_mm <= kFivefold * spread_of_lengths(mended)))
       found.push_back({left_mm, positions_out_of_range(machine, mended), mistake.sentence});
   }
   if (found.empty()) return {};

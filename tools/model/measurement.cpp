@@ -291,7 +291,8 @@ class Builder {
     return setups;
   }
 
-  /// Returns the set-up of this file for which the machine file has a BaseShift; empty if there is none.
+  /// Returns the name of the BaseShift that the machine file has for this file; empty without such a
+  /// BaseShift.
   std::string set_up_of_this_file() const {
     const std::string &file = result_.files.front(), in_folder = set_up_of_file(file, true);
     for (const std::string& name : {in_folder, set_up_of_file(file)})

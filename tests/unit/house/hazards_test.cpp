@@ -47,7 +47,7 @@ std::vector<std::string> table_rows(const std::string& page) {
   return rows;
 }
 
-/// Does the last cell of a row name a test, or say that there is none?
+/// True if the last cell of a row names a test, or begins a reason with "untested: ".
 bool says_its_test(const std::string& row) {
   const std::string cell = row.substr(row.rfind('|', row.size() - 2));
   return !named_tests(cell).empty() || cell.find("untested: ") != std::string::npos;

@@ -73,24 +73,25 @@ Json replayed(const ModelStep& model_step, const model::Measurement& rows, const
     const auto image = compile::load_image(compiled.image, machine);
     const simulate::ReplayResult r = simulate::replay(*image, m, {});
     Json json = {{"label", model_step.label}, {"ticks", r.ticks}, {"saturated", r.saturated}};
-    const auto put = [&](const std::string& key, const Eigen::VectorXd& residual, bool check) {
-      const fit::RoleStatistics statistics = fit::role_statistics(m, residual, check);
+    const fit::RoleStatistics before = fit::role_statistics(m, r.before, false),
+                              after = fit::role_statistics(m, r.after, false),
+                              check_before = fit::role_statistics(m, r.before, true),
+                              check_after = fit::role_statistics(m, r.after, true);
+    const auto put = [&](const std::string& key, const fit::RoleStatistics& statistics) {
       json[key + "_um"] = text::or_null(statistics.rms_um);
       json[key + "_urad"] = text::or_null(statistics.rms_urad);
     };
-    put("rms_before", r.before, false);
-    put("rms_after", r.after, false);
-    put("check_rms_before", r.before, true);
-    put("check_rms_after", r.after, true);
-    const auto largest = [&](const Eigen::VectorXd& residual, auto member) {
-      const std::optional<double> fit = fit::role_statistics(m, residual, false).*member;
-      const std::optional<double> check = fit::role_statistics(m, residual, true).*member;
+    put("rms_before", before);
+    put("rms_after", after);
+    put("check_rms_before", check_before);
+    put("check_rms_after", check_after);
+    const auto largest = [](const std::optional<double>& fit, const std::optional<double>& check) {
       return text::or_null(fit && check ? std::max(*fit, *check) : fit ? fit : check);
     };
-    json["max_before_um"] = largest(r.before, &fit::RoleStatistics::max_um);
-    json["max_after_um"] = largest(r.after, &fit::RoleStatistics::max_um);
-    json["max_before_urad"] = largest(r.before, &fit::RoleStatistics::max_urad);
-    json["max_after_urad"] = largest(r.after, &fit::RoleStatistics::max_urad);
+    json["max_before_um"] = largest(before.max_um, check_before.max_um);
+    json["max_after_um"] = largest(after.max_um, check_after.max_um);
+    json["max_before_urad"] = largest(before.max_urad, check_before.max_urad);
+    json["max_after_urad"] = largest(after.max_urad, check_after.max_urad);
     return json;
   } catch (const text::InputError& error) {
     return {{"label", model_step.label}, {"why_not", error.what()}};

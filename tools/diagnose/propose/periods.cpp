@@ -47,24 +47,42 @@ double power_at(const Positions& positions, Index column, double frequency) {
   return std::pow((value * phase.cos()).sum(), 2) + std::pow((value * phase.sin()).sum(), 2);
 }
 
-/// The same for every column (one row each) at frequencies first + k * step. Each sine follows
-/// from the previous one by a rotation. That loses one digit in a thousand steps.
+/// Sines and cosines of phases that increase by the same step at each position. Each sine follows from the
+/// previous one by a rotation. That loses one digit in a thousand steps.
+class TurningPhases {
+ public:
+  TurningPhases(const Eigen::ArrayXd& first, const Eigen::ArrayXd& step)
+      : turn_cos_(step.cos()), turn_sin_(step.sin()) {
+    begin_at(first);
+  }
+  void begin_at(const Eigen::ArrayXd& phase) {
+    cos_ = phase.cos();
+    sin_ = phase.sin();
+  }
+  void advance() {
+    const Eigen::ArrayXd next = cos_ * turn_cos_ - sin_ * turn_sin_;
+    sin_ = sin_ * turn_cos_ + cos_ * turn_sin_;
+    cos_ = next;
+  }
+  const Eigen::ArrayXd& cosine() const { return cos_; }
+  const Eigen::ArrayXd& sine() const { return sin_; }
+
+ private:
+  Eigen::ArrayXd turn_cos_, turn_sin_, cos_, sin_;
+};
+
+/// The same for every column (one row each) at frequencies first + k * step.
 Eigen::MatrixXd powers(const Positions& positions, double first, double step, Index count) {
   constexpr Index kBlock = 32;  // frequencies in one product
   const Index size = positions.at.size();
-  const Eigen::ArrayXd turn_cos = (kTurn * step * positions.at).cos(),
-                       turn_sin = (kTurn * step * positions.at).sin();
-  Eigen::ArrayXd now_cos = (kTurn * first * positions.at).cos(),
-                 now_sin = (kTurn * first * positions.at).sin();
+  TurningPhases phases(kTurn * first * positions.at, kTurn * step * positions.at);
   Eigen::MatrixXd cosines(size, kBlock), sines(size, kBlock), result(positions.sum.cols(), count);
   for (Index at = 0; at < count; at += kBlock) {
     const Index width = std::min(kBlock, count - at);
     for (Index k = 0; k < width; ++k) {
-      cosines.col(k) = now_cos;
-      sines.col(k) = now_sin;
-      const Eigen::ArrayXd next = now_cos * turn_cos - now_sin * turn_sin;
-      now_sin = now_sin * turn_cos + now_cos * turn_sin;
-      now_cos = next;
+      cosines.col(k) = phases.cosine();
+      sines.col(k) = phases.sine();
+      phases.advance();
     }
     const Eigen::MatrixXd in = positions.sum.transpose() * cosines.leftCols(width),
                           quadrature = positions.sum.transpose() * sines.leftCols(width);
@@ -266,20 +284,16 @@ ProjectedWaves projected_waves(const Evidence& evidence, const WaveOfAxis& wave,
   for (Index i = 0; i < size; ++i) at[i] = kTurn * position(evidence, wave.axis, static_cast<std::size_t>(i));
   const Eigen::MatrixXd& absorbed = evidence.absorbed();
   ProjectedWaves waves{Eigen::MatrixXd(size, 2 * count), Eigen::RowVectorXd(2 * count)};
-  // Each sine follows from the previous one by a rotation, as in `powers`.
-  const Eigen::ArrayXd turn_cos = (step * at).cos(), turn_sin = (step * at).sin();
+  TurningPhases phases(first * at, step * at);
   Eigen::MatrixXd columns;
   for (Index begin = 0; begin < count; begin += kBlock) {
     const Index width = std::min(kBlock, count - begin);
     columns.resize(size, 2 * width);
-    const Eigen::ArrayXd phase = (first + static_cast<double>(begin) * step) * at;
-    Eigen::ArrayXd now_cos = phase.cos(), now_sin = phase.sin();
+    phases.begin_at((first + static_cast<double>(begin) * step) * at);  // exact again in each block
     for (Index k = 0; k < width; ++k) {
-      columns.col(2 * k) = wave.carrier.array() * now_sin;
-      columns.col(2 * k + 1) = wave.carrier.array() * now_cos;
-      const Eigen::ArrayXd next = now_cos * turn_cos - now_sin * turn_sin;
-      now_sin = now_sin * turn_cos + now_cos * turn_sin;
-      now_cos = next;
+      columns.col(2 * k) = wave.carrier.array() * phases.sine();
+      columns.col(2 * k + 1) = wave.carrier.array() * phases.cosine();
+      phases.advance();
     }
     evidence.whiten(columns);
     waves.squares.segment(2 * begin, 2 * width) = columns.colwise().squaredNorm();

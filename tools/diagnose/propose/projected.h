@@ -39,7 +39,7 @@ class ProjectedColumns {
   bool has_room(Eigen::Index numbers) const { return numbers <= room_; }
   /// Keeps all points of a candidate if there is room. Threads may keep different candidates at one time.
   void keep(std::size_t candidate, std::vector<ProjectedPoint> points);
-  /// The same for waves.
+  /// Keeps the waves of a candidate, for which there is room (has_room).
   const ProjectedWaves& keep(std::size_t candidate, ProjectedWaves waves);
 
  private:

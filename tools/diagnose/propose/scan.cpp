@@ -53,20 +53,20 @@ bool vanishes(const Eigen::RowVectorXd& norms, Eigen::Index column) {
 
 }  // namespace
 
-bool Scanner::score(const Eigen::RowVectorXd& norms, const Eigen::MatrixXd& projected,
-                    const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual, Scored& scored) const {
+bool Scanner::score(const ProjectedPoint& point, const Eigen::MatrixXd& beside,
+                    const Eigen::VectorXd& residual, Scored& scored) const {
   const ScannedCandidate& item = candidates_[scored.candidate];
   scored.own_share = 1;
-  Eigen::MatrixXd own = projected;
+  Eigen::MatrixXd own = point.columns;
   if (beside.cols() > 0) own -= beside * (beside.transpose() * own);
   Eigen::Index vanished = 0;
   for (Eigen::Index j = 0; j < own.cols(); ++j) {
-    if (own.cols() > 1 && vanishes(norms, j)) {
+    if (own.cols() > 1 && vanishes(point.norms, j)) {
       own.col(j).setZero();
       ++vanished;
       continue;
     }
-    const double before = norms[j], after = own.col(j).norm();
+    const double before = point.norms[j], after = own.col(j).norm();
     if (!(before > 0) || !std::isfinite(after) || after < thresholds_.least_own * before) {
       if (!item.may_lose_columns) return false;
       own.col(j).setZero();
@@ -177,7 +177,7 @@ class Scanner::Part {
   }
 
   void keep() {
-    if (kept_.has_room(numbers_)) kept_.keep(made_of_, std::move(made_));
+    kept_.keep(made_of_, std::move(made_));
     made_.clear();
     numbers_ = 0;
   }

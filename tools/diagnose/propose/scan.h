@@ -69,13 +69,9 @@ class Scanner {
   /// positions' own window, and, if affordable, all peaks of its exact gain near `mine`.
   std::vector<double> possible_aliases(const Scored& scored, double own, double most, double mine,
                                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
-  /// `projected`: columns beside what the model absorbs; `norms`: of the columns before.
-  bool score(const Eigen::RowVectorXd& norms, const Eigen::MatrixXd& projected, const Eigen::MatrixXd& beside,
-             const Eigen::VectorXd& residual, Scored& scored) const;
+  /// Sets gain, share and unknowns of a candidate at a point; false if the candidate is not visible there.
   bool score(const ProjectedPoint& point, const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual,
-             Scored& scored) const {
-    return score(point.norms, point.columns, beside, residual, scored);
-  }
+             Scored& scored) const;
   /// Returns the columns of a candidate at scanned values.
   ProjectedPoint projected_at(ColumnMaker& maker, std::size_t candidate,
                               const std::vector<double>& scanned) const;

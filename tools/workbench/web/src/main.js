@@ -82,10 +82,11 @@ function commandBar() {
     meter.hidden = stop.hidden = one.state !== 'running';
     meter.value = one.fraction;
     // Exit status 2 is an answer, not a failure: a tolerance or a limit is not met.
-    const ended = one.state === 'failed' && one.exit === 2 ? 'done, the answer is no' : one.state;
+    const saysNo = one.state === 'failed' && one.exit === 2;
+    const ended = saysNo ? 'done, the answer is no' : one.state;
     state.textContent =
       one.state === 'running' ? `${Math.round(100 * one.fraction)} % ${one.step}` : `${ended}, ${number(one.seconds, 2)} s`;
-    state.dataset.state = one.state === 'failed' && one.exit === 2 ? 'no' : one.state;
+    state.dataset.state = saysNo ? 'no' : one.state;
   });
   return el('footer', {}, el('span', { class: 'prompt' }, '$'), words, copy, meter, state, stop);
 }

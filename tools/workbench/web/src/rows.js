@@ -90,9 +90,11 @@ export const measured = () => ({ machine: store.machine, meas: store.measurement
 /** The same for the comparison. */
 export const compared = () => ({ ...measured(), ...(store.datum ? { datum: true } : {}) });
 
+const chosen = () => [store.machine, ...store.measurements].join('\n');
+
 /** Loads the machine and rows that are chosen; everything else follows from the event. Rows that cannot be read: `refusal`. */
 export async function loadRows() {
-  const asked = [store.machine, ...store.measurements].join('\n');
+  const asked = chosen();
   store.refusal = null;
   let rows = null;
   if (store.machine && store.measurements.length) {
@@ -104,10 +106,10 @@ export async function loadRows() {
       });
     } catch (why) {
       if (!(why instanceof Refused)) throw why;
-      if (asked === [store.machine, ...store.measurements].join('\n')) store.refusal = why.message;
+      if (asked === chosen()) store.refusal = why.message;
     }
   }
-  if (asked !== [store.machine, ...store.measurements].join('\n')) return; // chosen anew in the meantime
+  if (asked !== chosen()) return; // chosen anew in the meantime
   if (!rows) {
     store.rows = null;
     emit('rows');
