@@ -8,6 +8,8 @@
 #include <cmath>
 
 #include "tools/diagnose/copies.h"
+#include "tools/diagnose/decide/causes.h"
+#include "tools/diagnose/decide/refit.h"
 #include "tools/diagnose/finder.h"
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/proof.h"
@@ -47,16 +49,16 @@ class Diagnoser {
     result_.failure = residual::failure_picture(base_.machine, measurement_, base_.residual, structure);
     if (!base_.mistake.empty()) return refused();
     finder_.find();
-    accepted_ = finder_.chosen();
     result_.searched = finder_.candidates().size();
     result_.noise = finder_.noise();
     result_.noise_unit = fit::noise_unit(measurement_);
-    fit_steps();
-    if (!accepted_.empty()) alternatives_ = finder_.alternatives_to(accepted_.front());
+    take(fit_steps(finder_.chosen()));
+    decide();
     fit_candidates();
-    set_verdict({options_, measurement_, machine_, finder_, accepted_, confirmed_, not_confirmed_,
-                 alternatives_, listed_},
-                result_);
+    const Findings found{options_,   measurement_,   machine_,      finder_, accepted_,
+                         confirmed_, not_confirmed_, alternatives_, listed_};
+    set_verdict(found, result_);
+    result_.causes = causes_not_rejected(found, result_);
     return std::move(result_);
   }
 
@@ -79,8 +81,11 @@ class Diagnoser {
     result_.noise = base_.noise;
     result_.noise_unit = fit::noise_unit(measurement_);
     result_.left = result_.failure;
-    fit_steps();
+    take(fit_steps({}));
     result_.verdict = Verdict::kInstrument;
+    result_.instrument = "readings";
+    result_.causes = {instrument_cause(result_.instrument, 0)};
+    result_.remaining.chi_square_per_freedom = base_.chi_square / std::max(1.0, base_.freedom);
     result_.explanation = "The readings are not those of this machine: " + base_.absurd +
                           ". Correct the measurement file or the machine file first; no effect was searched.";
     return std::move(result_);
@@ -162,7 +167,17 @@ class Diagnoser {
     return model::update_machine_text(text_, fit::fit(base_.machine, measurement_).machine, true);
   }
 
-  void fit_steps() {
+  /// The stepwise model with its fits.
+  struct Steps {
+    std::vector<std::size_t> accepted;       // items that lower chi^2 in the fit, and that the rows confirm
+    std::set<std::size_t> confirmed;         // of these, items that the check rows confirm
+    std::vector<std::string> not_confirmed;  // names of steps that the check rows contradict
+    std::vector<LadderStep> ladder;          // begins with the model as given
+    std::string machine_text;
+    fit::FitResult end;
+  };
+
+  LadderStep first_step() const {
     LadderStep start;
     start.rms_um = base_.after.rms_um;
     start.check_rms_um = base_.check.rms_um;
@@ -170,46 +185,90 @@ class Diagnoser {
     start.check_rms_urad = base_.check.rms_urad;
     start.chi_square_per_freedom = base_.chi_square / std::max(1.0, base_.freedom);
     start.text = given_model();
-    result_.ladder.push_back(start);
-    result_.machine_text = start.text;
-    result_.end = base_;
-    const std::size_t found = accepted_.size();
-    for (std::size_t count = 1; count <= accepted_.size();) {
-      options_.progress(0.8 + 0.1 * static_cast<double>(count) / static_cast<double>(found),
+    return start;
+  }
+
+  /// Fits the items one after another. Excludes those that the fits or the check rows do not confirm.
+  Steps fit_steps(const std::vector<std::size_t>& proposed) const {
+    Steps steps{proposed, {}, {}, {first_step()}, {}, base_};
+    steps.machine_text = steps.ladder.front().text;
+    for (std::size_t count = 1; count <= steps.accepted.size();) {
+      options_.progress(0.8 + 0.1 * static_cast<double>(count) / static_cast<double>(proposed.size()),
                         "fitting the ladder");
-      const std::vector<std::size_t> items(accepted_.begin(),
-                                           accepted_.begin() + static_cast<std::ptrdiff_t>(count));
+      const std::vector<std::size_t> items(steps.accepted.begin(),
+                                           steps.accepted.begin() + static_cast<std::ptrdiff_t>(count));
+      const std::size_t item = items.back();
+      const auto exclude = [&] {
+        steps.accepted.erase(steps.accepted.begin() + static_cast<std::ptrdiff_t>(count - 1));
+      };
       const effects::FittedEffects fitted = fit_with(items);
       // A decrease that the linear estimate predicts but the fit does not reach is not a step.
-      if (decrease(result_.end, fitted.fit) < options_.thresholds.acceptance.evidence) {
-        accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(count - 1));
+      if (decrease(steps.end, fitted.fit) < options_.thresholds.acceptance.evidence) {
+        exclude();
         continue;
       }
-      const std::optional<StepEvidence> confirmation = confirmed_by(result_.end, fitted.fit, items.back());
+      const std::optional<StepEvidence> confirmation = confirmed_by(steps.end, fitted.fit, item);
       if (!confirmation) {
-        not_confirmed_.push_back(pool_.candidate(items.back()).spoken);
-        accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(count - 1));
+        steps.not_confirmed.push_back(pool_.candidate(item).spoken);
+        exclude();
         continue;
       }
-      LadderStep step;
-      step.confirmed = true;
-      step.evidence = confirmation->value;
-      if (confirmation->of_check_rows) confirmed_.insert(items.back());
-      step.effect = pool_.candidate(items.back()).choice.effect->id;
-      step.add = add_string_of(items.back());
-      step.label = pool_.candidate(items.back()).label;
-      step.said = pool_.candidate(items.back()).spoken;
-      step.rms_um = fitted.fit.after.rms_um;
-      step.check_rms_um = fitted.fit.check.rms_um;
-      step.rms_urad = fitted.fit.after.rms_urad;
-      step.check_rms_urad = fitted.fit.check.rms_urad;
-      step.chi_square_per_freedom = fitted.fit.chi_square / std::max(1.0, fitted.fit.freedom);
-      step.text = fitted.text;
-      result_.ladder.push_back(step);
-      result_.machine_text = fitted.text;
-      result_.end = fitted.fit;
+      if (confirmation->of_check_rows) steps.confirmed.insert(item);
+      steps.ladder.push_back(step_of(item, fitted, confirmation->value));
+      steps.machine_text = fitted.text;
+      steps.end = fitted.fit;
       ++count;
     }
+    return steps;
+  }
+
+  LadderStep step_of(std::size_t item, const effects::FittedEffects& fitted, double evidence) const {
+    LadderStep step;
+    step.confirmed = true;
+    step.evidence = evidence;
+    step.effect = pool_.candidate(item).choice.effect->id;
+    step.add = add_string_of(item);
+    step.label = pool_.candidate(item).label;
+    step.said = pool_.candidate(item).spoken;
+    step.rms_um = fitted.fit.after.rms_um;
+    step.check_rms_um = fitted.fit.check.rms_um;
+    step.rms_urad = fitted.fit.after.rms_urad;
+    step.check_rms_urad = fitted.fit.check.rms_urad;
+    step.chi_square_per_freedom = fitted.fit.chi_square / std::max(1.0, fitted.fit.freedom);
+    step.text = fitted.text;
+    return step;
+  }
+
+  void take(Steps steps) {
+    accepted_ = std::move(steps.accepted);
+    confirmed_ = std::move(steps.confirmed);
+    not_confirmed_ = std::move(steps.not_confirmed);
+    result_.ladder = std::move(steps.ladder);
+    result_.machine_text = std::move(steps.machine_text);
+    result_.end = std::move(steps.end);
+  }
+
+  /// Compares the first cause with its alternatives by full fits. If the fit prefers an alternative, and the
+  /// check rows confirm it, the alternative is the cause.
+  void decide() {
+    if (accepted_.empty()) return;
+    alternatives_ = fitted_alternatives();
+    if (alternatives_.other.empty() || alternatives_.other.front().distance >= 0) return;
+    const std::size_t cause = accepted_.front(), better = alternatives_.other.front().item;
+    if (!finder_.replace(cause, better)) return;
+    Steps steps = fit_steps(finder_.chosen());
+    if (steps.accepted.empty() || steps.accepted.front() != better) {
+      finder_.replace(better, cause);
+      return;
+    }
+    take(std::move(steps));
+    alternatives_ = fitted_alternatives();
+  }
+
+  Alternatives fitted_alternatives() const {
+    return alternatives_by_fits(
+        finder_, accepted_, options_.shown,
+        {base_, result_.end, [this](const std::vector<std::size_t>& items) { return fit_with(items).fit; }});
   }
 
   /// Items in the order of the report: the accepted ones, then by the decrease of each alone.
@@ -227,7 +286,7 @@ class Diagnoser {
       if (seen.insert(pool_.candidate(item).label).second) items.push_back(item);
     };
     if (!accepted_.empty()) take(accepted_.front());
-    for (const std::size_t item : alternatives_.close)
+    for (const std::size_t item : alternatives_.within(options_.thresholds.acceptance.distance))
       if (items.size() < options_.shown) take(item);
     for (const std::size_t item : accepted_) take(item);
     for (const auto& [score, item] : rest) {
@@ -306,6 +365,8 @@ Diagnosis searched(const std::string& text, const model::Machine& machine,
   if (by_spread && clean.verdict == Verdict::kConsistent) {
     clean.verdict = Verdict::kInstrument;
     clean.explanation = "Outliers, and noise beside them. " + rest->sentence;
+    clean.instrument = "outliers";
+    clean.causes = {instrument_cause(clean.instrument, 0)};
     return clean;
   }
   if (is_named(clean.verdict) || (by_spread && clean.verdict == all.verdict)) {
@@ -321,10 +382,18 @@ Diagnosis searched(const std::string& text, const model::Machine& machine,
 void withdraw_if_the_fit_contradicts(Diagnosis& answer) {
   if (answer.end.absurd.empty() && answer.end.converged) return;
   const std::string why = answer.end.absurd.empty() ? "the fit did not converge" : answer.end.absurd;
-  if (answer.verdict == Verdict::kConsistent) {
-    answer.verdict = answer.end.converged ? Verdict::kInstrument : Verdict::kUnexplained;
-    answer.explanation = "Nothing is vouched for: " + why + ".";
-  } else if (is_named(answer.verdict)) {
+  if (answer.verdict != Verdict::kConsistent && !is_named(answer.verdict)) return;
+  answer.remaining.is_noise = false;
+  answer.causes.clear();
+  if (answer.verdict == Verdict::kConsistent && answer.end.converged) {
+    answer.verdict = Verdict::kInstrument;
+    answer.instrument = "readings";
+    answer.causes = {instrument_cause(answer.instrument, 0)};
+    answer.explanation = "The result is not assured: " + why + ".";
+  } else if (answer.verdict == Verdict::kConsistent) {
+    answer.verdict = Verdict::kUnexplained;
+    answer.explanation = "The result is not assured: " + why + ".";
+  } else {
     answer.verdict = Verdict::kUnexplained;
     answer.explanation = "No cause is named: " + why + ". " + answer.explanation;
   }

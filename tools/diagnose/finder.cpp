@@ -602,16 +602,22 @@ double Finder::chance_of(std::size_t item, const Eigen::MatrixXd& columns, const
                            maths::chi_square_tail(gain / std::max(variance, 1e-300), unknowns));
 }
 
+std::vector<std::size_t> Alternatives::within(double distance) const {
+  std::vector<std::size_t> items;
+  for (const Alternative& one : other)
+    if (one.distance < distance) items.push_back(one.item);
+  return items;
+}
+
 Alternatives Finder::alternatives_to(std::size_t item) const {
-  Alternatives rivals;
-  std::vector<std::pair<double, std::size_t>> close;
+  Alternatives found;
   const std::vector<std::size_t> others = without(item);
   for (const std::size_t rival : entry_item_) {
     if (rival == item || std::find(others.begin(), others.end(), rival) != others.end()) continue;
     std::vector<std::size_t> set = others;
     set.push_back(rival);
     const double distance = evaluate(set).criterion - criterion_;
-    if (distance < thresholds_.distance) {
+    if (distance < thresholds_.distance_of_fits) {
       // A form that contains this one and additional terms needs evidence of its own. It is not an
       // alternative.
       if (pool_.contains(rival, item)) continue;
@@ -619,20 +625,56 @@ Alternatives Finder::alternatives_to(std::size_t item) const {
       const bool alike =
           (mine.effect == other.effect && mine.inputs == other.inputs) || pool_.same_kind(rival, item);
       if (alike && pool_.same_columns(item, rival)) {
-        rivals.same.push_back(rival);
+        found.same.push_back(rival);
         continue;
       }
     }
-    if (pool_.same_cause(item, rival)) continue;
-    if (distance < rivals.distance) {
-      rivals.distance = distance;
-      rivals.best = rival;
-    }
-    if (distance < thresholds_.distance) close.emplace_back(distance, rival);
+    if (!pool_.same_cause(item, rival)) found.other.push_back({rival, distance});
   }
-  std::sort(close.begin(), close.end());
-  for (const auto& [distance, rival] : close) rivals.close.push_back(rival);
-  return rivals;
+  std::sort(found.other.begin(), found.other.end(),
+            [](const Alternative& a, const Alternative& b) { return a.distance < b.distance; });
+  return found;
+}
+
+double Finder::criterion_of_fit(const std::vector<std::size_t>& items, double ratio) const {
+  const Selection linear = evaluate(items);
+  return linear.criterion - likelihood_part(problem_, linear.chi_square) +
+         likelihood_part(problem_, ratio * chi_square_);
+}
+
+bool Finder::replace(std::size_t item, std::size_t by) {
+  const std::vector<std::size_t> before = chosen_;
+  const double criterion = criterion_, chi_square = chi_square_;
+  std::replace(chosen_.begin(), chosen_.end(), item, by);
+  const Selection now = evaluate(chosen_);
+  criterion_ = now.criterion;
+  chi_square_ = now.chi_square;
+  const bool passes = std::all_of(chosen_.begin(), chosen_.end(),
+                                  [this](std::size_t one) { return failed_test(one).empty(); });
+  if (passes) return true;
+  chosen_ = before;
+  criterion_ = criterion;
+  chi_square_ = chi_square;
+  return false;
+}
+
+double Finder::evidence_for(std::size_t item) const {
+  return (evaluate(without(item)).criterion - criterion_) / 2;
+}
+
+double Finder::evidence_for(std::size_t item, const std::vector<double>& scanned) const {
+  const double loss = gain_at(item, pool_[item].scored.scanned) - gain_at(item, scanned);
+  return evidence_for(item) - (likelihood_part(problem_, std::max(0.0, chi_square_ + loss)) -
+                               likelihood_part(problem_, chi_square_)) /
+                                  2;
+}
+
+double Finder::gain_at(std::size_t item, const std::vector<double>& scanned) const {
+  const Eigen::MatrixXd beside = maths::orthonormal(pool_.columns(without(item)), 1e-6, nullptr);
+  Eigen::MatrixXd columns = ColumnMaker(evidence_).columns(pool_.candidate(item), scanned);
+  columns -= evidence_.absorbed() * (evidence_.absorbed().transpose() * columns);
+  columns -= beside * (beside.transpose() * columns);
+  return (maths::orthonormal(columns, 1e-6, nullptr).transpose() * evidence_.residual()).squaredNorm();
 }
 
 std::vector<double> Finder::aliases_of(std::size_t item) const {

@@ -14,12 +14,19 @@
 
 namespace vernier::diagnose {
 
-/// Alternatives to an accepted effect. All alternatives are items of the pool.
+/// Another cause in place of an accepted one.
+struct Alternative {
+  std::size_t item = 0;  // of the pool
+  double distance = 0;   // its BIC minus that of the accepted set
+};
+
+/// Alternatives to an accepted effect.
 struct Alternatives {
-  std::vector<std::size_t> close;  // other causes that fit nearly as well, best first
-  std::vector<std::size_t> same;   // the same columns from the same kinds of quantities
-  double distance = 1e300;         // of the best other cause
-  std::optional<std::size_t> best;
+  std::vector<Alternative> other;  // other causes, by distance
+  std::vector<std::size_t> same;   // items with the same columns from the same kinds of quantities
+
+  /// Returns the items within a distance, in their order.
+  std::vector<std::size_t> within(double distance) const;
 };
 
 /// Searches the candidates of one fitted machine for the set that explains its residual. Keeps the items that
@@ -61,8 +68,16 @@ class Finder {
   /// Returns the likelihood ratio (natural logarithm) of held-out runs with an accepted item against without
   /// it. Each run is predicted from the other runs.
   double held_out_evidence(std::size_t item) const;
-  /// Returns alternatives that fit nearly as well as an accepted item; the other items are unchanged.
+  /// Returns alternatives to an accepted item, by the linear estimate; the other items are unchanged.
   Alternatives alternatives_to(std::size_t item) const;
+  /// Returns the BIC of a set of items whose fit has `ratio` times the chi^2 of the accepted set's fit.
+  double criterion_of_fit(const std::vector<std::size_t>& items, double ratio) const;
+  /// Replaces an accepted item. Returns false, and changes nothing, if the new set fails an acceptance test.
+  bool replace(std::size_t item, std::size_t by);
+  /// Returns the evidence for an accepted item: half the increase of the BIC without it, by the linear
+  /// estimate. The second form: with its scanned unknowns at other values.
+  double evidence_for(std::size_t item) const;
+  double evidence_for(std::size_t item, const std::vector<double>& scanned) const;
   /// Returns other periods that fit as well as the period of an accepted item (Scanner::aliases); the other
   /// items are unchanged.
   std::vector<double> aliases_of(std::size_t item) const;
@@ -120,6 +135,9 @@ class Finder {
   bool is_one_offset(const fit::NoiseModel& noise) const;
   /// Returns the unwhitened columns of several items side by side.
   Eigen::MatrixXd raw_columns(const std::vector<std::size_t>& items) const;
+  /// Returns the decrease of chi^2 by an accepted item with its scanned unknowns at these values, beside the
+  /// other items.
+  double gain_at(std::size_t item, const std::vector<double>& scanned) const;
   std::vector<std::size_t> without(std::size_t item) const;
   Selection evaluate(const std::vector<std::size_t>& items) const;
   /// Excludes products that would pass the tests by chance: products that depend on a few readings, and

@@ -43,6 +43,22 @@ struct CandidateFinding {
       aliases;  // other periods that the positions cannot distinguish from its own, longest first
 };
 
+/// A cause that the data do not reject.
+struct Cause {
+  std::optional<effects::Candidate> candidate;  // no value: an error of the instrument
+  std::string kind;  // of an error of the instrument: drift, step, set-up, outliers, clock, readings
+  std::string description, add;
+  std::optional<std::size_t> axis;  // as of CandidateFinding
+  std::optional<double> period;     // of a cyclic error, mm or deg of its axis
+  double evidence = 0;  // natural logarithm of the likelihood ratio against no cause (half a change of BIC)
+};
+
+/// The residual at the end of the stepwise model.
+struct Remaining {
+  double chi_square_per_freedom = 0;
+  bool is_noise = false;
+};
+
 struct LadderStep {
   std::string effect, add, label;                  // empty: the model as given
   std::string said;                                // "Z carriage: lag"
@@ -65,6 +81,9 @@ struct Diagnosis {
   fit::FitResult base;
   std::vector<CandidateFinding> candidates;
   std::vector<LadderStep> ladder;
+  std::vector<Cause> causes;  // of the first step: all that the data do not reject, most likely first
+  Remaining remaining;
+  std::string instrument;  // kind of the instrument's error (Cause::kind); empty unless it is a cause
   std::vector<std::string> next_measurement;
   std::optional<std::size_t> runner_up;  // index into candidates
   double runner_up_distance = 0;         // difference by which its criterion is worse

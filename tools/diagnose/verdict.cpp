@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/pieces.h"
@@ -18,6 +19,16 @@
 
 namespace vernier::diagnose {
 namespace {
+
+/// Returns the kind (Cause::kind) of the largest correlated error; empty if all readings are independent.
+std::string kind_of(const fit::NoiseModel& noise) {
+  double step = 0, set_up = noise.run;
+  for (const fit::NoiseStep& one : noise.steps)
+    (one.of_set_up() ? set_up : step) = std::max(one.of_set_up() ? set_up : step, std::abs(one.height));
+  const double largest = std::max({step, set_up, noise.drift});
+  if (largest <= 0) return {};
+  return largest == noise.drift ? "drift" : largest == step ? "step" : "set-up";
+}
 
 class Decision {
  public:
@@ -60,19 +71,24 @@ class Decision {
                            !timebase::examine_time_base(rows_, answer_.end.residual).found;
     if (explained) return {};
     answer_.time_base = clock;
+    answer_.instrument = "clock";
     return "The time base of the measurement: " + clock.why;
   }
 
   std::string outliers() {
-    is_noise_ = down_to_noise();
+    is_noise_ = answer_.remaining.is_noise = down_to_noise();
     pieces_ = pieces_of_one_function(finder_.evidence(), pool_, accepted_);
     if (is_noise_ || !pieces_.empty()) return {};
-    return outliers_to_blame(answer_.end.machine, rows_, answer_.end.residual, limits_).value_or("");
+    std::string blamed =
+        outliers_to_blame(answer_.end.machine, rows_, answer_.end.residual, limits_).value_or("");
+    if (!blamed.empty()) answer_.instrument = "outliers";
+    return blamed;
   }
 
   std::string instrument_alone() {
     const std::string drift = accepted_.empty() ? drift_of_instrument() : "";
     if (drift.empty() || is_beyond_u()) return {};
+    answer_.instrument = kind_of(answer_.noise);
     return drift + (is_noise_ ? " Beside it there is nothing to add." : where_left(answer_.left));
   }
 
@@ -92,12 +108,15 @@ class Decision {
   }
 
   std::string effect_of_instrument() {
-    return pool_.candidate(accepted_.front()).choice.effect->of_instrument;
+    const std::string& text = pool_.candidate(accepted_.front()).choice.effect->of_instrument;
+    if (!text.empty()) answer_.instrument = "clock";
+    return text;
   }
 
   std::string not_down_to_noise() {
     name_confusions();
-    answer_.runner_up_distance = found_.alternatives.distance;
+    if (!found_.alternatives.other.empty())
+      answer_.runner_up_distance = found_.alternatives.other.front().distance;
     if (is_noise_) return {};
     return "Effects of the catalogue lower the residual, and it does not come down to the noise." +
            where_left(answer_.left);
@@ -168,19 +187,42 @@ class Decision {
   }
 
   std::string several_causes() {
-    if (found_.alternatives.close.empty()) return {};
-    return fmt::format("One of {} causes that explain these data alike, {} first.",
-                       1 + found_.alternatives.close.size(), pool_.candidate(accepted_.front()).spoken);
+    const std::size_t others = found_.close().size();
+    const bool or_set_up = set_up_explains_it_too();
+    if (others == 0 && !or_set_up) return {};
+    if (or_set_up) answer_.instrument = "set-up";
+    return fmt::format(
+        "One of {} causes that explain these data alike, {} first.{}", 1 + others + (or_set_up ? 1 : 0),
+        pool_.candidate(accepted_.front()).spoken,
+        or_set_up ? " An instrument that was set up anew between the runs is another one." : "");
   }
 
   std::string one_cause() {
-    return cause_in_words(
-        answer_.candidates.front(),
-        found_.alternatives.best ? pool_.candidate(*found_.alternatives.best).spoken : std::string(),
-        found_.alternatives.distance, answer_.ladder, accepted_.size());
+    const std::vector<Alternative>& other = found_.alternatives.other;
+    return cause_in_words(answer_.candidates.front(),
+                          other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
+                          other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
   }
 
   // What the rules need.
+
+  /// A shift in one run may be a moved base. Shifts in several runs, or beside set-up noise, are those of an
+  /// instrument that was set up anew as well, unless they occur within a set-up.
+  bool set_up_explains_it_too() const {
+    if (pool_.candidate(accepted_.front()).choice.runs.empty()) return false;
+    std::set<std::string> runs;  // that one of the steps shifts
+    for (const std::size_t item : accepted_)
+      for (const std::string& run : pool_.candidate(item).choice.runs) runs.insert(run);
+    if (runs.size() == 1 && kind_of(answer_.noise) != "set-up") return false;
+    const model::States& states = rows_.states;
+    std::set<std::size_t> shifted, others;  // set-ups
+    for (std::size_t row = 0; row < states.run.size(); ++row) {
+      const bool moved = runs.contains(states.run_names[states.run[row]]);
+      (moved ? shifted : others).insert(states.of(states.setup, row));
+    }
+    return std::none_of(shifted.begin(), shifted.end(),
+                        [&](std::size_t set_up) { return others.contains(set_up); });
+  }
 
   bool is_alone_in_noise() const { return accepted_.empty() && is_noise_; }
 
@@ -274,6 +316,7 @@ class Decision {
     const bool told = !noise.independent() || noise.own != 1;
     const double reduced =
         (told ? weights.cwiseProduct(left).squaredNorm() : answer_.end.chi_square) / freedom;
+    answer_.remaining.chi_square_per_freedom = reduced;
     if (!fit::has_uncertainty(found_.measurement)) return !structured || stands_without_u();
     // Noise above the stated value is accepted only if no tested candidate is significant, and if
     // there are enough readings to show structure.
@@ -311,13 +354,14 @@ class Decision {
       auto& list = finding.confounded_with;
       if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
     };
-    std::vector<std::size_t> alike = alternatives.close;
+    std::vector<std::size_t> alike = found_.close();
     alike.push_back(accepted_.front());
     const auto is_alike = [&](std::size_t item) {
       return std::find(alike.begin(), alike.end(), item) != alike.end();
     };
     for (std::size_t i = 0; i < found_.listed.size(); ++i) {
-      if (alternatives.best && found_.listed[i] == *alternatives.best) answer_.runner_up = i;
+      if (!alternatives.other.empty() && found_.listed[i] == alternatives.other.front().item)
+        answer_.runner_up = i;
       if (!is_alike(found_.listed[i])) continue;
       for (const std::size_t other : alike)
         if (other != found_.listed[i]) note(answer_.candidates[i], id(other));

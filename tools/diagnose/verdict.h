@@ -20,11 +20,17 @@ struct Findings {
   const std::vector<std::string>& not_confirmed;  // names of steps that the check rows contradict
   const Alternatives& alternatives;               // to the cause
   const std::vector<std::size_t>& listed;         // items in the order of Diagnosis::candidates
+
+  /// Returns the alternatives that the data do not reject.
+  std::vector<std::size_t> close() const {
+    return alternatives.within(options.thresholds.acceptance.distance);
+  }
 };
 
-/// Sets the verdict, its explanation and its details (`left`, `time_base`, `runner_up`, aliases and
-/// confusions of candidates). The first rule that applies determines the verdict; the table in the source
-/// gives the order of the rules. `answer`: with base, end, stepwise model and candidates. tool.
+/// Sets the verdict, its explanation and its details (`left`, `remaining`, `time_base`, `instrument`,
+/// `runner_up`, aliases and confusions of candidates). The first rule that applies determines the verdict;
+/// the table in the source gives the order of the rules. `answer`: with base, end, stepwise model and
+/// candidates. tool.
 void set_verdict(const Findings& found, Diagnosis& answer);
 
 }  // namespace vernier::diagnose

@@ -34,6 +34,10 @@ std::vector<std::string> advice_for(const std::string& text, const model::Machin
     if (&other == &first || std::find(names.begin(), names.end(), id) == names.end()) continue;
     return advice(first.add, other.add);
   }
+  if (d.instrument == "set-up")
+    return {
+        "Measure several runs without touching the instrument, and state this in a column `setup` with one "
+        "label for these runs. A shift between runs of one set-up is an error of the machine."};
   if (first.confounded_with.empty()) return {};
   return advice(first.add, first.confounded_with.front());
 }

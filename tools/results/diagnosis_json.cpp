@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tools/diagnose/decide/causes.h"
 #include "tools/diagnose/sentences.h"
 #include "tools/effects/candidate.h"
 #include "tools/fit/least_squares/statistics.h"
@@ -65,6 +66,28 @@ Json candidate_json(const diagnose::CandidateFinding& finding, const model::Mach
   json["exposed_by"] = choice.effect->exposed_by;
   json["confounded_with"] = finding.confounded_with;
   json["aliases"] = finding.aliases;
+  return json;
+}
+
+Json cause_json(const diagnose::Cause& cause, const model::Machine& machine) {
+  if (!cause.candidate)
+    return {{"effect", "instrument"}, {"kind", cause.kind}, {"description", cause.description}};
+  const effects::Candidate& candidate = *cause.candidate;
+  const bool one = candidate.terms.size() == 1;
+  const effects::DofPlace& place = candidate.terms[0].place;
+  Json json;
+  json["effect"] = candidate.choice.effect->id;
+  json["label"] = candidate.label;
+  json["description"] = cause.description;
+  json["axis"] = cause.axis && !candidate.choice.axis2 ? Json(machine.axes[*cause.axis].name) : Json(nullptr);
+  json["transform"] = one ? Json(effects::transform_at(machine, place).n) : Json(nullptr);
+  json["dof"] = one ? Json(effects::dof_name(machine, place)) : Json(nullptr);
+  if (cause.period) {
+    const bool rotary = candidate.choice.axis && machine.axes[*candidate.choice.axis].rotary;
+    json["period"] = {{"value", *cause.period}, {"unit", rotary ? "deg" : "mm"}};
+  }
+  json["evidence"] = cause.evidence;
+  json["add"] = cause.add;
   return json;
 }
 
@@ -165,6 +188,14 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
                               {"evidence", text::or_null(step.evidence)},
                               {"chi2_per_dof", step.chi_square_per_freedom}});
   }
+  json["causes"] = Json::array();
+  for (const diagnose::Cause& cause : diagnosis.causes)
+    json["causes"].push_back(cause_json(cause, diagnosis.base.machine));
+  json["level"] = diagnose::kLevelOfCauses;
+  const bool open = diagnosis.verdict == diagnose::Verdict::kAmbiguous;
+  json["separate_by"] = open ? Json(diagnosis.next_measurement) : Json::array();
+  json["remaining"] = {{"chi2_per_dof", diagnosis.remaining.chi_square_per_freedom},
+                       {"is_noise", diagnosis.remaining.is_noise}};
   json["runner_up"] = Json(nullptr);
   if (diagnosis.runner_up) {
     const diagnose::CandidateFinding& runner = diagnosis.candidates[*diagnosis.runner_up];

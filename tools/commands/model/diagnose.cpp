@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/report_header.h"
 #include "tools/commands/survey.h"
+#include "tools/diagnose/decide/causes.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/sentences.h"
 #include "tools/fit/fit.h"
@@ -68,6 +69,15 @@ void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
   }
 }
 
+/// The set of causes, if it has more than one: a single one is the explanation.
+void print_causes(std::FILE* out, const diagnose::Diagnosis& diagnosis) {
+  if (diagnosis.causes.size() < 2) return;
+  fmt::print(out, "causes that the data do not reject (level {:g}):\n", diagnose::kLevelOfCauses);
+  for (const diagnose::Cause& cause : diagnosis.causes)
+    fmt::print(out, "  {:<60} evidence {:.1f}\n", cause.description, cause.evidence);
+  fmt::print(out, "\n");
+}
+
 /// Residuals of the machine of the last step.
 void write_residuals(const DiagnoseArguments& arguments, const diagnose::Diagnosis& diagnosis) {
   const model::Machine machine = model::parse_machine(diagnosis.machine_text, arguments.survey.machine);
@@ -97,6 +107,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "verdict: {}\n{}\n\n", diagnose::verdict_name(diagnosis.verdict), diagnosis.explanation);
+  print_causes(out, diagnosis);
   print_ladder(out, diagnosis, m);
   fmt::print(out, "\n");
   print_candidates(out, diagnosis);

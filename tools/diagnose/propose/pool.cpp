@@ -220,17 +220,22 @@ double Pool::witnesses(std::size_t item) const {
   return std::pow(square.sum(), 2) / square.squaredNorm();
 }
 
-bool Pool::contains(std::size_t general, std::size_t special) const {
-  const Eigen::MatrixXd x = maths::orthonormal(items_[general].columns, 1e-6, nullptr);
-  const Eigen::MatrixXd y = maths::orthonormal(items_[special].columns, 1e-6, nullptr);
+bool Pool::is_richer(std::size_t general, std::size_t special) const {
   const auto unknowns = [&](std::size_t i) {
     return items_[i].columns.cols() + static_cast<Eigen::Index>(items_[i].scored.scanned.size());
   };
-  if (unknowns(general) <= unknowns(special) || x.cols() < y.cols()) return false;
+  if (unknowns(general) <= unknowns(special)) return false;
   // Time may follow a jump between runs closely, but it is not a richer form of the same term.
   const auto mine = drivers_of(evidence_.machine(), candidate(general)),
              its = drivers_of(evidence_.machine(), candidate(special));
-  if (!std::includes(mine.begin(), mine.end(), its.begin(), its.end())) return false;
+  return std::includes(mine.begin(), mine.end(), its.begin(), its.end());
+}
+
+bool Pool::contains(std::size_t general, std::size_t special) const {
+  if (!is_richer(general, special)) return false;
+  const Eigen::MatrixXd x = maths::orthonormal(items_[general].columns, 1e-6, nullptr);
+  const Eigen::MatrixXd y = maths::orthonormal(items_[special].columns, 1e-6, nullptr);
+  if (x.cols() < y.cols()) return false;
   return static_cast<double>(y.cols()) - (x.transpose() * y).squaredNorm() < thresholds_.held_share;
 }
 

@@ -66,8 +66,9 @@ class Pool {
   bool same_cause(std::size_t a, std::size_t b) const;
   /// True if two items span the same columns (all but a thousandth of their squares).
   bool same_columns(std::size_t a, std::size_t b) const;
-  /// True if `general` has more unknowns than `special`, depends on all that `special` depends on, and
-  /// contains its columns (all but 2 % of their squares).
+  /// True if `general` has more unknowns than `special`, and depends on all that `special` depends on.
+  bool is_richer(std::size_t general, std::size_t special) const;
+  /// True if `general` is richer than `special` and contains its columns (all but 2 % of their squares).
   bool contains(std::size_t general, std::size_t special) const;
   /// True if two items depend on the same kinds of quantities. Positions, count of rows and travel since a
   /// reversal do not count. If the columns of two such items are also equal, the items are two forms of one

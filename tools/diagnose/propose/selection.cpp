@@ -145,6 +145,15 @@ void order(const SelectionProblem& p, Selection& selection) {
 
 }  // namespace
 
+double likelihood_part(const SelectionProblem& p, double chi_square) {
+  const double freedom = std::max(p.freedom, 1.0);
+  const double reduced = chi_square / freedom;
+  // With the noise at its best value the likelihood is n log(chi^2/n). A noise below the given
+  // uncertainty is not accepted.
+  if (p.noise_known && reduced <= 1) return chi_square;
+  return freedom * (1 + std::log(std::max(reduced, 1e-300)));
+}
+
 Selection evaluate_selection(const SelectionProblem& p, const std::vector<std::size_t>& chosen) {
   Selection result{chosen, std::numeric_limits<double>::infinity(), p.chi_square};
   double gain = 0;
@@ -155,14 +164,8 @@ Selection evaluate_selection(const SelectionProblem& p, const std::vector<std::s
     unknowns += static_cast<double>(p.entries[entry].count) + static_cast<double>(p.entries[entry].scanned);
     penalty += p.entries[entry].penalty;
   }
-  const double freedom = std::max(p.freedom, 1.0);
-  const double reduced = result.chi_square / freedom;
-  // With the noise at its best value the likelihood is n log(chi^2/n). A noise below the given
-  // uncertainty is not accepted.
-  const bool at_noise = p.noise_known && reduced <= 1;
-  const double likelihood =
-      at_noise ? result.chi_square : freedom * (1 + std::log(std::max(reduced, 1e-300)));
-  result.criterion = likelihood + unknowns * std::log(std::max(2.0, p.observations)) + penalty;
+  result.criterion =
+      likelihood_part(p, result.chi_square) + unknowns * std::log(std::max(2.0, p.observations)) + penalty;
   return result;
 }
 

@@ -40,6 +40,10 @@ struct Selection {
 /// linearly dependent.
 Selection evaluate_selection(const SelectionProblem& problem, const std::vector<std::size_t>& chosen);
 
+/// Returns the part of the extended BIC that chi^2 determines: -2 log likelihood, with the noise at its best
+/// value but never below the given uncertainty.
+double likelihood_part(const SelectionProblem& problem, double chi_square);
+
 /// Returns the set with the smallest criterion that forward steps, pairs, exchanges and backward
 /// steps find, at most `most` entries. tool.
 Selection select(const SelectionProblem& problem, std::size_t most);

@@ -247,7 +247,11 @@ struct PoolThresholds {
 struct AcceptanceThresholds {
   /// Decrease of the BIC that is evidence, and the required distance of an alternative for a named
   /// cause. Kass and Raftery 1995: 6 is strong.
+  /// 2 ln 20 = 6: a cause that is more than 20 times less likely than the best one is rejected.
   double evidence = 6, distance = 6;
+  /// Distance by the linear estimate up to which an alternative is fitted in full. The fit decides whether
+  /// it is within `distance`.
+  double distance_of_fits = 12;
   /// Required advantage of a named cause over the instrument alone. Kass and Raftery 1995: 10 is
   /// very strong.
   double instrument_distance = 10;
@@ -291,6 +295,7 @@ struct AcceptanceThresholds {
   void for_each(const Visit& visit) {
     visit("acceptance.evidence", evidence);
     visit("acceptance.distance", distance);
+    visit("acceptance.distance_of_fits", distance_of_fits);
     visit("acceptance.instrument_distance", instrument_distance);
     visit("acceptance.slow_share", slow_share);
     visit("acceptance.held_out_share", held_out_share);

@@ -82,6 +82,21 @@ export function falling(result) {
 /** What a candidate is called. */
 export const title = (one) => printed(one.said ?? `${one.effect}${one.axis ? ` of ${one.axis}` : ''}`);
 
+/** The causes that the data do not reject, if there are several; null if not. */
+export function causes(result) {
+  const list = result.causes ?? [];
+  if (list.length < 2) return null;
+  return [
+    table(
+      'Causes of the first step that the data do not reject, most likely first',
+      [{ name: 'cause', left: true }, { name: 'evidence (ln likelihood ratio)' }],
+      list.map((one) => [printed(one.description), number(one.evidence, 3)]),
+      { whole: true },
+    ),
+    el('p', { class: 'note' }, `Level ${result.level}: the true cause is rejected at most one time in ${number(1 / (1 - result.level), 3)}.`),
+  ];
+}
+
 /** What each candidate would do alone. */
 export function candidates(result) {
   const list = result.candidates ?? [];

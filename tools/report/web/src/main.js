@@ -5,7 +5,7 @@ import { circleTable, polarPlot } from './polar.js';
 import { byKind, residualMatrix, unitOf } from './matrix.js';
 import { curves, histogram, ladder } from './plots.js';
 import { volume } from './volume.js';
-import { candidates, falling, next, pictures, simulated, verdict } from './diagnosis.js';
+import { candidates, causes, falling, next, pictures, simulated, verdict } from './diagnosis.js';
 import { failure, findingList } from './failure.js';
 
 const root = document.getElementById('report');
@@ -105,6 +105,7 @@ function optional(title, parts) {
 function diagnosis(result) {
   const { detail } = result;
   section(root, 'Verdict', verdict(result).filter(Boolean));
+  optional('Possible causes', causes(result));
   optional('Ladder', falling(result));
   section(root, 'Candidates', candidates(result));
   optional('Measure next', next(result));

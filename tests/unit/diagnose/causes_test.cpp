@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The set of causes that the data do not reject, and the decision between them by full fits.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "tools/diagnose/decide/causes.h"
+#include "tools/diagnose/decide/refit.h"
+#include "tools/diagnose/diagnosis.h"
+#include "tools/model/machine_reader.h"
+
+namespace vernier::causes_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::model;
+namespace {
+
+constexpr std::uint64_t kSeed = 17;
+
+const char* const kAxis = R"(<machine name="m"><variables><static><c value="0" unit="mm"/></static>
+  <machineaxes><X min="0" max="600"/></machineaxes></variables>
+  <transforms branch="tool"><sixdof n="1" X="X+c"/></transforms></machine>)";
+
+/// Rows of X in runs of 41 positions, forth and back, with an error and noise of 1 um. `cells`: of more
+/// columns, by run and row of the run.
+std::string runs_of(int runs, const std::function<double(double x, int sense, int run, int row)>& error_mm,
+                    const std::string& columns = "",
+                    const std::function<std::string(int run, int row)>& cells = {}) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "X[mm],dirX,x[mm],u[um],run" + columns + "\n";
+  for (int run = 0; run < runs; ++run)
+    for (int row = 0; row < 82; ++row) {
+      const int sense = row < 41 ? 1 : -1;
+      const double x = 15.0 * (row < 41 ? row : 81 - row);
+      text +=
+          fmt::format("{},{},{:.6f},1,r{}{}\n", x, sense, x + error_mm(x, sense, run, row) + noise(random),
+                      run, cells ? cells(run, row) : "");
+    }
+  return text;
+}
+
+struct Survey {
+  Machine machine;
+  Measurement rows;
+  explicit Survey(const std::string& text)
+      : machine(parse_machine(kAxis, "m.xml")), rows(parse_measurement(text, "m.csv", machine)) {}
+};
+
+Diagnosis diagnosed(const std::string& text) {
+  static const DiagnoseOptions options;  // answers point into its effects
+  const Survey survey(text);
+  return diagnose::diagnose(kAxis, survey.machine, survey.rows, options);
+}
+
+std::vector<std::string> effects_of(const Diagnosis& answer) {
+  std::vector<std::string> names;
+  for (const Cause& cause : answer.causes)
+    names.push_back(cause.candidate ? cause.candidate->choice.effect->id : "instrument " + cause.kind);
+  return names;
+}
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+TEST(Causes, AreOneForAMissingEffectAndNoneInNoise) {
+  for (const double backlash : {0.01, 0.0}) {
+    const Diagnosis answer =
+        diagnosed(runs_of(4, [&](double, int sense, int, int) { return backlash / 2 * sense; }));
+    EXPECT_EQ(answer.verdict, backlash > 0 ? Verdict::kMissingEffect : Verdict::kConsistent)
+        << "seed " << kSeed << ": " << answer.explanation;
+    ASSERT_EQ(answer.causes.size(), backlash > 0 ? 1U : 0U);
+    EXPECT_TRUE(answer.remaining.is_noise);
+    EXPECT_NEAR(answer.remaining.chi_square_per_freedom, 1, 0.35);  // 328 rows: std 0.08
+    if (backlash <= 0) continue;
+    EXPECT_EQ(effects_of(answer), std::vector<std::string>{"backlash"});
+    EXPECT_EQ(answer.causes[0].add, answer.ladder.at(1).add);
+    // Half of n ln(chi^2 / n), n = 328 rows, chi^2 / n = 1 + (5 um / 1 um)^2. The prices are below a tenth.
+    EXPECT_NEAR(answer.causes[0].evidence, 164 * std::log(26), 53);
+  }
+}
+
+TEST(Causes, HaveEachPeriodThatThePositionsDoNotDistinguish) {
+  const auto screw = [](double x, int, int, int) {
+    return 0.006 * std::sin(2 * std::numbers::pi * x / 10 + 0.4);
+  };
+  const Diagnosis answer = diagnosed(runs_of(4, screw));  // positions every 15 mm
+  ASSERT_EQ(answer.verdict, Verdict::kAmbiguous) << answer.explanation;
+  ASSERT_GE(answer.causes.size(), 2U);
+  bool has_truth = false;
+  for (const Cause& cause : answer.causes) {
+    EXPECT_EQ(effects_of(answer).front(), "cyclic-error");
+    ASSERT_TRUE(cause.period.has_value()) << cause.description;
+    has_truth = has_truth || std::abs(*cause.period - 10) < 0.05;
+    // The same readings: evidence differs by less than the limit of the set.
+    EXPECT_NEAR(cause.evidence, answer.causes.front().evidence, 3.01) << cause.description;
+  }
+  EXPECT_TRUE(has_truth) << answer.explanation;
+}
+
+TEST(Causes, AreBothWhereTwoQuantitiesHaveOneShape) {
+  // The temperature rises in proportion to the time: nothing separates the two.
+  const auto seconds = [](int run, int row) { return 30.0 * (82 * run + row); };
+  const auto cells = [&](int run, int row) {
+    return fmt::format(",{:.1f},{:.4f}", seconds(run, row), 20 + seconds(run, row) / 2000);
+  };
+  const Diagnosis answer = diagnosed(runs_of(
+      4, [&](double x, int, int run, int row) { return 1e-5 * x * seconds(run, row) / 2000; },
+      ",t[s],T_x[degC]", cells));
+  ASSERT_TRUE(answer.verdict == Verdict::kAmbiguous || answer.verdict == Verdict::kMissingEffect)
+      << answer.explanation;
+  EXPECT_TRUE(has(effects_of(answer), "thermal-scale")) << answer.explanation;
+  EXPECT_EQ(answer.verdict == Verdict::kAmbiguous, answer.causes.size() > 1);
+  EXPECT_TRUE(std::is_sorted(answer.causes.begin(), answer.causes.end(),
+                             [](const Cause& a, const Cause& b) { return a.evidence > b.evidence; }));
+}
+
+TEST(Causes, OfShiftsInSeveralRunsHaveTheSetUpUnlessItStayed) {
+  const std::vector<double> shifts = {0, 0.021, 0.034, 0, 0.021, 0};
+  const auto error = [&](double, int, int run, int) { return shifts[static_cast<std::size_t>(run)]; };
+  const Diagnosis open = diagnosed(runs_of(6, error));
+  const Diagnosis stayed = diagnosed(runs_of(6, error, ",setup", [](int, int) { return ",one"; }));
+
+  EXPECT_NE(open.verdict, Verdict::kMissingEffect) << open.explanation;
+  const std::vector<std::string> names = effects_of(open);
+  EXPECT_TRUE(has(names, "instrument set-up") || has(names, "instrument step") ||
+              has(names, "instrument drift"))
+      << open.explanation;
+  EXPECT_FALSE(has(effects_of(stayed), "instrument set-up")) << stayed.explanation;
+}
+
+TEST(Causes, OfTheInstrumentHaveTheirKind) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> step(0, 0.0008);
+  double drift = 0;
+  const Diagnosis answer =
+      diagnosed(runs_of(4, [&](double, int, int, int) { return drift += step(random); }));
+  ASSERT_EQ(answer.verdict, Verdict::kInstrument) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_EQ(effects_of(answer), std::vector<std::string>{"instrument drift"});
+}
+
+/// A search with a backlash that is clearly accepted, and its alternatives.
+class Decision : public testing::Test {
+ protected:
+  Decision()
+      : survey_(runs_of(4, [](double, int sense, int, int) { return 0.0004 * sense; })),
+        fitted_(fit::fit(survey_.machine, survey_.rows)),
+        finder_(fitted_.machine, survey_.rows, effects_, 5, [](double, const std::string&) {}) {
+    finder_.find();
+  }
+
+  Survey survey_;
+  std::vector<effects::Effect> effects_ = effects::built_in_effects();
+  fit::FitResult fitted_;
+  Finder finder_;
+};
+
+TEST_F(Decision, TakesTheDistancesOfTheFits) {
+  ASSERT_EQ(finder_.chosen().size(), 1U);
+  const Alternatives linear = finder_.alternatives_to(finder_.chosen().front());
+  ASSERT_FALSE(linear.other.empty());
+  const double limit = finder_.evidence().thresholds().acceptance.distance_of_fits;
+  const auto near =
+      static_cast<std::size_t>(std::count_if(linear.other.begin(), linear.other.end(),
+                                             [&](const Alternative& one) { return one.distance < limit; }));
+  fit::FitResult accepted;
+  accepted.chi_square = 320;
+  accepted.converged = true;
+  std::size_t fits = 0;
+  const auto alternatives = [&](double chi_square, bool converged) {
+    return alternatives_by_fits(finder_, finder_.chosen(), 8,
+                                {fitted_, accepted, [&](const std::vector<std::size_t>&) {
+                                   ++fits;
+                                   fit::FitResult other;
+                                   other.chi_square = chi_square;
+                                   other.converged = converged;
+                                   return other;
+                                 }});
+  };
+
+  const Alternatives same = alternatives(160, false), better = alternatives(160, true);
+
+  ASSERT_EQ(same.other.size(), linear.other.size());
+  EXPECT_EQ(same.other.front().distance, linear.other.front().distance);  // no fit converged
+  EXPECT_EQ(fits, 2 * std::min<std::size_t>(8, near));
+  ASSERT_GT(near, 0U);
+  EXPECT_LT(better.other.front().distance, 0);
+}
+
+// A spike behind each reversal that decays over the whole travel is the backlash itself, in a form with one
+// more unknown.
+TEST(Causes, HaveNoFormThatTheFitBringsToTheAcceptedOne) {
+  const Diagnosis answer = diagnosed(runs_of(4, [](double, int sense, int, int) { return 0.0005 * sense; }));
+  ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_EQ(effects_of(answer), std::vector<std::string>{"backlash"});
+}
+
+TEST_F(Decision, ReplacesACauseOnlyByOneThatPassesTheTests) {
+  ASSERT_EQ(finder_.chosen().size(), 1U);
+  const std::size_t cause = finder_.chosen().front();
+  std::size_t replaced = 0;
+  for (const Alternative& one : finder_.alternatives_to(cause).other) {
+    if (!finder_.replace(cause, one.item)) {
+      EXPECT_EQ(finder_.chosen(), std::vector<std::size_t>{cause});
+      continue;
+    }
+    ++replaced;
+    EXPECT_EQ(finder_.chosen(), std::vector<std::size_t>{one.item});
+    ASSERT_TRUE(finder_.replace(one.item, cause));
+  }
+  EXPECT_LT(replaced, finder_.alternatives_to(cause).other.size());
+}
+
+}  // namespace
+}  // namespace vernier::causes_test

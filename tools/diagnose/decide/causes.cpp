@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/diagnose/decide/causes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "tools/effects/add_string.h"
+#include "tools/effects/candidate.h"
+
+namespace vernier::diagnose {
+namespace {
+
+constexpr std::array<std::pair<const char*, const char*>, 6> kInstrument = {{
+    {"drift", "The instrument drifts."},
+    {"step", "The readings of the instrument step."},
+    {"set-up", "The instrument was set up anew between the runs."},
+    {"outliers", "Some readings are outliers."},
+    {"clock", "Positions and readings are from different instants."},
+    {"readings", "The readings are not those of this machine."},
+}};
+
+/// Makes the entries of effects.
+class Causes {
+ public:
+  explicit Causes(const Findings& found)
+      : found_(found), pool_(found.finder.pool()), axes_(found.machine), first_(found.accepted.front()) {}
+
+  std::vector<Cause> all(const std::vector<double>& aliases) const {
+    const double own = found_.finder.evidence_for(first_);
+    std::vector<Cause> causes = {entry(first_, pool_[first_].scored.scanned, own)};
+    for (const double alias : aliases)
+      causes.push_back(entry(first_, {alias}, found_.finder.evidence_for(first_, {alias})));
+    const double limit = found_.options.thresholds.acceptance.distance;
+    for (const Alternative& other : found_.alternatives.other)
+      if (other.distance < limit)
+        causes.push_back(entry(other.item, pool_[other.item].scored.scanned, own - other.distance / 2));
+    return causes;
+  }
+
+ private:
+  Cause entry(std::size_t item, const std::vector<double>& scanned, double evidence) const {
+    Cause cause;
+    cause.candidate = pool_.candidate(item);
+    const effects::Choice& choice = cause.candidate->choice;
+    cause.add = effects::add_string(found_.finder.evidence().machine(),
+                                    effects::choice_at(*cause.candidate, scanned));
+    cause.description = cause.candidate->spoken;
+    cause.axis = choice.axis;
+    if (!cause.axis && choice.place) cause.axis = axes_.axis_of(*choice.place);
+    std::size_t at = 0;
+    for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(*cause.candidate)) {
+      if (unknown.kind == effects::UnknownKind::kPeriod && at < scanned.size()) {
+        cause.period = scanned[at];
+        const bool rotary = choice.axis && found_.machine.axes[*choice.axis].rotary;
+        cause.description += fmt::format(", period {:.5g} {}", scanned[at], rotary ? "deg" : "mm");
+      }
+      ++at;
+    }
+    cause.evidence = evidence;
+    return cause;
+  }
+
+  const Findings& found_;
+  const Pool& pool_;
+  const effects::AxisPlaces axes_;
+  const std::size_t first_;
+};
+
+/// Aliases of the first step's period.
+std::vector<double> aliases_of(const Diagnosis& answer) {
+  for (const CandidateFinding& one : answer.candidates)
+    if (answer.ladder.size() > 1 && one.add == answer.ladder[1].add) return one.aliases;
+  return {};
+}
+
+}  // namespace
+
+Cause instrument_cause(const std::string& kind, double evidence) {
+  Cause cause;
+  cause.kind = kind;
+  cause.evidence = evidence;
+  for (const auto& [name, text] : kInstrument)
+    if (kind == name) cause.description = text;
+  return cause;
+}
+
+std::vector<Cause> causes_not_rejected(const Findings& found, const Diagnosis& answer) {
+  std::vector<Cause> causes;
+  const bool named = answer.verdict == Verdict::kMissingEffect || answer.verdict == Verdict::kAmbiguous;
+  // Confirmed steps above a residual that is not noise are causes too; `remaining` states the rest.
+  const bool part = answer.verdict == Verdict::kUnexplained && !answer.remaining.is_noise;
+  if (!found.accepted.empty() && (named || part)) causes = Causes(found).all(aliases_of(answer));
+  std::stable_sort(causes.begin(), causes.end(),
+                   [](const Cause& a, const Cause& b) { return a.evidence > b.evidence; });
+  if (answer.instrument.empty()) return causes;
+  if (named && !causes.empty())
+    causes.push_back(instrument_cause(answer.instrument, causes.front().evidence));
+  else
+    causes = {instrument_cause(answer.instrument, std::max(0.0, answer.noise.support / 2))};
+  return causes;
+}
+
+}  // namespace vernier::diagnose

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/diagnose/decide/refit.h"
+
+#include <algorithm>
+
+#include "tools/fit/least_squares/statistics.h"
+
+namespace vernier::diagnose {
+namespace {
+
+/// Share of the accepted set's part of the fit rows in which another fit differs from it.
+double share_apart(const model::Measurement& rows, const DecisionFits& fits, const fit::FitResult& other) {
+  const Eigen::VectorXd weights = fit::fit_weights(rows);
+  if (other.residual.size() != weights.size() || fits.accepted.residual.size() != weights.size()) return 1;
+  const double part = weights.cwiseProduct(fits.without.residual - fits.accepted.residual).squaredNorm();
+  const double apart = weights.cwiseProduct(other.residual - fits.accepted.residual).squaredNorm();
+  return part > 0 ? apart / part : 1;
+}
+
+}  // namespace
+
+Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
+                                  std::size_t most, const DecisionFits& fits) {
+  Alternatives found = finder.alternatives_to(accepted.front());
+  if (!(fits.accepted.chi_square > 0)) return found;
+  const DiagnoseThresholds& limits = finder.evidence().thresholds();
+  const double own = finder.criterion_of_fit(accepted, 1);
+  std::vector<std::size_t> set = accepted;
+  std::size_t fitted = 0;
+  std::erase_if(found.other, [&](Alternative& one) {
+    if (one.distance >= limits.acceptance.distance_of_fits || fitted++ >= most) return false;
+    set.front() = one.item;
+    const fit::FitResult fit = fits.of(set);
+    if (!fit.converged) return false;
+    if (finder.pool().is_richer(one.item, accepted.front()) &&
+        share_apart(finder.evidence().measurement(), fits, fit) < limits.pool.held_share)
+      return true;
+    one.distance = finder.criterion_of_fit(set, fit.chi_square / fits.accepted.chi_square) - own;
+    return false;
+  });
+  std::stable_sort(found.other.begin(), found.other.end(),
+                   [](const Alternative& a, const Alternative& b) { return a.distance < b.distance; });
+  return found;
+}
+
+}  // namespace vernier::diagnose

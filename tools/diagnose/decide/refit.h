@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "tools/diagnose/finder.h"
+#include "tools/fit/types.h"
+
+namespace vernier::diagnose {
+
+/// Returns the full fit of the machine with items of the pool.
+using FitOfItems = std::function<fit::FitResult(const std::vector<std::size_t>&)>;
+
+/// The fits between which the decision is made.
+struct DecisionFits {
+  const fit::FitResult& without;   // any effect
+  const fit::FitResult& accepted;  // the accepted set
+  FitOfItems of;
+};
+
+/// Returns the alternatives to the first accepted item with the distances of their full fits: each fit has
+/// the alternative in place of the first item. The search foresees distances by a linear estimate; the fit
+/// decides. Alternatives beyond `distance_of_fits`, those after the first `most`, and those whose fit does
+/// not converge keep the distance of the estimate. A form with more unknowns that the fit brings to the
+/// readings of the accepted form is not an alternative. accepted: items, not empty. A negative distance means
+/// that the fit prefers the alternative. Cost: one fit for each alternative. tool.
+Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
+                                  std::size_t most, const DecisionFits& fits);
+
+}  // namespace vernier::diagnose
