@@ -7,98 +7,25 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
+#include "tools/commands/out/exporting.h"
 #include "tools/compile/compile.h"
 #include "tools/exchange/component_csv.h"
 #include "tools/exchange/left_out.h"
 #include "tools/exchange/linuxcnc_folder.h"
 #include "tools/exchange/screw_comp.h"
 #include "tools/exchange/table_text.h"
-#include "tools/kinematics/at.h"
 #include "tools/model/machine_reader.h"
-#include "tools/results/fit_findings.h"
 #include "tools/safety/safety_sheet.h"
-#include "tools/text/assurance.h"
 
 namespace vernier::commands::exchange_cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct ExchangeArguments {
-  std::string machine, file, output, json, axis, at, reversal;
-  std::vector<std::string> accept;
-  int type = 1;
-  double tolerance_um = 0.1;
-  bool leave_out = false, component = false;
-};
-
 std::size_t axis_named(const model::Machine& machine, const std::string& name) {
   const auto axis = machine.find_axis(name);
   if (!axis) throw text::InputError({machine.file, 0}, name, "the machine has no axis of this name");
   return *axis;
-}
-
-/// The written files run on a machine as an image does.
-void require_safe(const model::Machine& machine, const ExchangeArguments& arguments) {
-  const safety::SafetySheet sheet = safety::safety_sheet(machine, safety::rules_named(arguments.accept));
-  if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
-}
-
-/// How well the lines of one axis hold its errors.
-struct AxisLines {
-  std::string axis;
-  std::size_t lines = 0, probed = 0;
-  double worst_um = 0;
-};
-
-/// Assurance of an export: the machine may run with the correction, all of its errors are in the files, and
-/// the error between the lines is within the tolerance.
-text::Assurance assurance_of(const model::Machine& machine, const ExchangeArguments& arguments,
-                             const std::vector<exchange::LeftOut>& left_out,
-                             const std::vector<AxisLines>& axes) {
-  text::Assurance assurance(text::AssuranceKind::kExport);
-  results::add_findings(assurance, machine);
-  assurance.require("safe-to-run", true, "Every rule of the sheet \"safe to run?\" is met or accepted.");
-  double left_um = 0;
-  for (const exchange::LeftOut& one : left_out) left_um = std::max(left_um, one.um);
-  assurance.at_most("left-out", left_um, exchange::kNothing_um,
-                    "Largest error that the format cannot hold, um.");
-  for (const AxisLines& one : axes)
-    assurance.at_most(
-        "between-lines-" + one.axis, one.worst_um, arguments.tolerance_um,
-        fmt::format("Largest error between the lines of {}, um, at {} positions.", one.axis, one.probed));
-  for (const std::string& rule : arguments.accept)
-    assurance.not_covered("The rule " + rule + " of the sheet was accepted by the user.");
-  return assurance;
-}
-
-void finish(const model::Machine& machine, const ExchangeArguments& arguments, const char* format,
-            const std::vector<exchange::LeftOut>& left_out, const Json& files,
-            const std::vector<AxisLines>& axes = {}, bool exported = true) {
-  Json left = Json::array();
-  for (const exchange::LeftOut& one : left_out) left.push_back({{"what", one.what}, {"um", one.um}});
-  Json json = {{"format", format}, {"files", files}, {"left_out", left}};
-  for (const AxisLines& one : axes)
-    json["axes"][one.axis] = {{"lines", one.lines}, {"worst_um", one.worst_um}, {"probed", one.probed}};
-  if (exported) json["assurance"] = assurance_of(machine, arguments, left_out, axes).json();
-  write_json(arguments.json, json);
-  std::FILE* out = human_stream(arguments.json);
-  for (const AxisLines& one : axes)
-    fmt::print(out, "{}: {} lines, error between them at most {:.3g} um ({} positions evaluated)\n", one.axis,
-               one.lines, one.worst_um, one.probed);
-  for (const exchange::LeftOut& one : left_out)
-    fmt::print(out, "left out: {}: up to {:.4g} um\n", one.what, one.um);
-  for (const Json& file : files) fmt::print(out, "{}\n", file.get<std::string>());
-}
-
-/// The fixed state: the middle of the ranges, overridden by the values of the user.
-model::States state_of(const model::Machine& machine, const ExchangeArguments& arguments) {
-  std::string words;
-  for (const model::Axis& axis : machine.axes)
-    if (axis.min && axis.max) words += fmt::format("{}={},", axis.name, (*axis.min + *axis.max) / 2);
-  words += arguments.at;
-  if (!words.empty() && words.back() == ',') words.pop_back();
-  return kinematics::state_at(machine, words);
 }
 
 /// A file and its text, not written yet.
@@ -244,22 +171,6 @@ void add_type(CLI::App* command, ExchangeArguments& arguments) {
       ->capture_default_str();
 }
 
-CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,
-                     const std::shared_ptr<ExchangeArguments>& arguments) {
-  CLI::App* command = parent->add_subcommand(kind, what);
-  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
-  command->add_option("-o,--output", arguments->output, output)->type_name(kWrites)->required();
-  command->add_flag("--leave-out", arguments->leave_out,
-                    "write what the format can represent, and list what it cannot");
-  command->add_option("--at", arguments->at,
-                      "values of the other axes and inputs: \"Y=0,T=25\"; default: middle of the ranges");
-  command->add_option(
-      "--accept", arguments->accept,
-      "a rule of the sheet \"safe to run?\" to override (tools/docs/safety.md); may be repeated");
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
-  return command;
-}
-
 CLI::App* add_import(CLI::App* parent, const char* kind, const char* what,
                      const std::shared_ptr<ExchangeArguments>& arguments) {
   CLI::App* command = parent->add_subcommand(kind, what);
@@ -278,11 +189,13 @@ CLI::App* add_import(CLI::App* parent, const char* kind, const char* what,
 }  // namespace
 
 void register_export(CLI::App& vernier) {
-  CLI::App* parent = vernier.add_subcommand("export", "Write tables that a controller reads");
+  CLI::App* parent =
+      vernier.add_subcommand("export", "Write the corrected machine in the format of a controller");
   parent->require_subcommand(1);
   parent->footer(
-      "What a format cannot express is refused with the reason; --leave-out writes the rest. Exit status 0\n"
-      "done, 1 bad input, 2 the sheet \"safe to run?\" fails or the tolerance takes more lines than the\n"
+      "What a table cannot express is refused with the reason; --leave-out writes the rest. The formats of\n"
+      "printers and robots are written, with the error that remains. Exit status 0 done, 1 bad input, 2 the "
+      "sheet \"safe to run?\" fails or the tolerance takes more lines than the\n"
       "controller keeps: nothing written.");
   auto screw = std::make_shared<ExchangeArguments>();
   CLI::App* linuxcnc = add_export(
@@ -305,6 +218,8 @@ void register_export(CLI::App& vernier) {
   add_export(parent, "isg-csv", "Component errors for ISG and Beckhoff volumetric compensation (ISG_CSV)",
              "file", isg)
       ->callback([isg] { export_tables(*isg, true); });
+  add_printer_exports(parent);
+  add_robot_exports(parent);
 }
 
 void register_import_tables(CLI::App& vernier) {

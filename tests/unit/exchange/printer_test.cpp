@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files for the firmwares of printers: their numbers, read back and applied by the firmware's own formula,
+// remove the error of the chain.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+#include <sstream>
+
+#include "tools/exchange/printer/correction.h"
+#include "tools/exchange/printer/firmware_files.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/machine_reader.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+
+namespace vernier::printer_test {
+
+using namespace vernier::exchange;
+using namespace vernier::model;
+namespace {
+
+/// Squareness in all three planes, a scale of X, and a bed whose height follows both axes.
+const char* const kPrinter = R"xml(<machine name="printer"><variables><static>
+    <EC0Y value="0.1" nominal="0" unit="deg"/><EA0Z value="-0.07" nominal="0" unit="deg"/>
+    <EB0Z value="0.05" nominal="0" unit="deg"/><s value="0.0008" nominal="0" unit="1"/>
+    <h value="0.05" nominal="0" unit="mm"/></static>
+  <machineaxes><X min="0" max="200"/><Y min="-10" max="180"/><Z min="0" max="150"/></machineaxes></variables>
+  <transforms branch="tool"><sixdof n="1" X="X+s*X"/><sixdof n="2" rZ="EC0Y"/>
+  <sixdof n="3" Y="Y" Z="h*sin(X/27)*cos(Y/300)"/>
+  <sixdof n="4" rX="EA0Z" rY="EB0Z"/><sixdof n="5" Z="Z"/></transforms></machine>)xml";
+
+Machine printer() { return parse_machine(kPrinter, "printer.xml"); }
+
+States at_rest(const Machine& machine) { return make_states(1, machine); }
+
+/// Positions of the tool point at commands of X, Y and Z.
+Eigen::Vector3d point(const Machine& machine, const Eigen::Vector3d& command) {
+  States states = make_states(1, machine);
+  for (std::size_t i = 0; i < 3; ++i) states.axis[i][0] = command[static_cast<Eigen::Index>(i)];
+  return forward(machine, states).position.col(0);
+}
+
+/// "key = 1.5" and "key: 1.5" of a Klipper file, and the rows of its points.
+struct KlipperFile {
+  std::map<std::string, double> value;
+  std::vector<std::vector<double>> points;
+  explicit KlipperFile(const std::string& text) {
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) {
+      if (!line.starts_with("#*# ")) continue;
+      line = line.substr(4);
+      const std::size_t equals = line.find(" = ");
+      if (equals != std::string::npos) {
+        if (const auto number = text::parse_number(line.substr(equals + 3)))
+          value[line.substr(0, equals)] = *number;
+      } else if (line.starts_with("\t")) {
+        points.emplace_back();
+        std::istringstream row(line);
+        for (std::string cell; std::getline(row, cell, ',');) points.back().push_back(std::stod(cell));
+      }
+    }
+  }
+  /// klippy/extras/skew_correction.py, calc_skew; then bed_mesh.py, without fade.
+  Eigen::Vector3d moved(const Eigen::Vector3d& p) const {
+    const double xy = value.at("xy_skew"), xz = value.at("xz_skew"), yz = value.at("yz_skew");
+    Eigen::Vector3d q(p[0] - p[1] * xy - p[2] * (xz - xy * yz), p[1] - p[2] * yz, p[2]);
+    q[2] += height(q[0], q[1]);
+    return q;
+  }
+  double height(double x, double y) const {
+    const auto share = [&](double at, const char* low, const char* high, std::size_t count) {
+      const double s =
+          (at - value.at(low)) / (value.at(high) - value.at(low)) * static_cast<double>(count - 1);
+      return std::min(std::max(s, 0.0), static_cast<double>(count - 1) - 1e-9);
+    };
+    const double u = share(x, "min_x", "max_x", points[0].size()),
+                 v = share(y, "min_y", "max_y", points.size());
+    const auto i = static_cast<std::size_t>(u), j = static_cast<std::size_t>(v);
+    const double a = u - static_cast<double>(i), b = v - static_cast<double>(j);
+    return (1 - b) * ((1 - a) * points[j][i] + a * points[j][i + 1]) +
+           b * ((1 - a) * points[j + 1][i] + a * points[j + 1][i + 1]);
+  }
+};
+
+TEST(PrinterFiles, OfKlipperRemoveSkewAndHeightsByItsOwnFormulas) {
+  Machine machine = printer();
+  machine.statics[*machine.find_static("s")].value = 0;
+  const PrinterAxes axes = printer_axes(machine);
+  PrinterCorrection correction =
+      printer_correction(machine, axes, features_of(Firmware::kKlipper, {}), at_rest(machine), 1);
+  const KlipperFile file(firmware_files(Firmware::kKlipper, {}, "printer", correction).at(0).text);
+  EXPECT_NEAR(file.value.at("xy_skew"), std::tan(0.1 / 57.29578) * -1, 2e-5);
+  const Machine ideal = nominal_machine(machine);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> x(0, 200), y(-10, 180), z(0, 150);
+  // Homing sets the offset: compared with the middle of the bed.
+  const Eigen::Vector3d middle(100, 85, 0);
+  const Eigen::Vector3d offset = point(machine, file.moved(middle)) - point(ideal, middle);
+  double largest = 0, before = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d p(x(random), y(random), z(random));
+    largest = std::max(largest, (point(machine, file.moved(p)) - point(ideal, p) - offset).norm());
+    before = std::max(before, (point(machine, p) - point(ideal, p)).norm());
+  }
+  EXPECT_GT(before, 0.2);
+  EXPECT_LT(largest, 0.004);  // second order of 0.1 deg over 200 mm, and 1 um between the points
+}
+
+TEST(PrinterErrors, AreThoseOfTheChainWithTheFiles) {
+  const Machine machine = printer();
+  const PrinterAxes axes = printer_axes(machine);
+  for (const Firmware firmware : {Firmware::kKlipper, Firmware::kRepRap, Firmware::kMarlin}) {
+    const PresentSetting present{std::array<double, 3>{80, 80, 400}};
+    PrinterCorrection correction =
+        printer_correction(machine, axes, features_of(firmware, present), at_rest(machine), 1);
+    firmware_files(firmware, present, machine.name, correction);
+    const PrinterErrors errors = printer_errors(machine, axes, correction, at_rest(machine));
+    EXPECT_GT(errors.rms_before_um, 100);
+    EXPECT_LT(errors.rms_after_um, 2);  // digits of the files: 1 um of height
+  }
+}
+
+TEST(PrinterErrors, ScaleStaysWithoutThePresentSteps) {
+  const Machine machine = printer();
+  const PrinterAxes axes = printer_axes(machine);
+  PrinterCorrection correction =
+      printer_correction(machine, axes, features_of(Firmware::kMarlin, {}), at_rest(machine), 1);
+  const std::string text = firmware_files(Firmware::kMarlin, {}, "printer", correction).at(0).text;
+  EXPECT_EQ(text.find("M92"), std::string::npos);
+  const PrinterErrors errors = printer_errors(machine, axes, correction, at_rest(machine));
+  EXPECT_NEAR(errors.after_um[0], 0.0008 * 100 * 1000, 3);  // half of the travel to each side of the middle
+}
+
+TEST(PrinterFiles, OfGrblHaveTheStepsOfEachAxis) {
+  const Machine machine = printer();
+  const PresentSetting present{std::array<double, 3>{80, 80, 400}};
+  PrinterCorrection correction = printer_correction(
+      machine, printer_axes(machine), features_of(Firmware::kGrbl, present), at_rest(machine), 1);
+  const std::string text = firmware_files(Firmware::kGrbl, present, "printer", correction).at(0).text;
+  const std::size_t at = text.find("$100=");
+  ASSERT_NE(at, std::string::npos) << text;
+  // The carriage goes 0.08 % too far, so that it needs fewer steps.
+  EXPECT_NEAR(std::stod(text.substr(at + 5)), 80 / 1.0008, 1e-3);
+  EXPECT_EQ(correction.mesh.z.size(), 0);
+}
+
+TEST(PrinterFiles, AreOfThreeLinearAxesWithRanges) {
+  const auto refused = [](std::string text, const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+    EXPECT_THROW(printer_axes(parse_machine(text, "printer.xml")), text::InputError) << to;
+  };
+  refused(kPrinter, "<Z min=\"0\" max=\"150\"/>", "<Z/>");
+  refused(kPrinter, "<Z min=\"0\" max=\"150\"/>",
+          "<Z min=\"0\" max=\"150\"/><C rotary=\"true\" min=\"0\" max=\"360\"/>");
+}
+
+TEST(HeightMesh, HoldsItsEndsAndIsLinearBetweenItsPoints) {
+  HeightMesh mesh{0, 10, 0, 20, {}};
+  mesh.z.resize(2, 2);
+  mesh.z << 1, 2, 3, 5;
+  EXPECT_DOUBLE_EQ(mesh.at(0, 0), 1);
+  EXPECT_DOUBLE_EQ(mesh.at(10, 0), 2);
+  EXPECT_DOUBLE_EQ(mesh.at(0, 20), 3);
+  EXPECT_DOUBLE_EQ(mesh.at(5, 10), 2.75);
+  EXPECT_DOUBLE_EQ(mesh.at(11, 21), 5);
+  EXPECT_DOUBLE_EQ(mesh.at(-1, -1), 1);
+}
+
+}  // namespace
+}  // namespace vernier::printer_test

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/commands/out/exporting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
+#include "tools/kinematics/at.h"
+#include "tools/results/fit_findings.h"
+#include "tools/safety/safety_sheet.h"
+#include "tools/text/assurance.h"
+
+namespace vernier::commands::exchange_cli {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// Assurance of an export: the machine may run with the correction, all of its errors are in the files, and
+/// the error between the lines is within the tolerance.
+text::Assurance assurance_of(const model::Machine& machine, const ExchangeArguments& arguments,
+                             const std::vector<exchange::LeftOut>& left_out,
+                             const std::vector<AxisLines>& axes) {
+  text::Assurance assurance(text::AssuranceKind::kExport);
+  results::add_findings(assurance, machine);
+  assurance.require("safe-to-run", true, "Every rule of the sheet \"safe to run?\" is met or accepted.");
+  double left_um = 0;
+  for (const exchange::LeftOut& one : left_out) left_um = std::max(left_um, one.um);
+  assurance.at_most("left-out", left_um, exchange::kNothing_um,
+                    "Largest error that the format cannot hold, um.");
+  for (const AxisLines& one : axes)
+    assurance.at_most(
+        "between-lines-" + one.axis, one.worst_um, arguments.tolerance_um,
+        fmt::format("Largest error between the lines of {}, um, at {} positions.", one.axis, one.probed));
+  for (const std::string& rule : arguments.accept)
+    assurance.not_covered("The rule " + rule + " of the sheet was accepted by the user.");
+  return assurance;
+}
+
+}  // namespace
+
+void require_safe(const model::Machine& machine, const ExchangeArguments& arguments) {
+  const safety::SafetySheet sheet = safety::safety_sheet(machine, safety::rules_named(arguments.accept));
+  if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
+}
+
+void finish(const model::Machine& machine, const ExchangeArguments& arguments, const char* format,
+            const std::vector<exchange::LeftOut>& left_out, const Json& files,
+            const std::vector<AxisLines>& axes, bool exported, const Json& extra) {
+  Json left = Json::array();
+  for (const exchange::LeftOut& one : left_out) left.push_back({{"what", one.what}, {"um", one.um}});
+  Json json = {{"format", format}, {"files", files}, {"left_out", left}};
+  for (const AxisLines& one : axes)
+    json["axes"][one.axis] = {{"lines", one.lines}, {"worst_um", one.worst_um}, {"probed", one.probed}};
+  for (const auto& [key, value] : extra.items()) json[key] = value;
+  if (exported) json["assurance"] = assurance_of(machine, arguments, left_out, axes).json();
+  write_json(arguments.json, json);
+  std::FILE* out = human_stream(arguments.json);
+  for (const AxisLines& one : axes)
+    fmt::print(out, "{}: {} lines, error between them at most {:.3g} um ({} positions evaluated)\n", one.axis,
+               one.lines, one.worst_um, one.probed);
+  for (const exchange::LeftOut& one : left_out)
+    fmt::print(out, "left out: {}: up to {:.4g} um\n", one.what, one.um);
+  for (const Json& file : files) fmt::print(out, "{}\n", file.get<std::string>());
+}
+
+model::States state_of(const model::Machine& machine, const ExchangeArguments& arguments) {
+  std::string words;
+  for (const model::Axis& axis : machine.axes)
+    if (axis.min && axis.max) words += fmt::format("{}={},", axis.name, (*axis.min + *axis.max) / 2);
+  words += arguments.at;
+  if (!words.empty() && words.back() == ',') words.pop_back();
+  return kinematics::state_at(machine, words);
+}
+
+CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,
+                     const std::shared_ptr<ExchangeArguments>& arguments) {
+  CLI::App* command = parent->add_subcommand(kind, what);
+  command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
+  command->add_option("-o,--output", arguments->output, output)->type_name(kWrites)->required();
+  command->add_flag("--leave-out", arguments->leave_out,
+                    "write what the format can represent, and list what it cannot");
+  command->add_option("--at", arguments->at,
+                      "values of the other axes and inputs: \"Y=0,T=25\"; default: middle of the ranges");
+  command->add_option(
+      "--accept", arguments->accept,
+      "a rule of the sheet \"safe to run?\" to override (tools/docs/safety.md); may be repeated");
+  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  return command;
+}
+
+}  // namespace vernier::commands::exchange_cli

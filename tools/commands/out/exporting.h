@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all exports share: arguments, the sheet "safe to run?", the result.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/exchange/left_out.h"
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier::commands::exchange_cli {
+
+struct ExchangeArguments {
+  std::string machine, file, output, json, axis, at, reversal;
+  std::vector<std::string> accept;
+  int type = 1;
+  double tolerance_um = 0.1;
+  bool leave_out = false, component = false;
+};
+
+/// How well the lines of one axis hold its errors.
+struct AxisLines {
+  std::string axis;
+  std::size_t lines = 0, probed = 0;
+  double worst_um = 0;
+};
+
+/// Throws LimitNotMet if the sheet "safe to run?" fails: the written files run on a machine as an image does.
+void require_safe(const model::Machine& machine, const ExchangeArguments& arguments);
+
+/// Returns the fixed state: the middle of the ranges, overridden by the values of the user.
+model::States state_of(const model::Machine& machine, const ExchangeArguments& arguments);
+
+/// Prints and writes the result of an export (exported) or of an import of tables. extra: more keys.
+void finish(const model::Machine& machine, const ExchangeArguments& arguments, const char* format,
+            const std::vector<exchange::LeftOut>& left_out, const nlohmann::ordered_json& files,
+            const std::vector<AxisLines>& axes = {}, bool exported = true,
+            const nlohmann::ordered_json& extra = {});
+
+/// Adds the subcommand of a format with the options of every export.
+CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,
+                     const std::shared_ptr<ExchangeArguments>& arguments);
+
+/// Adds the subcommands of the firmwares of printers and small machines.
+void add_printer_exports(CLI::App* parent);
+
+/// Adds the subcommand `urdf`.
+void add_robot_exports(CLI::App* parent);
+
+}  // namespace vernier::commands::exchange_cli

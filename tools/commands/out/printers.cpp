@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `vernier export klipper|rrf|marlin|grbl`.
+#include <fmt/format.h>
+
+#include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
+#include "tools/commands/out/exporting.h"
+#include "tools/exchange/printer/correction.h"
+#include "tools/exchange/printer/firmware_files.h"
+#include "tools/kinematics/at.h"
+#include "tools/text/error.h"
+
+namespace vernier::commands::exchange_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using exchange::Firmware;
+
+struct PrinterArguments {
+  ExchangeArguments common;
+  std::string steps;
+};
+
+exchange::PresentSetting present_of(const PrinterArguments& arguments) {
+  exchange::PresentSetting present;
+  if (arguments.steps.empty()) return present;
+  const std::vector<double> numbers = kinematics::number_list(arguments.steps, {3}, "--steps");
+  for (const double number : numbers)
+    if (!(number > 0))
+      throw text::InputError("--steps: '" + arguments.steps + "' must be three positive numbers");
+  present.steps = {numbers[0], numbers[1], numbers[2]};
+  return present;
+}
+
+/// What the files do not hold: the largest error of each direction, and steps that the user did not state.
+std::vector<exchange::LeftOut> left_out_of(const exchange::PrinterErrors& errors) {
+  std::vector<exchange::LeftOut> left;
+  constexpr std::array<const char*, 3> kNames = {"X", "Y", "Z"};
+  for (std::size_t i = 0; i < 3; ++i)
+    if (errors.after_um[i] > exchange::kNothing_um)
+      left.push_back(
+          {fmt::format("error along {} that remains with the files, between the points as well", kNames[i]),
+           errors.after_um[i]});
+  return left;
+}
+
+Json errors_json(const exchange::PrinterErrors& errors) {
+  const auto three = [](const std::array<double, 3>& um) {
+    return Json{{"x", um[0]}, {"y", um[1]}, {"z", um[2]}};
+  };
+  return {{"errors",
+           {{"positions", errors.positions},
+            {"before_um", three(errors.before_um)},
+            {"after_um", three(errors.after_um)},
+            {"rms_before_um", errors.rms_before_um},
+            {"rms_after_um", errors.rms_after_um}}}};
+}
+
+void export_printer(const PrinterArguments& arguments, Firmware firmware, const char* name) {
+  const ExchangeArguments& common = arguments.common;
+  const model::Machine machine = read_model(common.machine);
+  const exchange::PresentSetting present = present_of(arguments);
+  if (firmware == Firmware::kGrbl && !present.steps)
+    throw text::InputError("grbl holds steps per mm only: state the present ones with --steps X,Y,Z");
+  const exchange::PrinterAxes axes = exchange::printer_axes(machine);
+  const model::States at = state_of(machine, common);
+  require_safe(machine, common);
+  exchange::PrinterCorrection correction = exchange::printer_correction(
+      machine, axes, exchange::features_of(firmware, present), at, common.tolerance_um);
+  const std::vector<exchange::FirmwareFile> texts =
+      exchange::firmware_files(firmware, present, machine.name, correction);
+  const exchange::PrinterErrors errors = exchange::printer_errors(machine, axes, correction, at);
+  text::make_folder(common.output);
+  Json files = Json::array();
+  for (const exchange::FirmwareFile& file : texts) {
+    files.push_back(common.output + "/" + file.name);
+    text::write_file(files.back().get<std::string>(), file.text);
+  }
+  fmt::print(human_stream(common.json),
+             "error of the tool point at {} positions, rms: {:.4g} um before, {:.4g} um with the files\n",
+             errors.positions, errors.rms_before_um, errors.rms_after_um);
+  finish(machine, common, name, left_out_of(errors), files, {}, true, errors_json(errors));
+}
+
+void add_printer(CLI::App* parent, const char* name, const char* what, const char* steps, Firmware firmware) {
+  auto arguments = std::make_shared<PrinterArguments>();
+  arguments->common.tolerance_um = 1;
+  CLI::App* command = add_export(parent, name, what, "directory",
+                                 std::shared_ptr<ExchangeArguments>(arguments, &arguments->common));
+  command->add_option("--steps", arguments->steps, steps)->type_name("X,Y,Z");
+  command
+      ->add_option("--tolerance", arguments->common.tolerance_um,
+                   "largest error of the heights between two points of the mesh, um")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->footer(
+      "Writes squareness, heights and steps per mm as far as the firmware holds them, and prints the error\n"
+      "that remains, evaluated on the chain between the points. The offset of the axes and a turn of the\n"
+      "whole part about Z do not count.");
+  command->callback([arguments, firmware, name] { export_printer(*arguments, firmware, name); });
+}
+
+}  // namespace
+
+void add_printer_exports(CLI::App* parent) {
+  constexpr const char* kSteps =
+      "present steps per mm of X, Y and Z; without them the scale is not corrected";
+  add_printer(parent, "klipper", "Klipper: skew_correction, bed_mesh and rotation_distance",
+              "present rotation_distance of X, Y and Z, mm per turn; without them the scale is not corrected",
+              Firmware::kKlipper);
+  add_printer(parent, "rrf", "RepRapFirmware: M556, height map and M92", kSteps, Firmware::kRepRap);
+  add_printer(parent, "marlin", "Marlin: M852, M421 and M92", kSteps, Firmware::kMarlin);
+  add_printer(parent, "grbl", "grbl: steps per mm ($100 to $102), all that it holds", kSteps,
+              Firmware::kGrbl);
+}
+
+}  // namespace vernier::commands::exchange_cli

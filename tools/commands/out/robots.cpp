@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `vernier export urdf`.
+#include <fmt/format.h>
+
+#include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
+#include "tools/commands/out/exporting.h"
+#include "tools/exchange/urdf_arm.h"
+
+namespace vernier::commands::exchange_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void export_urdf(const ExchangeArguments& arguments) {
+  const model::Machine machine = read_model(arguments.machine);
+  const model::States at = state_of(machine, arguments);
+  require_safe(machine, arguments);
+  const exchange::UrdfFile file = exchange::urdf_arm(machine, at);
+  text::make_folder(arguments.output);
+  const std::string path = arguments.output + "/robot.urdf";
+  text::write_file(path, file.text);
+  std::vector<exchange::LeftOut> left;
+  if (file.worst_um > exchange::kNothing_um)
+    left.push_back({"errors that change with the joints, in the tool point", file.worst_um});
+  fmt::print(human_stream(arguments.json),
+             "difference from the machine file at {} poses: tool point up to {:.3g} um, tool direction up to "
+             "{:.3g} urad\n",
+             file.positions, file.worst_um, file.worst_urad);
+  finish(machine, arguments, "urdf", left, Json::array({path}), {}, true,
+         {{"errors",
+           {{"positions", file.positions}, {"after_um", file.worst_um}, {"after_urad", file.worst_urad}}}});
+}
+
+}  // namespace
+
+void add_robot_exports(CLI::App* parent) {
+  auto arguments = std::make_shared<ExchangeArguments>();
+  CLI::App* command =
+      add_export(parent, "urdf", "URDF: the calibrated joints of an arm (ROS)", "directory", arguments);
+  command->footer(
+      "Writes robot.urdf: a joint for each axis, where the fitted chain really moves. Prints the error that\n"
+      "ideal joints leave: compliance, cyclic errors, reversal and heat.");
+  command->callback([arguments] { export_urdf(*arguments); });
+}
+
+}  // namespace vernier::commands::exchange_cli

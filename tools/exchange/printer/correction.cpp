@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/exchange/printer/correction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tools/kinematics/correction.h"
+#include "tools/maths/decompositions.h"
+#include "tools/model/chain/chain.h"
+#include "tools/text/error.h"
+
+namespace vernier::exchange {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::VectorXd;
+
+/// States at commands of X, Y and Z, a column each.
+model::States states_at(const PrinterAxes& axes, const Matrix3Xd& commands, const model::States& at) {
+  model::States states =
+      model::select_states(at, std::vector<std::size_t>(static_cast<std::size_t>(commands.cols()), 0));
+  for (std::size_t i = 0; i < 3; ++i)
+    states.axis[axes.axis[i]] = commands.row(static_cast<Index>(i)).transpose().array();
+  return states;
+}
+
+/// What has to be added to each command, mm.
+Matrix3Xd needed(const model::Machine& machine, const PrinterAxes& axes, const Matrix3Xd& commands,
+                 const model::States& at) {
+  const kinematics::CorrectionResult result = kinematics::correct(machine, states_at(axes, commands, at));
+  Matrix3Xd offset(3, commands.cols());
+  for (std::size_t i = 0; i < 3; ++i)
+    offset.row(static_cast<Index>(i)) = result.offset[axes.axis[i]].matrix().transpose();
+  return offset;
+}
+
+VectorXd evenly(double low, double high, std::size_t count) {
+  return VectorXd::LinSpaced(static_cast<Index>(count), low, high);
+}
+
+/// All points of a grid: count positions of each axis.
+Matrix3Xd grid(const PrinterAxes& axes, std::array<std::size_t, 3> count) {
+  Matrix3Xd points(3, static_cast<Index>(count[0] * count[1] * count[2]));
+  const VectorXd x = evenly(axes.low[0], axes.high[0], count[0]),
+                 y = evenly(axes.low[1], axes.high[1], count[1]);
+  const VectorXd z =
+      count[2] == 1 ? VectorXd::Constant(1, axes.low[2]) : evenly(axes.low[2], axes.high[2], count[2]);
+  Index at = 0;
+  for (const double height : z)
+    for (const double across : y)
+      for (const double along : x) points.col(at++) = Eigen::Vector3d(along, across, height);
+  return points;
+}
+
+/// Least squares of a column on columns: the coefficients.
+VectorXd least_squares(const Eigen::MatrixXd& columns, const VectorXd& values) {
+  return maths::least_squares(columns, values);
+}
+
+/// Skew and steps. A part of Y that depends on X and the opposite part of X are one turn about Z: the skew is
+/// their sum.
+void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& features,
+                        const Matrix3Xd& points, const Matrix3Xd& offset) {
+  Eigen::MatrixXd columns(points.cols(), 4);
+  columns << points.transpose(), VectorXd::Ones(points.cols());
+  const VectorXd x = least_squares(columns, offset.row(0).transpose()),
+                 y = least_squares(columns, offset.row(1).transpose()),
+                 z = least_squares(columns, offset.row(2).transpose());
+  if (features.skew) {
+    correction.xy = x[1] + y[0];
+    correction.xz = x[2];
+    correction.yz = y[2];
+  }
+  if (features.steps) correction.steps = {1 + x[0], 1 + y[1], 1 + z[2]};
+}
+
+/// Heights at the lowest Z, beside the skew. Z is 0 in the middle: homing sets the offset.
+HeightMesh mesh_of(const model::Machine& machine, const PrinterAxes& axes, std::size_t count,
+                   const model::States& at) {
+  const Matrix3Xd points = grid(axes, {count, count, 1});
+  const Matrix3Xd offset = needed(machine, axes, points, at);
+  HeightMesh mesh{axes.low[0], axes.high[0], axes.low[1], axes.high[1], {}};
+  const auto side = static_cast<Index>(count);
+  mesh.z.resize(side, side);
+  for (Index row = 0; row < side; ++row) mesh.z.row(row) = offset.row(2).segment(row * side, side);
+  const double middle = mesh.at((axes.low[0] + axes.high[0]) / 2, (axes.low[1] + axes.high[1]) / 2);
+  mesh.z.array() -= middle;
+  return mesh;
+}
+
+/// Largest error of the mesh in the middle of its cells, um.
+double between_um(const model::Machine& machine, const PrinterAxes& axes, const HeightMesh& mesh,
+                  const model::States& at) {
+  const auto cells = static_cast<std::size_t>(mesh.z.cols() - 1);
+  PrinterAxes middle = axes;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double half = (axes.high[i] - axes.low[i]) / static_cast<double>(2 * cells);
+    middle.low[i] += half;
+    middle.high[i] -= half;
+  }
+  const Matrix3Xd points = grid(middle, {cells, cells, 1});
+  VectorXd error = needed(machine, axes, points, at).row(2);
+  for (Index i = 0; i < points.cols(); ++i) error[i] -= mesh.at(points(0, i), points(1, i));
+  return 1000 * (error.maxCoeff() - error.minCoeff()) / 2;
+}
+
+/// Removes the offset and the turn about Z that fit best.
+void remove_rigid_part(Matrix3Xd& error, const Matrix3Xd& points) {
+  const Eigen::Vector3d mean = error.rowwise().mean();
+  error.colwise() -= mean;
+  const Eigen::Vector3d centre = points.rowwise().mean();
+  const Matrix3Xd arm = points.colwise() - centre;
+  const double turn = (arm.row(0).dot(error.row(1)) - arm.row(1).dot(error.row(0))) /
+                      (arm.row(0).squaredNorm() + arm.row(1).squaredNorm());
+  error.row(0) += turn * arm.row(1);
+  error.row(1) -= turn * arm.row(0);
+}
+
+double rms_um(const Matrix3Xd& error) {
+  return 1000 * std::sqrt(error.squaredNorm() / static_cast<double>(error.cols()));
+}
+
+}  // namespace
+
+PrinterAxes printer_axes(const model::Machine& machine) {
+  PrinterAxes axes;
+  constexpr std::array<const char*, 3> kNames = {"X", "Y", "Z"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto found = machine.find_axis(kNames[i]);
+    if (!found || machine.axes[*found].rotary)
+      throw text::InputError({machine.file, 0}, kNames[i],
+                             "this format is for machines with three linear axes X, Y and Z");
+    const auto range = model::work_range(machine, *found);
+    if (!range)
+      throw text::InputError({machine.file, machine.axes[*found].line}, kNames[i],
+                             "this axis needs min and max: the file is written for its range");
+    axes.axis[i] = *found;
+    axes.low[i] = (*range)[0];
+    axes.high[i] = (*range)[1];
+  }
+  for (const model::Axis& axis : machine.axes)
+    if (axis.rotary)
+      throw text::InputError({machine.file, axis.line}, axis.name,
+                             "this format has no rotary axis: it holds X, Y and Z only");
+  return axes;
+}
+
+double HeightMesh::at(double x, double y) const {
+  if (z.size() == 0) return 0;
+  const auto cell = [](double value, double low, double high, Index count) {
+    const double share = (value - low) / (high - low) * static_cast<double>(count - 1);
+    const double held = std::clamp(share, 0.0, static_cast<double>(count - 1));
+    const Index first = std::min(static_cast<Index>(held), count - 2);
+    return std::pair<Index, double>(first, held - static_cast<double>(first));
+  };
+  const auto [column, right] = cell(x, x_low, x_high, z.cols());
+  const auto [row, up] = cell(y, y_low, y_high, z.rows());
+  const double lower = (1 - right) * z(row, column) + right * z(row, column + 1);
+  const double upper = (1 - right) * z(row + 1, column) + right * z(row + 1, column + 1);
+  return (1 - up) * lower + up * upper;
+}
+
+Matrix3Xd PrinterCorrection::corrected(const Matrix3Xd& commands) const {
+  Matrix3Xd result = commands;
+  result.row(0) += xy * commands.row(1) + xz * commands.row(2);
+  result.row(1) += yz * commands.row(2);
+  for (Index i = 0; i < result.cols(); ++i) result(2, i) += mesh.at(result(0, i), result(1, i));
+  for (std::size_t i = 0; i < 3; ++i) result.row(static_cast<Index>(i)) *= steps[i];
+  return result;
+}
+
+PrinterCorrection printer_correction(const model::Machine& machine, const PrinterAxes& axes,
+                                     const PrinterFeatures& features, const model::States& at,
+                                     double tolerance_um) {
+  constexpr std::size_t kPositions = 7;  // of each axis, for skew and steps
+  const Matrix3Xd points = grid(axes, {kPositions, kPositions, kPositions});
+  PrinterCorrection correction;
+  fit_straight_parts(correction, features, points, needed(machine, axes, points, at));
+  if (!features.mesh) return correction;
+  for (const std::size_t count : features.points) {
+    correction.mesh = mesh_of(machine, axes, count, at);
+    if (between_um(machine, axes, correction.mesh, at) <= tolerance_um) break;
+  }
+  return correction;
+}
+
+PrinterErrors printer_errors(const model::Machine& machine, const PrinterAxes& axes,
+                             const PrinterCorrection& correction, const model::States& at) {
+  constexpr Index kPositions = 4096;
+  constexpr unsigned long kSeed = 1;
+  std::mt19937_64 random(kSeed);
+  Matrix3Xd points(3, kPositions);
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::uniform_real_distribution<double> position(axes.low[i], axes.high[i]);
+    for (Index k = 0; k < kPositions; ++k) points(static_cast<Index>(i), k) = position(random);
+  }
+  const Matrix3Xd nominal =
+      model::forward(model::nominal_machine(machine), states_at(axes, points, at)).position;
+  Matrix3Xd before = model::forward(machine, states_at(axes, points, at)).position - nominal;
+  Matrix3Xd after =
+      model::forward(machine, states_at(axes, correction.corrected(points), at)).position - nominal;
+  remove_rigid_part(before, nominal);
+  remove_rigid_part(after, nominal);
+  PrinterErrors errors;
+  errors.positions = static_cast<std::size_t>(kPositions);
+  for (std::size_t i = 0; i < 3; ++i) {
+    errors.before_um[i] = 1000 * before.row(static_cast<Index>(i)).cwiseAbs().maxCoeff();
+    errors.after_um[i] = 1000 * after.row(static_cast<Index>(i)).cwiseAbs().maxCoeff();
+  }
+  errors.rms_before_um = rms_um(before);
+  errors.rms_after_um = rms_um(after);
+  return errors;
+}
+
+}  // namespace vernier::exchange

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier::exchange {
+
+/// The axes X, Y and Z of a three-axis machine, and their working ranges, mm.
+struct PrinterAxes {
+  std::array<std::size_t, 3> axis{};
+  std::array<double, 3> low{}, high{};
+};
+
+/// Throws InputError if the machine lacks one of the three linear axes, has another axis that moves, or does
+/// not state their ranges.
+PrinterAxes printer_axes(const model::Machine& machine);
+
+/// A grid of heights over X and Y, bilinear between the points; the end values are used outside.
+struct HeightMesh {
+  double x_low = 0, x_high = 0, y_low = 0, y_high = 0;
+  Eigen::MatrixXd z;  // rows along Y, columns along X, mm; added to the command of Z
+
+  double at(double x, double y) const;
+};
+
+/// The correction that the firmware of a printer holds, in the order in which it acts on a command: skew,
+/// then heights, then the steps per mm.
+struct PrinterCorrection {
+  /// Added: x += xy*y + xz*z, y += yz*z. Tangents of the angles.
+  double xy = 0, xz = 0, yz = 0;
+  HeightMesh mesh;
+  /// Factors of the steps per mm of X, Y and Z.
+  std::array<double, 3> steps{1, 1, 1};
+
+  /// Commands of X, Y and Z, a column each, mm.
+  Eigen::Matrix3Xd corrected(const Eigen::Matrix3Xd& commands) const;
+};
+
+/// Which parts a firmware has.
+struct PrinterFeatures {
+  bool skew = true, mesh = true;
+  bool steps = false;               // the user states the present steps per mm
+  std::vector<std::size_t> points;  // numbers of mesh points per axis that are tried, increasing
+};
+
+/// Returns the correction of a machine, by least squares over the working volume for skew and steps, and at
+/// the lowest position of Z for the heights. The number of points is the smallest one at which the heights
+/// between them are within tolerance_um, or the largest one. `at` (count 1): inputs, motion. Offsets of the
+/// axes are not corrected: homing sets them. A turn about Z is not corrected: it turns the part as a whole.
+/// tool.
+PrinterCorrection printer_correction(const model::Machine& machine, const PrinterAxes& axes,
+                                     const PrinterFeatures& features, const model::States& at,
+                                     double tolerance_um);
+
+/// Errors of the tool point at positions of the whole volume, without the offset and without the turn about
+/// Z that fit them best, um.
+struct PrinterErrors {
+  std::array<double, 3> before_um{}, after_um{};  // largest of each direction
+  double rms_before_um = 0, rms_after_um = 0;     // of the three directions together
+  std::size_t positions = 0;
+};
+
+/// Evaluates the chain with the corrected commands at positions between the points of the mesh (4096, fixed
+/// seed). tool.
+PrinterErrors printer_errors(const model::Machine& machine, const PrinterAxes& axes,
+                             const PrinterCorrection& correction, const model::States& at);
+
+}  // namespace vernier::exchange

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/exchange/printer/correction.h"
+
+namespace vernier::exchange {
+
+/// A firmware of printers and small machines.
+enum class Firmware : std::uint8_t { kKlipper, kRepRap, kMarlin, kGrbl };
+
+/// What the user states about the present configuration.
+struct PresentSetting {
+  /// X, Y, Z: steps per mm (M92, $100), or for Klipper mm per turn (rotation_distance).
+  std::optional<std::array<double, 3>> steps;
+};
+
+/// Returns the parts of a correction that a firmware holds.
+PrinterFeatures features_of(Firmware firmware, const PresentSetting& present);
+
+struct FirmwareFile {
+  std::string name, text;
+};
+
+/// Returns the files of a firmware, and the correction with the rounding of these files. Sources, all in
+/// tools/docs/exchange.md: Klipper klippy/extras/skew_correction.py and bed_mesh.py; RepRapFirmware M556, M92
+/// and the height map file; Marlin M852, M420, M421, M92; grbl $100 to $102. machine_name: for comments.
+/// tool.
+std::vector<FirmwareFile> firmware_files(Firmware firmware, const PresentSetting& present,
+                                         const std::string& machine_name, PrinterCorrection& correction);
+
+}  // namespace vernier::exchange
