@@ -245,7 +245,7 @@ Convention convention_of(const model::Machine& machine, const model::Measurement
   correlate(machine, parameters, result);
   find_slopes(centre, rows, parameters, result);
   const std::set<std::size_t> shapes = shape_statics(machine);
-  const std::vector<bool> unseen = unseen_turns(centre, rows, parameters, result.reach_mm);
+  result.unseen_turn = unseen_turns(centre, rows, parameters, result.reach_mm);
   Eigen::VectorXd by_place;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const model::Parameter& p = parameters[i];
@@ -253,7 +253,7 @@ Convention convention_of(const model::Machine& machine, const model::Measurement
     if (p.kind == model::ParameterKind::kBaseShift) {
       // An instrument that measures one line is aligned to that line. Only its own cosine error
       // shows the quality of the alignment.
-      scale = p.column < 3 ? kAnywhere_mm : unseen[i] ? angle_deg : kAnyTurn_deg;
+      scale = p.column < 3 ? kAnywhere_mm : result.unseen_turn[i] ? angle_deg : kAnyTurn_deg;
       continue;
     }
     if (p.kind == model::ParameterKind::kScaleFactor) {

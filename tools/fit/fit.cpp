@@ -94,6 +94,22 @@ StatedPriors stated_priors(FitResult& result, const FitOptions& options, const C
   return stated;
 }
 
+/// Holds each rotation of a set-up that no reading shows and that the fit turned far away: such a turn only
+/// rotates errors of the machine into another direction. Returns true if a rotation is held now.
+bool hold_turned_away(const Settled& end, Convention& convention) {
+  constexpr double kAligned_deg = 5;  // an instrument that is aligned to a machine by eye
+  constexpr double kHeld_deg = 1e-6;  // 0.02 um at a metre
+  bool held = false;
+  for (std::size_t i = 0; i < convention.unseen_turn.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (!convention.unseen_turn[i] || std::abs(end.point[at] - convention.centre[at]) < kAligned_deg)
+      continue;
+    convention.scale[at] = kHeld_deg;
+    held = true;
+  }
+  return held;
+}
+
 /// A model without free parameters: only its residual is computed.
 Settled nothing_free(const FitProblem& problem, std::size_t observations, bool with_u) {
   Settled end;
@@ -377,7 +393,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
         "the measurement has no reading with role fit; give at least some rows the role fit");
   result.noise_um = noise_um(measurement);
   const model::Measurement rows = rows_for_fit(machine, measurement);
-  const Convention convention = convention_of(machine, rows, result.parameters);
+  Convention convention = convention_of(machine, rows, result.parameters);
   result.misfit_mm = convention.misfit_mm;
   result.reach_mm = convention.reach_mm;
   FitProblem problem(machine, rows, result.parameters);
@@ -388,12 +404,16 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
     end = nothing_free(problem, result.before.count, with_u);
     result.converged = true;
   } else {
-    const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
-    const bool squared = options.loss == Loss::kSquared;
-    end = squared ? settle(problem, near, convention, stated, result.before.count, with_u, options.noise)
-                  : describe(problem, near, convention, stated, result.before.count, with_u, options.noise);
-    result.iterations += squared ? end.iterations : 0;
-    result.converged = result.converged && (!squared || end.converged);
+    const auto solved = [&] {
+      const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
+      const bool squared = options.loss == Loss::kSquared;
+      end = squared ? settle(problem, near, convention, stated, result.before.count, with_u, options.noise)
+                    : describe(problem, near, convention, stated, result.before.count, with_u, options.noise);
+      result.iterations += squared ? end.iterations : 0;
+      result.converged = result.converged && (!squared || end.converged);
+    };
+    solved();
+    if (hold_turned_away(end, convention)) solved();
   }
   result.parameters.set(result.machine, end.point);
   result.residual = residuals(result.machine, measurement);

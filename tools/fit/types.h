@@ -114,6 +114,7 @@ struct Convention {
   /// axis, else -1; the second list: the length at half its travel for one unit, mm.
   std::vector<int> slope_of;
   Eigen::VectorXd slope_mm;
+  std::vector<bool> unseen_turn;  // rotation of a set-up that the readings show in second order only
 };
 
 /// The reading with the largest residual after a fit.
