@@ -16,6 +16,7 @@
 #include <set>
 
 #include "firmware/daemon/device_trials.h"
+#include "firmware/daemon/modbus_registers.h"
 #include "firmware/daemon/open_devices.h"
 #include "firmware/daemon/routing.h"
 #include "firmware/daemon/settings/feature_settings.h"
@@ -353,6 +354,7 @@ void Devices::Parts::look_at_files() {
 }
 
 Devices::Devices(const BoardFile& file, unsigned long seed) : parts_(std::make_unique<Parts>(file)) {
+  refuse_shared_registers(file);
   parts_->make_store();
   parts_->make_plant(seed);
   parts_->axes = std::make_unique<RoutedAxes>(parts_->make_positions());
