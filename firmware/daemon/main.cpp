@@ -178,10 +178,18 @@ void say_image(const UploadResult& result, const Service& service) {
 }
 
 void say_operator(const Service& service, const BoardFile& file) {
-  if (service.operator_memory().lost())
+  const OperatorRecordsState found = service.operator_memory().found();
+  if (found == OperatorRecordsState::kDamaged)
+    std::fprintf(
+        stderr,
+        "vernierd: a stored setting of the operator (%s/record2, record3) is damaged or missing: the "
+        "correction stays deactivated, and the weights may be older; test the weights and the medium "
+        "of the store, then activate the correction (vernier board activate)\n",
+        file.store.c_str());
+  else if (found == OperatorRecordsState::kNothing && file.service.activate &&
+           service.uploader().record().confirmed != kNoSlot)
     std::fputs(
-        "vernierd: no stored setting of the operator is readable: the correction stays deactivated until an "
-        "operator activates it\n",
+        "vernierd: no setting of an operator is stored: the correction is activated (activate = true)\n",
         stderr);
   else if (service.cycle().latched() != Fault::kNone)
     std::fprintf(stderr, "vernierd: the fault %s from before the start is latched; clear it\n",

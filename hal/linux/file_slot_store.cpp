@@ -2,6 +2,7 @@
 #include "hal/linux/file_slot_store.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,10 +11,19 @@
 namespace vernier {
 namespace {
 
-/// A descriptor that closes itself; close() returns true if all writes succeeded.
+/// A descriptor that closes itself; close() returns true if all writes succeeded. Opens a regular file, or
+/// the directory of O_DIRECTORY: another kind in its place (a pipe) neither blocks nor takes bytes.
 class File {
  public:
-  File(const std::string& path, int flags) noexcept : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {}
+  File(const std::string& path, int flags) noexcept
+      : fd_(::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK, 0600)) {
+    struct stat status {};
+    if (fd_ < 0 || (flags & O_DIRECTORY) != 0) return;
+    if (::fstat(fd_, &status) == 0 && S_ISREG(status.st_mode)) return;
+    ::close(fd_);
+    fd_ = -1;
+    errno = EINVAL;
+  }
   ~File() {
     if (fd_ >= 0) ::close(fd_);
   }

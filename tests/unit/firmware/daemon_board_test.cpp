@@ -49,9 +49,10 @@ TEST_F(DaemonBoard, LastSettingOfTheOperatorOutlivesAKill) {
       });
     };
     client.weight(1, 0.25);
-    ASSERT_TRUE(stored("record2"));
+    ASSERT_TRUE(stored("record2") && stored("record3")) << "the first setting is in both";
+    const std::string older = read_file(directory_ + "/store/record2");
     client.command(Command::kDeactivate);
-    ASSERT_TRUE(stored("record3"));
+    ASSERT_TRUE(wait_for([&] { return read_file(directory_ + "/store/record2") != older; }));
     EXPECT_EQ(first.end(SIGKILL), -1);
   }
   Daemon second(directory_);
