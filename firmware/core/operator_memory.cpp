@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "tables/link_format.h"
+
 namespace vernier {
 namespace {
 
@@ -68,14 +70,27 @@ bool OperatorMemory::store(const OperatorState& state) noexcept {
 
 // The first setting and the first one after a damage are written twice: from then on each place has a
 // record, and a record that is lost or unreadable shows.
+bool OperatorMemory::store_changes(const OperatorState& now) noexcept {
+  if (now != stored_ && !store(now)) return false;
+  if (records_.places() != OperatorRecordsState::kDamaged) return true;
+  if (!store(now)) return false;
+  return records_.places() != OperatorRecordsState::kDamaged || store(now);
+}
+
 void OperatorMemory::save() noexcept {
+  // The state is at least as new as the ticks.
+  const auto ticks = static_cast<std::uint32_t>(exchange_.ticks.count());
   const OperatorState now = present();
   if (damaged() && now.out == 0) damaged_.store(false, std::memory_order_relaxed);
-  const bool changed = now != stored_;
-  if (changed && !store(now)) return;
-  if (records_.places() == OperatorRecordsState::kDamaged && store(now) &&
-      records_.places() == OperatorRecordsState::kDamaged)
-    store(now);
+  const bool stored = store_changes(now);
+  if (stored)
+    refused_.store(false, std::memory_order_relaxed), stored_ticks_.store(ticks, std::memory_order_release);
+  else
+    refused_ticks_.store(ticks, std::memory_order_release);
+  std::uint32_t flags = 0;
+  if (damaged()) flags |= kSettingDamaged;
+  if (!stored) flags |= kSettingRefused;
+  exchange_.setting_flags.store(flags, std::memory_order_relaxed);
 }
 
 }  // namespace vernier

@@ -26,6 +26,10 @@ class OperatorMemory {
   void save() noexcept;
   /// True if the last write was refused: a start would restore an older state, or stay deactivated.
   bool refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
+  /// Ticks that the state contains that is in the store (low 32 bits of Exchange::ticks.count()), and ticks
+  /// of the newest state that the medium refused. For any context.
+  std::uint32_t stored_ticks() const noexcept { return stored_ticks_.load(std::memory_order_acquire); }
+  std::uint32_t refused_ticks() const noexcept { return refused_ticks_.load(std::memory_order_acquire); }
   /// State of the records that load() found.
   OperatorRecordsState found() const noexcept { return found_; }
   /// True from a load() that found damaged records until an operator activates the correction.
@@ -35,6 +39,7 @@ class OperatorMemory {
   OperatorState present() const noexcept;
   OperatorPlace read(std::uint32_t place) noexcept;
   bool store(const OperatorState& state) noexcept;
+  bool store_changes(const OperatorState& now) noexcept;
 
   SlotStore& store_;
   const Wiring& wiring_;
@@ -43,6 +48,7 @@ class OperatorMemory {
   OperatorState stored_;
   OperatorRecordsState found_ = OperatorRecordsState::kNothing;
   std::atomic<bool> refused_{false}, damaged_{false};
+  std::atomic<std::uint32_t> stored_ticks_{0}, refused_ticks_{0};
 };
 
 }  // namespace vernier

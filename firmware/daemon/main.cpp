@@ -198,6 +198,16 @@ void say_operator(const Service& service, const BoardFile& file) {
     std::fputs("vernierd: the correction was deactivated or held before the start; activate it\n", stderr);
 }
 
+/// The first deactivation must not fail because the medium became full meanwhile.
+void reserve_settings(FileSlotStore& store) {
+  for (std::uint32_t place = kOperatorPlace; place < kOperatorPlace + kOperatorRecordCount; ++place)
+    if (store.reserve_record(place, sizeof(OperatorRecord)) != HalFault::kNone)
+      std::fputs(
+          "vernierd: the store has no room for the settings of an operator: a setting acts and is not "
+          "stored\n",
+          stderr);
+}
+
 /// A board without a key corrects its machine as well; it only cannot prove its identity.
 std::unique_ptr<BoardKey> key_of_board(const std::string& store) {
   try {
@@ -293,6 +303,7 @@ int run_board(const Arguments& arguments) {
   devices.take_left_overs_out(stop_asked);
   const std::unique_ptr<BoardKey> own_key = key_of_board(file.store);
   FileSlotStore store(file.store, file.slot_bytes);
+  reserve_settings(store);
   {
     std::vector<std::uint32_t> memory(kWordsBeyondCaches);
     file.service.upload.budget = measured_work_budget(devices.clock(), file.service.upload.tick, memory);
@@ -352,6 +363,9 @@ int main(int argc, char** argv) {
     std::fputs(kVersion, stdout);
     return kDone;
   }
+  // A medium or a peer that refuses bytes is told by the call; the signal would end the daemon.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGTERM, [](int) { stop_asked = true; });
   std::signal(SIGINT, [](int) { stop_asked = true; });
   try {

@@ -118,6 +118,10 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
         throw text::LimitNotMet("the board refuses: the request must be signed (--key, or VERNIER_KEY)");
       case LinkStatus::kBadSignature:
         throw text::LimitNotMet("the board refuses: the key has no right for this request");
+      case LinkStatus::kNotStored:
+        throw text::LimitNotMet(
+            "the board carries out the request and has not stored it: a start of the board may restore an "
+            "older setting; look at the medium of the board's store, and send the request again");
       case LinkStatus::kBadLength:
       case LinkStatus::kBadValue:
         throw text::InputError("the board refuses the request: it has a wrong form");
@@ -271,6 +275,19 @@ std::string limits_text(std::uint8_t limits) {
   return text;
 }
 
+std::string settings_text(std::uint8_t settings) {
+  std::string text;
+  if ((settings & kSettingDamaged) != 0)
+    text +=
+        "DEACTIVATED: a stored setting of the operator was damaged or missing at the start; the weights may "
+        "be older. Test the weights and the store of the board, then activate the correction\n";
+  if ((settings & kSettingRefused) != 0)
+    text +=
+        "NOT STORED: the store of the board refuses the newest setting of the operator; a start may restore "
+        "an older setting. Test the medium of the store\n";
+  return text;
+}
+
 BoardState Client::state() {
   const auto reply = ask(LinkOp::kState);
   if (reply.size() != sizeof(LinkState) + info_.axes.size() * sizeof(LinkAxisState))
@@ -281,6 +298,7 @@ BoardState Client::state() {
   state.image = static_cast<ImageState>(head.image);
   state.since_s = static_cast<double>(head.since_us) * 1e-6;
   state.weight = head.weight / 65536.0;
+  state.settings = head.settings;
   for (std::size_t i = 0; i < info_.axes.size(); ++i) {
     const auto axis = get<LinkAxisState>(reply, sizeof(LinkState) + i * sizeof(LinkAxisState));
     const double counts = info_.axes[i].rotary ? kCountsPerDeg : kNmPerMm;
