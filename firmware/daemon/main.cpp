@@ -363,7 +363,7 @@ int main(int argc, char** argv) {
     std::fputs(kVersion, stdout);
     return kDone;
   }
-  // A medium or a peer that refuses bytes is told by the call; the signal would end the daemon.
+  // A medium or a peer that refuses bytes is reported by the call; the signal would end the daemon.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGTERM, [](int) { stop_asked = true; });

@@ -166,6 +166,14 @@ const std::string& modbus_address(const SignalSource& source) {
   return address;
 }
 
+std::string listening_address(const SignalSource& source) {
+  const std::string address = source.text("address", "127.0.0.1");
+  in_addr numeric{};
+  if (::inet_pton(AF_INET, address.c_str(), &numeric) != 1)
+    source.fail("address: '" + address + "' is not a numeric address, for example 192.168.3.2");
+  return address;
+}
+
 std::string serial_line(const SignalSource& source) {
   const std::string& device = source.text("device");
   if (device.empty()) source.fail("device is empty");

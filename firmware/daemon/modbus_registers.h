@@ -10,6 +10,10 @@ namespace vernier {
 /// spelling of a number, and for an address that no device can have (0.0.0.0, broadcast). setup.
 const std::string& modbus_address(const SignalSource& source);
 
+/// Returns the numeric IPv4 address `address` on which a link listens (127.0.0.1), or 0.0.0.0 for all
+/// addresses of the board. Throws BoardError. setup.
+std::string listening_address(const SignalSource& source);
+
 /// Returns the path of the serial line `device`, the same for a link to it (/dev/serial/by-id). Throws
 /// BoardError. setup.
 std::string serial_line(const SignalSource& source);

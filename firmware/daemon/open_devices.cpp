@@ -220,7 +220,7 @@ const std::vector<DeviceKind<OpenInput>> kInputs = {
 constexpr ModbusLayout kMailbox{kMailboxRegister, kMailboxRegisters, kLiveRegisters};
 
 std::unique_ptr<CommandLink> open_tcp_link(const SignalSource& source, std::string& error) {
-  const std::string address = source.text("address", "127.0.0.1");
+  const std::string address = listening_address(source);
   auto server =
       ModbusServer::tcp(address, static_cast<int>(source.whole("port", 1502, 0, 65535)), kMailbox, error);
   if (server) std::fprintf(stderr, "vernierd: Modbus TCP on %s:%d\n", address.c_str(), server->port());

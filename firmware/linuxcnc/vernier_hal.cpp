@@ -189,7 +189,7 @@ int main(int argc, char** argv) {
     std::fputs(arguments.help ? kHelperUsage : kHelperVersion, stdout);
     return kDone;
   }
-  // A medium or a peer that refuses bytes is told by the call; the signal would end the program.
+  // A medium or a peer that refuses bytes is reported by the call; the signal would end the program.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGTERM, [](int) { stop_asked = true; });

@@ -449,6 +449,8 @@ TEST_F(Check, ZeroTakesOutWhatWasLeftAndNamesWhatItCannotReach) {
 }
 
 TEST_F(Check, WrongSettingsAreNamedWithTheirLine) {
+  constexpr const char *kNamedLink = "[[link]]\nkind = \"modbus-tcp\"\naddress = \"mill one\"\n[axis.X]",
+                       *kEmptyLink = "[[link]]\nkind = \"modbus-tcp\"\naddress = \"\"\n[axis.X]";
   const std::pair<const char*, const char*> kWrong[] = {{"period_ns = 50000", "period_ns = 0"},
                                                         {"span = 0.25", "span = -1"},
                                                         {"channel = 1", "chanel = 1"},
@@ -459,7 +461,11 @@ TEST_F(Check, WrongSettingsAreNamedWithTheirLine) {
                                                         {"kind = \"pwm\"", "kind = \"pvm\""},
                                                         {"high = 254", "polarity = \"upside\""},
                                                         {"attribute = \"in_temp_input\"", "attribute = \"\""},
-                                                        {"{ kind = \"sim\" }", "{ kind = \"can\" }"}};
+                                                        {"{ kind = \"sim\" }", "{ kind = \"can\" }"},
+                                                        {"span = 0.25", "delay_ms = -5, span = 0.25"},
+                                                        {"span = 0.25", "delay_ms = \"a\", span = 0.25"},
+                                                        {"[axis.X]", kNamedLink},
+                                                        {"[axis.X]", kEmptyLink}};
   for (const auto& [from, to] : kWrong) {
     write(replaced(kBoard, from, to));
     const Said said = run("--check");

@@ -177,6 +177,37 @@ TEST_F(ModbusTcp, PlainMasterReadsRegistersAndGivesCommands) {
   modbus_free(master);
 }
 
+// A byte each 0.3 s kept `vernier status` for 58 s: the time was that of each byte.
+TEST(TransportDeadline, AnswerInSingleBytesHasOneDeadline) {
+  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in name{};
+  name.sin_family = AF_INET;
+  name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(name);
+  ASSERT_EQ(::bind(listener, reinterpret_cast<const sockaddr*>(&name), size), 0);
+  ASSERT_EQ(::listen(listener, 1), 0);
+  ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&name), &size), 0);
+  std::thread board([&] {
+    const int fd = ::accept(listener, nullptr, nullptr);
+    std::uint8_t request[300];
+    if (::recv(fd, request, sizeof(request), 0) < 12) ADD_FAILURE() << "no request";
+    const std::uint8_t answer[] = {request[0], request[1], 0, 0, 0, 6, request[6], 16, 1, 0, 0, 2};
+    for (const std::uint8_t byte : answer) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      if (::send(fd, &byte, 1, MSG_NOSIGNAL) != 1) break;
+    }
+    ::close(fd);
+  });
+  const auto transport = open_transport(parse_url("tcp://127.0.0.1:" + std::to_string(ntohs(name.sin_port))),
+                                        std::chrono::milliseconds(300));
+  const auto begin = std::chrono::steady_clock::now();
+  const std::vector<std::uint8_t> asked = {1, 2};
+  EXPECT_ANY_THROW(transport->ask(asked));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(900));
+  board.join();
+  ::close(listener);
+}
+
 TEST_F(ModbusTcp, StalledPeersDoNotLockOthersOut) {
   // Many peers that connect, send half a request and stay.
   std::vector<int> stalled;

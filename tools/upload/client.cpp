@@ -23,6 +23,7 @@ constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts
 constexpr std::uint32_t kPieceBytes = kMaxRequestBytes - kRequestHeaderBytes - 4;
 constexpr std::uint32_t kReadBytes = 232;  // a reply of the link holds them (tables/link_messages.h)
 constexpr int kTriesWhileNotReady = 300;   // five seconds: a medium may be slow
+constexpr auto kLongestRequest = std::chrono::seconds(30);  // with all its tries
 
 void append(std::vector<std::uint8_t>& bytes, const void* from, std::size_t size) {
   const std::size_t before = bytes.size();
@@ -97,6 +98,7 @@ std::vector<std::uint8_t> Client::request_of(LinkOp op, const std::vector<std::u
 }
 
 std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>& payload) {
+  const auto end = std::chrono::steady_clock::now() + kLongestRequest;
   for (int attempt = 0;; ++attempt) {
     const std::vector<std::uint8_t> reply = ask_once(request_of(op, payload));
     const std::vector<std::uint8_t> rest(reply.begin() + kReplyHeaderBytes, reply.end());
@@ -107,7 +109,8 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
         refused(rest);
       case LinkStatus::kNotReady:
       case LinkStatus::kStale:  // another client was quicker
-        if (attempt >= kTriesWhileNotReady) throw text::InputError("the board is not ready");
+        if (attempt >= kTriesWhileNotReady || std::chrono::steady_clock::now() > end)
+          throw text::InputError("the board is not ready");
         transport_->pause(std::chrono::milliseconds(attempt < 50 ? 2 : 20));
         continue;
       case LinkStatus::kUnknownOp:
