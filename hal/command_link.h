@@ -7,6 +7,13 @@
 
 namespace vernier {
 
+/// What became of a command of a plain master.
+enum class CommandGiven : std::uint8_t {
+  kRefused,  // not a command, or it cannot be taken now
+  kTaken,
+  kLater,  // taken; later() gives one byte, 0 when a start of the board restores its effect
+};
+
 /// Answers the requests that a link receives.
 class CommandHandler {
  public:
@@ -24,7 +31,7 @@ class CommandHandler {
   virtual std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) = 0;
   /// True if the request of the last answer() had a valid signature. setup.
   virtual bool was_signed() const { return false; }
-  /// Argument for later(), valid right after answer() returned kLater. setup.
+  /// Argument for later(), valid right after answer() or give() returned kLater. setup.
   virtual std::uint32_t ticket() const { return 0; }
   /// Fetches the deferred reply. Returns its bytes, kLater while the reply is being made, 0 if no reply is
   /// pending. setup.
@@ -33,9 +40,8 @@ class CommandHandler {
   }
   /// The live registers for masters that use registers only. setup.
   virtual void fill_registers(std::uint16_t* values) = 0;
-  /// Takes a command from a plain master; false if the number is not a command, or if the command cannot be
-  /// taken now. setup.
-  virtual bool give(std::uint16_t command) = 0;
+  /// Takes a command from a plain master. setup.
+  virtual CommandGiven give(std::uint16_t command) = 0;
 };
 
 /// A way in from outside. Runs outside the tick.

@@ -30,8 +30,9 @@ enum class LinkOp : std::uint8_t {
   kConfirm = 10,  // -> empty reply
   kRevert = 11,   // -> empty reply
   kRead = 12,     // u32 offset, u8 bytes -> bytes of the confirmed upload
-  kCommand = 13,  // u8 Command -> empty reply: the next tick takes it, or counts it if it is not possible
-  kWeight = 14,   // u8 axis, u32 weight 0..65536 -> empty reply
+  kCommand = 13,  // u8 Command -> empty reply when its effect is stored: the next tick takes it, or counts it
+                  // if it is not possible
+  kWeight = 14,   // u8 axis, u32 weight 0..65536 -> empty reply when it is stored
   kShares = 15,   // u16 first -> u16 shares in all, u32 programs taken so far, LinkShare each, as many as fit
   kShareName = 16,  // u16 share, u32 programs -> char[64]; kBadValue where another program runs by now
   kTouches = 17,    // u64 first -> u64 next, u16 lost, then LinkTouch and LinkTouchAxis each, as many as fit
@@ -56,8 +57,10 @@ enum class LinkStatus : std::uint8_t {
   kUnsigned = 7,      // only in a signed request
   kBadSignature = 8,  // it does not fit, or its key is not trusted for that
   kStale = 9,         // of no open challenge of this connection (used up, too old): ask for another
+  kNotStored = 10,  // a command or weight that acts, and that the medium refuses or has not taken in time: a
+                    // start may restore an older setting
 };
-constexpr std::uint8_t kLinkStatusCount = static_cast<std::uint8_t>(LinkStatus::kStale) + 1;
+constexpr std::uint8_t kLinkStatusCount = static_cast<std::uint8_t>(LinkStatus::kNotStored) + 1;
 
 /// Rights of a link of a board; each level includes the rights of the previous levels.
 enum class LinkAccess : std::uint8_t {
@@ -138,12 +141,18 @@ enum class ImageState : std::uint8_t {
   kTrial = 2,      // the image on trial
   kLost = 3,       // an image is confirmed and cannot be loaded: Fault::kImageLost
 };
+/// Flags for the stored settings of the operator (operator_record.h).
+enum SettingFlag : std::uint8_t {
+  kSettingDamaged = 1u << 0,  // a record was damaged at the start: deactivated until an operator activates
+  kSettingRefused = 1u << 1,  // the medium refuses the newest setting: a start may restore an older one
+};
 struct LinkState {
   std::uint64_t fingerprint;  // of the running image; 0: no image
   std::int64_t since_us;      // the machine file's t when the tick took it over
   std::uint32_t weight;       // share of every correction that is in, 0..65536: ramps and faults
   std::uint8_t image;         // ImageState
-  std::uint8_t reserved[3];
+  std::uint8_t settings;      // SettingFlag; 0 from a board that does not know the flags
+  std::uint8_t reserved[2];
 };
 struct LinkAxisState {
   std::int32_t wanted;    // counts: of the equation, at full weight and within its limit
@@ -201,7 +210,7 @@ static_assert(offsetof(LinkShare, axis) == 0 && offsetof(LinkShare, correction) 
 static_assert(sizeof(LinkState) == 24);
 static_assert(offsetof(LinkState, fingerprint) == 0 && offsetof(LinkState, since_us) == 8 &&
               offsetof(LinkState, weight) == 16 && offsetof(LinkState, image) == 20 &&
-              offsetof(LinkState, reserved) == 21);
+              offsetof(LinkState, settings) == 21 && offsetof(LinkState, reserved) == 22);
 static_assert(sizeof(LinkAxisState) == 13);
 static_assert(offsetof(LinkAxisState, wanted) == 0 && offsetof(LinkAxisState, achieved) == 4 &&
               offsetof(LinkAxisState, weight) == 8 && offsetof(LinkAxisState, limits) == 12);
@@ -231,17 +240,18 @@ static_assert(kReplyHeaderBytes + 10 + sizeof(LinkTick) + kMaxAxes * sizeof(Link
 constexpr int kMailboxRegister = 256;
 constexpr int kMailboxRegisters = 123;  // what one write may carry
 enum LiveRegister : int {
-  kLiveLayout = 0,    // kLinkVersion
-  kLiveMode = 1,      // Mode
-  kLiveFault = 2,     // Fault
-  kLiveHolding = 3,   // 0, 1
-  kLiveTicks = 4,     // 2 registers, high word first: ticks since power-on, low 32 bits
-  kLiveOverruns = 6,  // 2 registers
-  kLiveLatency = 8,   // p99 of the wake-up latency, us
-  kLiveImage = 9,     // ImageState
-  kLiveWeight = 10,   // share of every correction that is in, 0.01 %
-  kLiveLimits = 11,   // bit i: the correction of axis i is held at a limit
-  kLiveSince = 12,    // 2 registers: s since the tick took the image over
+  kLiveLayout = 0,     // kLinkVersion
+  kLiveMode = 1,       // Mode
+  kLiveFault = 2,      // Fault
+  kLiveHolding = 3,    // 0, 1
+  kLiveTicks = 4,      // 2 registers, high word first: ticks since power-on, low 32 bits
+  kLiveOverruns = 6,   // 2 registers
+  kLiveLatency = 8,    // p99 of the wake-up latency, us
+  kLiveImage = 9,      // ImageState
+  kLiveWeight = 10,    // share of every correction that is in, 0.01 %
+  kLiveLimits = 11,    // bit i: the correction of axis i is held at a limit
+  kLiveSince = 12,     // 2 registers: s since the tick took the image over
+  kLiveSettings = 14,  // SettingFlag
   kLiveAxes = 16,  // per axis 4 registers: position in um (linear) or 1e-3 deg (rotary), 2 registers, signed;
                    // correction in 0.01 um or 1e-6 deg, 2 registers, signed
   kLiveInputs = 48,        // per input 2 registers: 0.001 of its unit, signed

@@ -10,6 +10,11 @@ std::uint32_t sum_of(const OperatorRecord& record) noexcept {
   return crc32c(reinterpret_cast<const std::uint8_t*>(&record), offsetof(OperatorRecord, checksum));
 }
 
+// 0 means: no record.
+std::uint32_t sequence_after(std::uint32_t sequence) noexcept {
+  return sequence == UINT32_MAX ? 1 : sequence + 1;
+}
+
 }  // namespace
 
 std::uint32_t operator_axis(const char* name, std::uint32_t size) noexcept {
@@ -21,25 +26,31 @@ bool is_valid(const OperatorRecord& record) noexcept {
   return record.magic == kOperatorMagic && record.sequence != 0 && record.checksum == sum_of(record);
 }
 
-OperatorRecords OperatorRecords::load(const OperatorRecord& first, const OperatorRecord& second) noexcept {
+OperatorRecords OperatorRecords::load(const OperatorPlace& first, const OperatorPlace& second) noexcept {
   OperatorRecords records;
-  const bool one = is_valid(first), two = is_valid(second);
+  if (!first.written && !second.written) return records;
+  records.places_ = OperatorRecordsState::kDamaged;
+  const bool one = first.written && is_valid(first.record), two = second.written && is_valid(second.record);
   if (!one && !two) return records;
   // The sequences of one store differ by one; the unsigned distance stays correct when they wrap.
-  const bool second_counts = two && (!one || second.sequence - first.sequence < UINT32_MAX / 2);
-  records.now_ = second_counts ? second : first;
+  const bool second_counts = two && (!one || second.record.sequence - first.record.sequence < UINT32_MAX / 2);
+  records.now_ = second_counts ? second.record : first.record;
   records.next_place_ = second_counts ? kOperatorPlace : kOperatorPlace + 1;
+  const OperatorRecord& other = second_counts ? first.record : second.record;
+  if (one && two && records.now_.sequence == sequence_after(other.sequence))
+    records.places_ = OperatorRecordsState::kIntact;
   return records;
 }
 
 OperatorChange OperatorRecords::change_to(const OperatorState& state) const noexcept {
-  OperatorRecord next{kOperatorMagic, now_.sequence + 1, state, 0};
-  if (next.sequence == 0) next.sequence = 1;  // 0 means: no record
+  OperatorRecord next{kOperatorMagic, sequence_after(now_.sequence), state, 0};
   next.checksum = sum_of(next);
   return {next_place_, next};
 }
 
 void OperatorRecords::stored(const OperatorChange& change) noexcept {
+  // The other place has the record before this change, if there was one.
+  places_ = known() ? OperatorRecordsState::kIntact : OperatorRecordsState::kDamaged;
   now_ = change.record;
   next_place_ = 2 * kOperatorPlace + 1 - change.place;
 }

@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "tables/link_format.h"
+
 namespace vernier {
 namespace {
 
@@ -12,24 +14,18 @@ std::uint32_t number_of(const Wiring::Axis& axis) noexcept {
 
 }  // namespace
 
-OperatorRecord OperatorMemory::read(std::uint32_t place) noexcept {
-  OperatorRecord record{};
+// Erased flash reads as ones. A store of an earlier version has no such place.
+OperatorPlace OperatorMemory::read(std::uint32_t number) noexcept {
+  OperatorPlace place;
   std::uint8_t bytes[sizeof(OperatorRecord)];
-  if (store_.read_record(place, bytes, sizeof(bytes)) == HalFault::kNone)
-    std::memcpy(&record, bytes, sizeof(record));
-  return record;
-}
-
-// Erased flash reads as ones.
-bool OperatorMemory::is_written(std::uint32_t place) noexcept {
-  std::uint8_t bytes[sizeof(OperatorRecord)];
-  const HalFault first = store_.read_record(place, bytes, 1);
-  // A store of an earlier version has no such place.
-  if (first == HalFault::kNoReading || first == HalFault::kNoDevice) return false;
-  if (store_.read_record(place, bytes, sizeof(bytes)) != HalFault::kNone) return true;
-  for (const std::uint8_t byte : bytes)
-    if (byte != 0xff) return true;
-  return false;
+  const HalFault first = store_.read_record(number, bytes, 1);
+  if (first == HalFault::kNoReading || first == HalFault::kNoDevice) return place;
+  place.written = true;
+  if (store_.read_record(number, bytes, sizeof(bytes)) != HalFault::kNone) return place;
+  place.written = false;
+  for (const std::uint8_t byte : bytes) place.written = place.written || byte != 0xff;
+  std::memcpy(&place.record, bytes, sizeof(place.record));
+  return place;
 }
 
 OperatorState OperatorMemory::present() const noexcept {
@@ -46,13 +42,12 @@ OperatorState OperatorMemory::present() const noexcept {
 }
 
 OperatorState OperatorMemory::load() noexcept {
-  const OperatorRecord first = read(kOperatorPlace), second = read(kOperatorPlace + 1);
-  records_ = OperatorRecords::load(first, second);
-  // A power failure may have cut the first record that was ever written: nothing was set by then.
-  lost_ = !records_.known() && is_written(kOperatorPlace) && is_written(kOperatorPlace + 1);
+  records_ = OperatorRecords::load(read(kOperatorPlace), read(kOperatorPlace + 1));
+  found_ = records_.places();
+  damaged_.store(found_ == OperatorRecordsState::kDamaged, std::memory_order_relaxed);
   stored_ = records_.known() ? records_.state() : present();
   OperatorState state = stored_;
-  if (lost_) state.out = 1;
+  if (damaged()) state.out = 1;
   for (std::size_t i = 0; records_.known() && i < wiring_.axes.size(); ++i)
     for (std::size_t k = 0; k < kMaxAxes; ++k)
       if (state.axis[k] == number_of(wiring_.axes[i]) && state.weight[k] >= 0 &&
@@ -61,17 +56,41 @@ OperatorState OperatorMemory::load() noexcept {
   return state;
 }
 
-void OperatorMemory::save() noexcept {
-  const OperatorState now = present();
-  if (now == stored_) return;
-  const OperatorChange change = records_.change_to(now);
+bool OperatorMemory::store(const OperatorState& state) noexcept {
+  const OperatorChange change = records_.change_to(state);
   std::uint8_t bytes[sizeof(OperatorRecord)];
   std::memcpy(bytes, &change.record, sizeof(bytes));
   const bool written = store_.write_record(change.place, bytes, sizeof(bytes)) == HalFault::kNone;
   refused_.store(!written, std::memory_order_relaxed);
-  if (!written) return;
+  if (!written) return false;
   records_.stored(change);
-  stored_ = now;
+  stored_ = state;
+  return true;
+}
+
+// The first setting and the first one after a damage are written twice: from then on each place has a
+// record, and a record that is lost or unreadable shows.
+bool OperatorMemory::store_changes(const OperatorState& now) noexcept {
+  if (now != stored_ && !store(now)) return false;
+  if (records_.places() != OperatorRecordsState::kDamaged) return true;
+  if (!store(now)) return false;
+  return records_.places() != OperatorRecordsState::kDamaged || store(now);
+}
+
+void OperatorMemory::save() noexcept {
+  // The state is at least as new as the ticks.
+  const auto ticks = static_cast<std::uint32_t>(exchange_.ticks.count());
+  const OperatorState now = present();
+  if (damaged() && now.out == 0) damaged_.store(false, std::memory_order_relaxed);
+  const bool stored = store_changes(now);
+  if (stored)
+    refused_.store(false, std::memory_order_relaxed), stored_ticks_.store(ticks, std::memory_order_release);
+  else
+    refused_ticks_.store(ticks, std::memory_order_release);
+  std::uint32_t flags = 0;
+  if (damaged()) flags |= kSettingDamaged;
+  if (!stored) flags |= kSettingRefused;
+  exchange_.setting_flags.store(flags, std::memory_order_relaxed);
 }
 
 }  // namespace vernier

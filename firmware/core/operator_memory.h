@@ -17,29 +17,38 @@ class OperatorMemory {
   OperatorMemory(SlotStore& store, const Wiring& wiring, Exchange& exchange) noexcept
       : store_(store), wiring_(wiring), exchange_(exchange) {}
 
-  /// Reads the stored state and puts the weights of the axes into Exchange. If the store has records and none
-  /// of them is valid, the result is a deactivated correction. Call once, before the first tick. setup.
+  /// Reads the stored state and puts the weights of the axes into Exchange. If a record was begun and is not
+  /// readable, or the two records are not one change apart, the result is a deactivated correction: the
+  /// newest setting may have been a deactivation. Call once, before the first tick. setup.
   OperatorState load() noexcept;
-  /// Stores the present state if it differs from the stored state. If the medium refuses, the next call tries
-  /// again. setup.
+  /// Stores the present state if it differs from the stored state, or if a record is damaged. If the medium
+  /// refuses, the next call tries again. setup.
   void save() noexcept;
-  /// True if the last write was refused: a start would restore an older state.
+  /// True if the last write was refused: a start would restore an older state, or stay deactivated.
   bool refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
-  /// True if the store had records and none of them was valid.
-  bool lost() const noexcept { return lost_; }
+  /// Ticks that the state contains that is in the store (low 32 bits of Exchange::ticks.count()), and ticks
+  /// of the newest state that the medium refused. For any context.
+  std::uint32_t stored_ticks() const noexcept { return stored_ticks_.load(std::memory_order_acquire); }
+  std::uint32_t refused_ticks() const noexcept { return refused_ticks_.load(std::memory_order_acquire); }
+  /// State of the records that load() found.
+  OperatorRecordsState found() const noexcept { return found_; }
+  /// True from a load() that found damaged records until an operator activates the correction.
+  bool damaged() const noexcept { return damaged_.load(std::memory_order_relaxed); }
 
  private:
   OperatorState present() const noexcept;
-  OperatorRecord read(std::uint32_t place) noexcept;
-  bool is_written(std::uint32_t place) noexcept;
+  OperatorPlace read(std::uint32_t place) noexcept;
+  bool store(const OperatorState& state) noexcept;
+  bool store_changes(const OperatorState& now) noexcept;
 
   SlotStore& store_;
   const Wiring& wiring_;
   Exchange& exchange_;
   OperatorRecords records_;
   OperatorState stored_;
-  bool lost_ = false;
-  std::atomic<bool> refused_{false};
+  OperatorRecordsState found_ = OperatorRecordsState::kNothing;
+  std::atomic<bool> refused_{false}, damaged_{false};
+  std::atomic<std::uint32_t> stored_ticks_{0}, refused_ticks_{0};
 };
 
 }  // namespace vernier

@@ -8,6 +8,9 @@
 namespace vernier {
 namespace {
 
+// After this time without a stored state the medium, or the tick, does not respond: a setting that acts is
+// answered as not stored.
+constexpr TimeUs kStoreDeadline(5'000'000);
 constexpr std::uint64_t kPerMillion[3] = {500'000, 990'000, 999'000};
 
 ProbeSettings probe_settings(const ServiceOptions& options) {
@@ -78,11 +81,14 @@ void Service::pump() noexcept {
 
 Command Service::next_command() noexcept {
   Command asked = exchange_.command.exchange(Command::kNone, std::memory_order_acq_rel);
-  if (asked == Command::kActivate) taken_out_ = false;
+  const Mode mode = cycle_.mode();
+  const bool in = mode == Mode::kActive || (mode == Mode::kReady && cycle_.weight() != WeightQ16{});
+  // A command that the cycle refuses has no effect later either. A deactivation always has one: without a
+  // correction it keeps the correction out.
+  if (asked == Command::kActivate && mode == Mode::kReady) taken_out_ = false;
   if (asked == Command::kDeactivate) taken_out_ = true;
+  if (asked == Command::kDeactivate && !in) asked = Command::kNone;
   if (ending_ || !enabled_) {
-    const bool in =
-        cycle_.mode() == Mode::kActive || (cycle_.mode() == Mode::kReady && cycle_.weight() != WeightQ16{});
     if (in) return Command::kDeactivate;
     return asked == Command::kClearFault && !ending_ ? asked : Command::kNone;
   }
@@ -220,15 +226,28 @@ UploadResult Service::boot_with(std::span<const std::uint8_t> image) {
   return result;
 }
 
+// Wakes the links once for the newest setting: earlier ones are stored with it.
+bool Service::tell_settings() noexcept {
+  const std::uint32_t asked = settings_asked_.load(std::memory_order_acquire);
+  if (asked == settings_told_.load(std::memory_order_relaxed)) return false;
+  const SettingTicket newest{.ticks = asked};
+  if (!newest.reached_by(operator_.stored_ticks()) &&
+      !(operator_.refused() && newest.reached_by(operator_.refused_ticks())))
+    return false;
+  settings_told_.store(asked, std::memory_order_relaxed);
+  return true;
+}
+
 bool Service::look_after_store() noexcept {
   uploader_.look_after_store();
   operator_.save();
-  if (!desk_.asked()) return false;
+  const bool told = tell_settings();
+  if (!desk_.asked()) return told;
   if (!answered_) answer_size_ = link_.answer(desk_.request(), desk_.size(), desk_.reply(), now());
   // An image is reverted when the tick has been offered another one, shortly after the command.
   answered_ =
       desk_.request()[0] == static_cast<std::uint8_t>(LinkOp::kRevert) && uploader_.programs().giving_up();
-  if (answered_) return false;
+  if (answered_) return told;
   desk_.done(answer_size_);
   return true;
 }
@@ -275,15 +294,52 @@ std::uint32_t Service::answer(const std::uint8_t* request, std::uint32_t size, s
     const std::uint32_t answered = link_.answer(opened.request, opened.size, reply, now());
     // A reply repeats the request, including its cover.
     if (answered > 0) reply[0] = request[0];
-    return answered;
+    const bool done = answered > 0 && reply[2] == static_cast<std::uint8_t>(LinkStatus::kDone);
+    if (!done || !options_.store_beside || !Link::is_setting(opened.request, opened.size)) return answered;
+    return leave_setting(reply[0], reply[1]);
   }
   ticket_ = desk_.leave(opened.request, opened.size, request[0]);
   return kLater;
 }
 
-bool Service::give(std::uint16_t command) {
-  if (!gate_.lets_plain_commands(rights_.access, rights_.plain_commands)) return false;
-  return command < kCommandCount && link_.give(static_cast<std::uint8_t>(command)) == LinkStatus::kDone;
+CommandGiven Service::give(std::uint16_t command) {
+  if (!gate_.lets_plain_commands(rights_.access, rights_.plain_commands)) return CommandGiven::kRefused;
+  if (command >= kCommandCount || link_.give(static_cast<std::uint8_t>(command)) != LinkStatus::kDone)
+    return CommandGiven::kRefused;
+  if (!options_.store_beside) return CommandGiven::kTaken;
+  leave_setting(0, 0);
+  return CommandGiven::kLater;
+}
+
+// The tick that runs now may have looked for commands already; the next one takes it, and is over two counts
+// later.
+std::uint32_t Service::leave_setting(std::uint8_t op, std::uint8_t sequence) noexcept {
+  const std::uint32_t ticks = static_cast<std::uint32_t>(exchange_.ticks.count()) + 2;
+  ticket_ = SettingTicket{op, sequence, ticks}.packed();
+  // Before the first tick nothing was stored yet.
+  if (stored_seen_at_ == TimeUs{}) stored_seen_at_ = now();
+  settings_asked_.store(ticks, std::memory_order_release);
+  return kLater;
+}
+
+std::uint32_t Service::later(std::uint32_t ticket, std::uint8_t* reply) {
+  if (!SettingTicket::is_one(ticket)) return desk_.collect(ticket, reply);
+  const auto ticks = static_cast<std::uint32_t>(exchange_.ticks.count());
+  return setting_stored(SettingTicket::unpacked(ticket, ticks), reply);
+}
+
+std::uint32_t Service::setting_stored(const SettingTicket& setting, std::uint8_t* reply) noexcept {
+  const std::uint32_t stored = operator_.stored_ticks();
+  if (stored != stored_seen_) stored_seen_ = stored, stored_seen_at_ = now();
+  const bool done = setting.reached_by(stored);
+  const bool refused = operator_.refused() && setting.reached_by(operator_.refused_ticks());
+  if (!done && !refused && now() - stored_seen_at_ < kStoreDeadline) return kLater;
+  if (setting.op == 0) {
+    reply[0] = done ? 0 : 1;
+    return 1;
+  }
+  const std::uint8_t head[] = {setting.op, setting.sequence};
+  return Link::answer_with(done ? LinkStatus::kDone : LinkStatus::kNotStored, head, reply);
 }
 
 }  // namespace vernier

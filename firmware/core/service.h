@@ -10,6 +10,7 @@
 #include "firmware/core/cycle/runner.h"
 #include "firmware/core/link/gate.h"
 #include "firmware/core/link/link.h"
+#include "firmware/core/link/setting_ticket.h"
 #include "firmware/core/link/store_desk.h"
 #include "firmware/core/link/uploader.h"
 #include "firmware/core/operator_memory.h"
@@ -92,7 +93,10 @@ class Service : private CommandHandler {
   /// The store: executes the requests that a link has left for it and records the actions of the guardian.
   /// True: a link can collect a reply. setup.
   bool look_after_store() noexcept;
-  bool store_is_asked() const noexcept { return desk_.asked(); }
+  bool store_is_asked() const noexcept {
+    return desk_.asked() ||
+           settings_told_.load(std::memory_order_relaxed) != settings_asked_.load(std::memory_order_relaxed);
+  }
   /// Does the duties of the guardian and of the store in one context, one after the other. setup.
   void look_after_programs() noexcept;
 
@@ -118,11 +122,12 @@ class Service : private CommandHandler {
   void ends(std::uint64_t connection) override { gate_.forget({caller_.link, connection}); }
   bool was_signed() const override { return signed_; }
   std::uint32_t ticket() const override { return ticket_; }
-  std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override {
-    return desk_.collect(ticket, reply);
-  }
+  std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override;
   void fill_registers(std::uint16_t* values) override { link_.fill_registers(values); }
-  bool give(std::uint16_t command) override;
+  CommandGiven give(std::uint16_t command) override;
+  std::uint32_t leave_setting(std::uint8_t op, std::uint8_t sequence) noexcept;
+  std::uint32_t setting_stored(const SettingTicket& setting, std::uint8_t* reply) noexcept;
+  bool tell_settings() noexcept;
   TimeUs now() noexcept { return TimeUs(board_.clock.now().count / 1000); }
   void take_over() noexcept;
   void restore() noexcept;
@@ -150,8 +155,11 @@ class Service : private CommandHandler {
   bool signed_ = false;  // the last request
   std::optional<Probing> probing_;
   StoreDesk desk_;
-  std::uint32_t ticket_ = 0;  // the links'
-  bool answered_ = false;     // the store's: its reply waits for the guardian
+  std::uint32_t ticket_ = 0;                                         // the links'
+  std::atomic<std::uint32_t> settings_asked_{0}, settings_told_{0};  // ticks of the newest SettingTicket
+  std::uint32_t stored_seen_ = 0;  // OperatorMemory::stored_ticks(), and when the links saw it change
+  TimeUs stored_seen_at_;
+  bool answered_ = false;  // the store's: its reply waits for the guardian
   std::uint32_t answer_size_ = 0;
   // Owned by the tick.
   std::uint32_t until_percentile_ = kTicksPerPercentile, percentile_ = 0, until_equation_ = kTicksPerEquation;

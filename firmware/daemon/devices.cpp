@@ -16,6 +16,7 @@
 #include <set>
 
 #include "firmware/daemon/device_trials.h"
+#include "firmware/daemon/modbus_registers.h"
 #include "firmware/daemon/open_devices.h"
 #include "firmware/daemon/routing.h"
 #include "firmware/daemon/settings/feature_settings.h"
@@ -37,6 +38,7 @@ namespace {
 constexpr double kShareOfRangePerS = 0.1;    // speed of a simulated axis
 constexpr std::int64_t kTicksToZero = 1000;  // at least, for the correction that a drive holds at the start
 constexpr std::uint32_t kMostHandles = 64;   // of all links together
+constexpr double kMostDelayMs = 10'000;      // of an output, for its budget
 constexpr int kWatchdogSeconds = 10;  // many drivers know whole seconds only; the unit's watchdog is quicker
 
 /// A real output of an axis.
@@ -170,6 +172,8 @@ std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
       note(name, "");
       continue;
     }
+    if (const double delay = axis.output.number("delay_ms", 0); !(delay >= 0 && delay <= kMostDelayMs))
+      axis.output.fail("delay_ms must be between 0 and 10000");
     look_for_calibration(axis);
     if (!opened.contains(i)) make_output(i, routes, opened);
   }
@@ -353,6 +357,7 @@ void Devices::Parts::look_at_files() {
 }
 
 Devices::Devices(const BoardFile& file, unsigned long seed) : parts_(std::make_unique<Parts>(file)) {
+  refuse_shared_registers(file);
   parts_->make_store();
   parts_->make_plant(seed);
   parts_->axes = std::make_unique<RoutedAxes>(parts_->make_positions());

@@ -178,16 +178,34 @@ void say_image(const UploadResult& result, const Service& service) {
 }
 
 void say_operator(const Service& service, const BoardFile& file) {
-  if (service.operator_memory().lost())
+  const OperatorRecordsState found = service.operator_memory().found();
+  if (found == OperatorRecordsState::kDamaged)
+    std::fprintf(
+        stderr,
+        "vernierd: a stored setting of the operator (%s/record2, record3) is damaged or missing: the "
+        "correction stays deactivated, and the weights may be older; test the weights and the medium "
+        "of the store, then activate the correction (vernier board activate)\n",
+        file.store.c_str());
+  else if (found == OperatorRecordsState::kNothing && file.service.activate &&
+           service.uploader().record().confirmed != kNoSlot)
     std::fputs(
-        "vernierd: no stored setting of the operator is readable: the correction stays deactivated until an "
-        "operator activates it\n",
+        "vernierd: no setting of an operator is stored: the correction is activated (activate = true)\n",
         stderr);
   else if (service.cycle().latched() != Fault::kNone)
     std::fprintf(stderr, "vernierd: the fault %s from before the start is latched; clear it\n",
                  name_of(service.cycle().latched()));
   else if (file.service.activate && service.deactivated())
     std::fputs("vernierd: the correction was deactivated or held before the start; activate it\n", stderr);
+}
+
+/// The first deactivation must not fail because the medium became full meanwhile.
+void reserve_settings(FileSlotStore& store) {
+  for (std::uint32_t place = kOperatorPlace; place < kOperatorPlace + kOperatorRecordCount; ++place)
+    if (store.reserve_record(place, sizeof(OperatorRecord)) != HalFault::kNone)
+      std::fputs(
+          "vernierd: the store has no room for the settings of an operator: a setting acts and is not "
+          "stored\n",
+          stderr);
 }
 
 /// A board without a key corrects its machine as well; it only cannot prove its identity.
@@ -285,6 +303,7 @@ int run_board(const Arguments& arguments) {
   devices.take_left_overs_out(stop_asked);
   const std::unique_ptr<BoardKey> own_key = key_of_board(file.store);
   FileSlotStore store(file.store, file.slot_bytes);
+  reserve_settings(store);
   {
     std::vector<std::uint32_t> memory(kWordsBeyondCaches);
     file.service.upload.budget = measured_work_budget(devices.clock(), file.service.upload.tick, memory);
@@ -344,6 +363,9 @@ int main(int argc, char** argv) {
     std::fputs(kVersion, stdout);
     return kDone;
   }
+  // A medium or a peer that refuses bytes is reported by the call; the signal would end the daemon.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGTERM, [](int) { stop_asked = true; });
   std::signal(SIGINT, [](int) { stop_asked = true; });
   try {

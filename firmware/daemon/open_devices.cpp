@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "firmware/daemon/modbus_registers.h"
 #include "firmware/daemon/settings/device_settings.h"
 #include "hal/linux/analogue_output.h"
 #include "hal/linux/can/can_sync.h"
@@ -71,11 +72,11 @@ std::shared_ptr<ModbusLine> modbus_line(const SignalSource& source, ModbusLines&
   const TimeUs wait(1000 * source.whole("timeout_ms", 200, 1, 10'000));
   const bool rtu = source.kind == "modbus-rtu";
   const auto port = rtu ? 0 : static_cast<int>(source.whole("port", 502, 1, 65535));
-  const std::string place = rtu ? source.text("device") : source.text("address") + ":" + std::to_string(port);
+  const std::string place = rtu ? serial_line(source) : modbus_address(source) + ":" + std::to_string(port);
   auto& line = lines[place];
   if (line == nullptr)
     line = rtu ? ModbusLine::rtu(place, baud(source, 9600), parity(source), wait, error)
-               : ModbusLine::tcp(source.text("address"), port, wait, error);
+               : ModbusLine::tcp(modbus_address(source), port, wait, error);
   else if (rtu)
     static_cast<void>(baud(source, 9600)), static_cast<void>(parity(source));
   if (line == nullptr && error.empty()) error = place + " is missing";
@@ -120,19 +121,6 @@ std::unique_ptr<OutputDevice> open_iio_dac(const std::vector<OutputAxis>& axes, 
   const auto channel = static_cast<unsigned>(source->whole("channel", 0, 0, 63));
   const std::string device = find_iio_device(source->text("root", kIioRoot), source->text("device"), error);
   return device.empty() ? nullptr : AnalogueOutput::iio_dac(device, channel, scale, error);
-}
-
-/// Where the controller of an output is: a serial device, or address and port.
-std::string modbus_place(const SignalSource& source) {
-  const std::string device = source.text("device", "");
-  if (!device.empty() && !source.text("address", "").empty()) source.fail("give device or address, not both");
-  if (!device.empty()) return device;
-  return source.text("address") + ":" + std::to_string(source.whole("port", 502, 1, 65535));
-}
-
-std::string modbus_block(const SignalSource& source) {
-  return modbus_place(source) + " unit " + std::to_string(source.whole("unit", 1, 1, 247)) + " register " +
-         std::to_string(source.whole("register", 0, 65535));
 }
 
 /// A register holds correction / resolution, signed: the scale's codes are shifted by its zero.
@@ -182,7 +170,7 @@ std::unique_ptr<OutputDevice> open_modbus_out(const std::vector<OutputAxis>& axe
   const TimeUs wait(settings.timeout.count / 2);
   const auto line =
       rtu ? ModbusLine::rtu(first.text("device"), baud(first, 19200), parity(first), wait, error)
-          : ModbusLine::tcp(first.text("address"), static_cast<int>(first.whole("port", 502, 1, 65535)), wait,
+          : ModbusLine::tcp(modbus_address(first), static_cast<int>(first.whole("port", 502, 1, 65535)), wait,
                             error);
   return line ? ModbusOutput::open(line, settings, error) : nullptr;
 }
@@ -232,7 +220,7 @@ const std::vector<DeviceKind<OpenInput>> kInputs = {
 constexpr ModbusLayout kMailbox{kMailboxRegister, kMailboxRegisters, kLiveRegisters};
 
 std::unique_ptr<CommandLink> open_tcp_link(const SignalSource& source, std::string& error) {
-  const std::string address = source.text("address", "127.0.0.1");
+  const std::string address = listening_address(source);
   auto server =
       ModbusServer::tcp(address, static_cast<int>(source.whole("port", 1502, 0, 65535)), kMailbox, error);
   if (server) std::fprintf(stderr, "vernierd: Modbus TCP on %s:%d\n", address.c_str(), server->port());

@@ -34,7 +34,8 @@ HalFault HatchLink::serve(CommandHandler& handler, TimeUs wait) noexcept {
       std::memcpy(call_.bytes, values, sizeof(values));
       break;
     case LinkCall::kCommand:
-      call_.result = handler.give(static_cast<std::uint16_t>(call_.offset)) ? 1 : 0;
+      call_.result = static_cast<int>(handler.give(static_cast<std::uint16_t>(call_.offset)));
+      call_.offset = handler.ticket();
       break;
     case LinkCall::kEnds:
       handler.ends(call_.connection);
@@ -82,8 +83,11 @@ void HatchHandler::ends(std::uint64_t connection) {
   ask(LinkCall::kEnds, 0, nullptr, 0);
 }
 
-bool HatchHandler::give(std::uint16_t command) {
-  return ask(LinkCall::kCommand, command, nullptr, 0) && hatch_.link.result == 1;
+CommandGiven HatchHandler::give(std::uint16_t command) {
+  if (!ask(LinkCall::kCommand, command, nullptr, 0)) return CommandGiven::kRefused;
+  ticket_ = hatch_.link.offset;
+  const auto given = static_cast<CommandGiven>(hatch_.link.result);
+  return given == CommandGiven::kTaken || given == CommandGiven::kLater ? given : CommandGiven::kRefused;
 }
 
 }  // namespace vernier

@@ -31,7 +31,7 @@ class HatchHandler : public CommandHandler {
   std::uint32_t ticket() const override { return ticket_; }
   std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override;
   void fill_registers(std::uint16_t* values) override;
-  bool give(std::uint16_t command) override;
+  CommandGiven give(std::uint16_t command) override;
 
  private:
   bool ask(LinkCall op, std::uint32_t offset, const std::uint8_t* bytes, std::uint32_t size);

@@ -189,6 +189,9 @@ int main(int argc, char** argv) {
     std::fputs(arguments.help ? kHelperUsage : kHelperVersion, stdout);
     return kDone;
   }
+  // A medium or a peer that refuses bytes is reported by the call; the signal would end the program.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGTERM, [](int) { stop_asked = true; });
   std::signal(SIGINT, [](int) { stop_asked = true; });
   try {

@@ -2,18 +2,30 @@
 #include "hal/linux/file_slot_store.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <iterator>
+#include <vector>
 
 namespace vernier {
 namespace {
 
-/// A descriptor that closes itself; close() returns true if all writes succeeded.
+/// A descriptor that closes itself; close() returns true if all writes succeeded. Opens a regular file, or
+/// the directory of O_DIRECTORY: another kind in its place (a pipe) neither blocks nor takes bytes.
 class File {
  public:
-  File(const std::string& path, int flags) noexcept : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {}
+  File(const std::string& path, int flags) noexcept
+      : fd_(::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK, 0600)) {
+    struct stat status {};
+    if (fd_ < 0 || (flags & O_DIRECTORY) != 0) return;
+    if (::fstat(fd_, &status) == 0 && S_ISREG(status.st_mode)) return;
+    ::close(fd_);
+    fd_ = -1;
+    errno = EINVAL;
+  }
   ~File() {
     if (fd_ >= 0) ::close(fd_);
   }
@@ -79,12 +91,35 @@ HalFault FileSlotStore::read_record(std::uint32_t place, std::uint8_t* bytes, st
                                                                                        : fault;
 }
 
+// A record that was begun must not look like the record before: what was not written as a whole is cut, which
+// needs no room.
 HalFault FileSlotStore::write_record(std::uint32_t place, const std::uint8_t* bytes,
                                      std::uint32_t size) noexcept {
   if (place >= std::size(records_)) return HalFault::kNoDevice;
   File file(records_[place], O_WRONLY | O_CREAT);
-  if (!file.opened() || !write_all(file.fd(), 0, bytes, size)) return HalFault::kRefused;
-  if (::fsync(file.fd()) != 0 || !file.close()) return HalFault::kRefused;
+  if (!file.opened()) return HalFault::kRefused;
+  if (!write_all(file.fd(), 0, bytes, size) || ::fsync(file.fd()) != 0) {
+    if (::ftruncate(file.fd(), 0) == 0) ::fsync(file.fd());
+    return HalFault::kRefused;
+  }
+  if (!file.close()) return HalFault::kRefused;
+  return sync_directory(directory_) ? HalFault::kNone : HalFault::kRefused;
+}
+
+// Under another name first: a power failure leaves no file or a whole one.
+HalFault FileSlotStore::reserve_record(std::uint32_t place, std::uint32_t size) noexcept {
+  if (place >= std::size(records_)) return HalFault::kNoDevice;
+  if (::access(records_[place].c_str(), F_OK) == 0) return HalFault::kNone;
+  const std::string fresh = records_[place] + ".new";
+  {
+    File file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
+    const std::vector<std::uint8_t> ones(size, 0xff);
+    if (!file.opened() || !write_all(file.fd(), 0, ones.data(), size) || ::fsync(file.fd()) != 0) {
+      ::unlink(fresh.c_str());
+      return HalFault::kRefused;
+    }
+  }
+  if (::rename(fresh.c_str(), records_[place].c_str()) != 0) return HalFault::kRefused;
   return sync_directory(directory_) ? HalFault::kNone : HalFault::kRefused;
 }
 

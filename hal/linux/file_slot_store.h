@@ -14,6 +14,9 @@ class FileSlotStore : public SlotStore {
 
   std::uint32_t capacity() const noexcept override { return capacity_; }
   HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override;
+  /// Makes the file of a record of `size` bytes, all ones (never written), if there is no file: the first
+  /// write then needs no further room on the medium. setup.
+  HalFault reserve_record(std::uint32_t place, std::uint32_t size) noexcept;
   HalFault write_record(std::uint32_t place, const std::uint8_t* bytes, std::uint32_t size) noexcept override;
   HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
                       std::uint32_t size) noexcept override;

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <sstream>
 #include <thread>
+#include <tuple>
 
 #include "tests/conformance/linux_devices.h"
 
@@ -271,6 +272,91 @@ TEST_F(Check, WrongSettingsOfRegistersAreNamed) {
       << gone.text;
 }
 
+/// Two axes with blocks of registers at one controller, and an input.
+std::string board_with_registers(const std::string& x, const std::string& y, const std::string& more = "") {
+  const auto axis = [](const char* name, const std::string& settings) {
+    return std::string("[axis.") + name +
+           "]\nmax_speed = 100\nmax_correction = 0.2\nmax_step = 0.001\nposition = { kind = \"sim\" }\n"
+           "output = { kind = \"modbus-out\", resolution = 1e-6, range = 0.2, " +
+           settings + " }\n";
+  };
+  return "[board]\nstore = \"store\"\n" + axis("X", x) + axis("Y", y) + more;
+}
+
+// A controller then read the word of one axis as the value of another, with its valid bit.
+TEST_F(Check, RegistersOfAControllerHaveOneUse) {
+  const std::string plc = "address = \"127.0.0.1\", port = 502, ", same = "address = \"127.0.0.2\", ";
+  const std::string first = plc + "register = 100, echo = 50";  // registers 100 to 103
+  const std::string input =
+      "[input.T]\nunit = \"degC\"\nsource = { kind = \"modbus-tcp\", address = \"127.0.0.1\", "
+      "registers = \"holding\", scale = 1, ";
+  const std::tuple<std::string, std::string, const char*> kWrong[] = {
+      {same + "register = 101, echo = 51", "", "board.toml:14: axis.Y.output: block: registers 101 to 104"},
+      {same + "register = 101, echo = 51", "", "overlaps the block (registers 100 to 103) of "},
+      {same + "register = 101, echo = 51", "", "board.toml:8: axis.X.output"},
+      {plc + "register = 97, echo = 51", "", "overlaps the block"},
+      {plc + "register = 96, place = 1, echo = 51", "", "overlaps the block"},
+      {plc + "register = 200, echo = 50", "", "echo: register 50 at 127.0.0.1:502 unit 1 overlaps the echo"},
+      {plc + "register = 200, echo = 102", "", "overlaps the block"},
+      {plc + "register = 48, echo = 60", "", "overlaps the block (registers 48 to 51)"},
+      {plc + "register = 100, place = 1, echo = 51", "", "echo differs from "},
+      {plc + "register = 100, place = 1, echo = 50, timeout_ms = 200", "", "timeout_ms differs from "},
+      {plc + "register = 200, echo = 60", input + "register = 103 }\n", "reading: register 103"},
+      {plc + "register = 200, echo = 60", input + "register = 99, type = \"int32\" }\n",
+       "reading: registers 99 to 100"},
+      {plc + "register = 200, echo = 60", input + "register = 50 }\n", "overlaps the echo"},
+      {"address = \"localhost\", register = 101, echo = 51", "", "address: 'localhost' is not a numeric"},
+      {"address = \"127.1\", register = 101, echo = 51", "", "address: '127.1' is not a numeric"},
+      {"address = \"\", register = 101, echo = 51", "", "address: '' is not a numeric"},
+      {"address = \"0.0.0.0\", register = 101, echo = 51", "", "'0.0.0.0' is not the address of one"},
+      {"address = \"255.255.255.255\", register = 101, echo = 51", "", "is not the address of one"},
+      {plc + "register = 200, echo = 60",
+       "[input.T]\nunit = \"degC\"\nsource = { kind = \"modbus-tcp\", address = \"plc!\", register = 1, "
+       "scale = 1 }\n",
+       "input.T.source: address: 'plc!' is not a numeric"}};
+  for (const auto& [second, more, said_of_it] : kWrong) {
+    write(board_with_registers(first, second, more));
+    for (const char* const how : {"--check", "--seconds 0.1"}) {
+      const Said said = run(how);
+      EXPECT_EQ(said.status, 1) << how << " " << second << more << said.text;
+      EXPECT_NE(said.text.find("board.toml:"), std::string::npos) << said.text;
+      EXPECT_NE(said.text.find(said_of_it), std::string::npos) << second << more << said.text;
+    }
+  }
+  // Beside each other, at another unit, and as other places of one block, they pass: only the controller is
+  // missing.
+  for (const std::string& second :
+       {plc + "register = 104, echo = 51", plc + "unit = 2, register = 101, echo = 51",
+        same + "register = 100, place = 1, echo = 50", plc + "register = 100, place = 5"}) {
+    std::string x = first, y = second;
+    for (std::string* const one : {&x, &y})
+      if (const auto at = one->find("port = 502, "); at != std::string::npos) one->erase(at, 12);
+    write(board_with_registers("port = 1, " + x, "port = 1, " + y, input + "port = 1, register = 300 }\n"));
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 2) << second << said.text;
+  }
+}
+
+// Two clients on a serial line disturb each other, under whatever names.
+TEST_F(Check, SerialLineOfABlockHasOneUse) {
+  files_.put("tty", "");
+  std::filesystem::create_symlink(files_.path() + "/tty", files_.path() + "/by-id");
+  const std::string x = "device = \"ROOT/tty\", register = 100, echo = 50";
+  const std::string y = "address = \"127.0.0.1\", port = 1, register = 100, echo = 50";
+  const std::pair<std::string, std::string> kWrong[] = {
+      {"device = \"ROOT/by-id\", unit = 2, register = 300, echo = 51", ""},
+      {y,
+       "[input.T]\nunit = \"degC\"\nsource = { kind = \"modbus-rtu\", device = \"ROOT/by-id\", register = 1, "
+       "scale = 1 }\n"},
+      {y, "[[link]]\nkind = \"modbus-rtu\"\ndevice = \"ROOT/by-id\"\n"}};
+  for (const auto& [second, more] : kWrong) {
+    write(board_with_registers(x, second, more));
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << second << more << said.text;
+    EXPECT_NE(said.text.find("/tty has another use in "), std::string::npos) << said.text;
+  }
+}
+
 // What a real output may do is not for an image to say.
 TEST_F(Check, RealOutputsNeedLimitsOfTheBoardsOwn) {
   const std::pair<const char*, const char*> kLimits[] = {
@@ -363,6 +449,8 @@ TEST_F(Check, ZeroTakesOutWhatWasLeftAndNamesWhatItCannotReach) {
 }
 
 TEST_F(Check, WrongSettingsAreNamedWithTheirLine) {
+  constexpr const char *kNamedLink = "[[link]]\nkind = \"modbus-tcp\"\naddress = \"mill one\"\n[axis.X]",
+                       *kEmptyLink = "[[link]]\nkind = \"modbus-tcp\"\naddress = \"\"\n[axis.X]";
   const std::pair<const char*, const char*> kWrong[] = {{"period_ns = 50000", "period_ns = 0"},
                                                         {"span = 0.25", "span = -1"},
                                                         {"channel = 1", "chanel = 1"},
@@ -373,7 +461,11 @@ TEST_F(Check, WrongSettingsAreNamedWithTheirLine) {
                                                         {"kind = \"pwm\"", "kind = \"pvm\""},
                                                         {"high = 254", "polarity = \"upside\""},
                                                         {"attribute = \"in_temp_input\"", "attribute = \"\""},
-                                                        {"{ kind = \"sim\" }", "{ kind = \"can\" }"}};
+                                                        {"{ kind = \"sim\" }", "{ kind = \"can\" }"},
+                                                        {"span = 0.25", "delay_ms = -5, span = 0.25"},
+                                                        {"span = 0.25", "delay_ms = \"a\", span = 0.25"},
+                                                        {"[axis.X]", kNamedLink},
+                                                        {"[axis.X]", kEmptyLink}};
   for (const auto& [from, to] : kWrong) {
     write(replaced(kBoard, from, to));
     const Said said = run("--check");

@@ -43,17 +43,27 @@ class Mirror : public CommandHandler {
   void fill_registers(std::uint16_t* values) override {
     for (int i = 0; i < int{kLiveRegisters}; ++i) values[i] = static_cast<std::uint16_t>(1000 + i);
   }
-  bool give(std::uint16_t command) override {
-    if (command == 0 || command > 5) return false;
+  CommandGiven give(std::uint16_t command) override {
+    if (command == 0 || command > 7) return CommandGiven::kRefused;
     ++commands;
-    return true;
+    late_ = 3;
+    stored_ = command == 6;
+    return command <= 5 ? CommandGiven::kTaken : CommandGiven::kLater;
+  }
+  std::uint32_t ticket() const override { return 77; }
+  std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) override {
+    EXPECT_EQ(ticket, 77u);
+    if (--late_ > 0) return kLater;
+    reply[0] = stored_ ? 0 : 1;
+    return 1;
   }
   bool was_signed() const override { return signed_; }
   static constexpr std::uint8_t kSignedByte = 0x77;
   std::atomic<int> requests{0}, commands{0};
 
  private:
-  bool signed_ = false;
+  bool signed_ = false, stored_ = false;
+  int late_ = 0;
 };
 
 constexpr ModbusLayout kLayout{kMailboxRegister, kMailboxRegisters, kLiveRegisters};
@@ -144,6 +154,12 @@ TEST_F(ModbusTcp, PlainMasterReadsRegistersAndGivesCommands) {
   EXPECT_EQ(values[kLiveRegisters - 1], 1000 + kLiveRegisters - 1);
   EXPECT_EQ(modbus_write_register(master, 0, 1), 1);
   EXPECT_EQ(serving_->mirror.commands, 1);
+  // The effect of a command is stored, or not, before the answer.
+  EXPECT_EQ(modbus_write_register(master, 0, 6), 1);
+  EXPECT_EQ(modbus_write_register(master, 0, 7), -1);
+  EXPECT_EQ(errno, EMBXSFAIL);
+  ASSERT_EQ(modbus_read_input_registers(master, 0, 2, values), 2) << "the frames after it are in step";
+  EXPECT_EQ(serving_->mirror.commands.exchange(1), 3);
   // What is no command, no register or no function of ours is refused with the exception of the standard.
   EXPECT_EQ(modbus_write_register(master, 0, 77), -1);
   EXPECT_EQ(errno, EMBXILVAL);
@@ -159,6 +175,37 @@ TEST_F(ModbusTcp, PlainMasterReadsRegistersAndGivesCommands) {
   EXPECT_EQ(serving_->mirror.commands, 1);
   modbus_close(master);
   modbus_free(master);
+}
+
+// A byte each 0.3 s kept `vernier status` for 58 s: the time was that of each byte.
+TEST(TransportDeadline, AnswerInSingleBytesHasOneDeadline) {
+  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in name{};
+  name.sin_family = AF_INET;
+  name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(name);
+  ASSERT_EQ(::bind(listener, reinterpret_cast<const sockaddr*>(&name), size), 0);
+  ASSERT_EQ(::listen(listener, 1), 0);
+  ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&name), &size), 0);
+  std::thread board([&] {
+    const int fd = ::accept(listener, nullptr, nullptr);
+    std::uint8_t request[300];
+    if (::recv(fd, request, sizeof(request), 0) < 12) ADD_FAILURE() << "no request";
+    const std::uint8_t answer[] = {request[0], request[1], 0, 0, 0, 6, request[6], 16, 1, 0, 0, 2};
+    for (const std::uint8_t byte : answer) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      if (::send(fd, &byte, 1, MSG_NOSIGNAL) != 1) break;
+    }
+    ::close(fd);
+  });
+  const auto transport = open_transport(parse_url("tcp://127.0.0.1:" + std::to_string(ntohs(name.sin_port))),
+                                        std::chrono::milliseconds(300));
+  const auto begin = std::chrono::steady_clock::now();
+  const std::vector<std::uint8_t> asked = {1, 2};
+  EXPECT_ANY_THROW(transport->ask(asked));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(900));
+  board.join();
+  ::close(listener);
 }
 
 TEST_F(ModbusTcp, StalledPeersDoNotLockOthersOut) {

@@ -58,6 +58,7 @@ class FarEnd {
     const std::lock_guard<std::mutex> lock(mutex_);
     answer_ = std::move(answer);
   }
+  std::atomic<int> drip_ms{0};  // time before each byte of an answer
 
  private:
   void serve() {
@@ -72,6 +73,14 @@ class FarEnd {
       {
         const std::lock_guard<std::mutex> lock(mutex_);
         reply = answer_(request);
+      }
+      for (std::size_t i = 0; drip_ms > 0 && i < reply.size(); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(drip_ms));
+        static_cast<void>(::write(fd_, &reply[i], 1) == 1);
+      }
+      if (drip_ms > 0) {
+        request.clear();
+        continue;
       }
       EXPECT_EQ(::write(fd_, reply.data(), reply.size()), static_cast<ssize_t>(reply.size()));
       request.clear();
@@ -294,6 +303,7 @@ class FarServer {
     const std::lock_guard<std::mutex> lock(mutex_);
     answer_ = std::move(answer);
   }
+  std::atomic<int> drip_ms{0};  // time before each byte of an answer
 
  private:
   void serve() {
@@ -312,6 +322,11 @@ class FarServer {
       }
       const std::lock_guard<std::mutex> lock(mutex_);
       const Bytes reply = answer_(request);
+      for (std::size_t i = 0; drip_ms > 0 && i < reply.size(); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(drip_ms));
+        static_cast<void>(::send(fd, &reply[i], 1, MSG_NOSIGNAL) == 1);
+      }
+      if (drip_ms > 0) continue;
       EXPECT_EQ(::send(fd, reply.data(), reply.size(), MSG_NOSIGNAL), static_cast<ssize_t>(reply.size()));
     }
     if (fd >= 0) ::close(fd);
@@ -408,6 +423,31 @@ TEST(ModbusTcpWrite, IsDoneOnlyWithTheAnswerToIt) {
   EXPECT_FALSE(line->write(3, 100, 2, values)) << "an exception";
   EXPECT_FALSE(line->write(3, 100, 0, values));
   EXPECT_FALSE(line->write(3, 100, 124, values)) << "more than a request holds";
+}
+
+/// Time of one sample whose answer comes in single bytes.
+std::chrono::milliseconds time_of(ModbusInput& input) {
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_NE(input.sample(), HalFault::kNone);
+  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - begin);
+}
+
+// The time was that of each byte: an answer of 45 ms a byte was waited for a second.
+TEST_F(ModbusSensor, AnswerInSingleBytesHasOneDeadline) {
+  ModbusInput input(line_, value(), 1);
+  EXPECT_NE(reading(input), INT64_MIN);
+  far_.drip_ms = 45;
+  EXPECT_LT(time_of(input).count(), 2 * kWait.count / 1000) << "60 ms, and a busy computer";
+}
+
+TEST(ModbusTcpSensor, AnswerInSingleBytesHasOneDeadline) {
+  FarServer far;
+  far.set([](const Bytes& q) { return Bytes{q[0], q[1], 0, 0, 0, 5, q[6], q[7], 2, 0, 215}; });
+  std::string error;
+  ModbusInput input(ModbusLine::tcp("127.0.0.1", far.port(), kWait, error), {.unit = 3, .address = 7}, 1);
+  EXPECT_EQ(input.sample(), HalFault::kNone);
+  far.drip_ms = 45;
+  EXPECT_LT(time_of(input).count(), 2 * kWait.count / 1000) << "60 ms, and a busy computer";
 }
 
 TEST(ModbusLineSetUp, MissingDeviceIsNamed) {

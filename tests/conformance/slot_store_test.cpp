@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What every SlotStore owes the uploader: in memory, and as files.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -96,6 +97,23 @@ INSTANTIATE_TEST_SUITE_P(
                               return std::make_unique<FileSlotStore>(directory, kCapacity);
                             }}),
     [](const auto& parameter) { return parameter.param.name; });
+
+// A pipe in the place of a file kept the daemon waiting for a writer.
+TEST(FileSlotStore, OtherKindsOfFilesAreRefusedAndNeverWaitedFor) {
+  const std::string directory = testing::TempDir() + "kinds_" + std::to_string(getpid());
+  std::filesystem::create_directories(directory + "/record3");
+  for (const char* const name : {"/record2", "/slot0.vup"})
+    ASSERT_EQ(::mkfifo((directory + name).c_str(), 0600), 0);
+  FileSlotStore store(directory, kCapacity);
+  std::uint8_t bytes[32] = {};
+  for (const std::uint32_t place : {2u, 3u}) {
+    EXPECT_EQ(store.read_record(place, bytes, sizeof(bytes)), HalFault::kRefused);
+    EXPECT_EQ(store.write_record(place, bytes, sizeof(bytes)), HalFault::kRefused);
+  }
+  EXPECT_EQ(store.read_image(0, 0, bytes, sizeof(bytes)), HalFault::kRefused);
+  EXPECT_EQ(store.write_image(0, 0, bytes, sizeof(bytes)), HalFault::kRefused);
+  std::filesystem::remove_all(directory);
+}
 
 TEST(FileSlotStore, MissingDirectoryAndFullMediumAreFaults) {
   const std::uint8_t bytes[32] = {};

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "tools/commands/help_text.h"
 #include "tools/commands/manners.h"
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace {
 
@@ -121,7 +123,10 @@ int run(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError& error) {
     const std::string meant = vernier::commands::option_meant(app, error);
     if (!meant.empty()) throw vernier::text::InputError(meant);
-    app.exit(error);
+    std::ostringstream out, said;
+    app.exit(error, out, said);
+    std::fputs(out.str().c_str(), stdout);
+    std::fputs(vernier::text::shown_message(said.str()).c_str(), stderr);
     return kBadInput;
   }
   return kDone;
@@ -135,15 +140,15 @@ int main(int argc, char** argv) {
   try {
     return run(arguments);
   } catch (const vernier::text::InputError& error) {
-    std::fprintf(stderr, "vernier: %s\n", error.what());
+    std::fprintf(stderr, "vernier: %s\n", vernier::text::shown_message(error.what()).c_str());
     const std::string hint = vernier::commands::import_hint(error.what(), arguments);
-    if (!hint.empty()) std::fprintf(stderr, "vernier: %s\n", hint.c_str());
+    if (!hint.empty()) std::fprintf(stderr, "vernier: %s\n", vernier::text::shown_message(hint).c_str());
     return kBadInput;
   } catch (const vernier::text::LimitNotMet& error) {
-    std::fprintf(stderr, "vernier: %s\n", error.what());
+    std::fprintf(stderr, "vernier: %s\n", vernier::text::shown_message(error.what()).c_str());
     return kAnswerIsNo;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "vernier: internal error: %s\n", error.what());
+    std::fprintf(stderr, "vernier: internal error: %s\n", vernier::text::shown_message(error.what()).c_str());
     return kOurBug;
   }
 }

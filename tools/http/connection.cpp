@@ -9,7 +9,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
+#include <string_view>
+#include <system_error>
 
 namespace vernier::http {
 namespace {
@@ -35,6 +38,22 @@ void address_of(int fd, NameOf name_of, std::string& ip, int& port) {
   ip = text;
 }
 
+/// Content-Length of a header (RFC 9110, 8.6); 0 without one. A number that is not valid is the library's to
+/// refuse.
+std::size_t stated_length(std::string_view header) {
+  constexpr std::string_view kName = "\ncontent-length:";
+  const auto same = [](char a, char b) {
+    return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
+  };
+  const auto found = std::search(header.begin(), header.end(), kName.begin(), kName.end(), same);
+  if (found == header.end()) return 0;
+  std::string_view value = header.substr(static_cast<std::size_t>(found - header.begin()) + kName.size());
+  value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
+  std::size_t length = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), length);
+  return error == std::errc() ? length : 0;
+}
+
 bool try_later() { return errno == EAGAIN || errno == EINTR; }
 
 }  // namespace
@@ -47,6 +66,19 @@ Connection::Connection(int socket) : fd(socket) {
 Connection::~Connection() {
   ::shutdown(fd, SHUT_RDWR);
   ::close(fd);
+}
+
+bool Connection::has_header() {
+  if (header_bytes > 0) return true;
+  const std::size_t end = bytes.find("\r\n\r\n");
+  if (end == std::string::npos) return false;
+  header_bytes = end + 4;
+  body_bytes = stated_length(std::string_view(bytes).substr(0, header_bytes));
+  return true;
+}
+
+bool Connection::has_request(std::size_t most_body) {
+  return has_header() && (body_bytes > most_body || bytes.size() - header_bytes >= body_bytes);
 }
 
 bool Connection::take_bytes() {

@@ -18,11 +18,16 @@ struct Connection {
 
   /// Reads the bytes that are there, without waiting. False: the client has closed the connection.
   bool take_bytes();
-  bool has_header() const { return bytes.find("\r\n\r\n") != std::string::npos; }
+  /// True if the header has come: request_bytes is then the size of the request.
+  bool has_header();
+  /// True if the header and its body have come. A body above `most_body`, or of a length that the header does
+  /// not state, is not waited for.
+  bool has_request(std::size_t most_body);
 
   int fd;
   std::string peer;  // address of the client
   std::string bytes;
+  std::size_t header_bytes = 0, body_bytes = 0;  // of the first request in `bytes`; 0: not known yet
   Clock::time_point due;
 };
 
@@ -33,7 +38,10 @@ class RequestStream : public httplib::Stream {
   RequestStream(Connection& connection, Clock::duration pause, Clock::time_point end)
       : connection_(connection), pause_(pause), end_(end) {}
   /// Removes the bytes that the request used.
-  ~RequestStream() override { connection_.bytes.erase(0, at_); }
+  ~RequestStream() override {
+    connection_.bytes.erase(0, at_);
+    connection_.header_bytes = connection_.body_bytes = 0;
+  }
   RequestStream(const RequestStream&) = delete;
   RequestStream& operator=(const RequestStream&) = delete;
 

@@ -76,17 +76,28 @@ void WaitingRoom::make_room(std::list<Kept>& waiting) const {
     waiting.erase(std::find_if(waiting.begin(), waiting.end(),
                                [&](const Kept& one) { return one->peer == most->first; }));
   }
+  const auto bytes = [&] {
+    std::size_t sum = 0;
+    for (const Kept& one : waiting) sum += one->bytes.size();
+    return sum;
+  };
+  while (bytes() > limits_.most_bytes)
+    waiting.erase(std::max_element(waiting.begin(), waiting.end(), [](const Kept& a, const Kept& b) {
+      return a->bytes.size() < b->bytes.size();
+    }));
 }
 
 void WaitingRoom::read(std::list<Kept>& waiting, std::list<Kept>::iterator one) {
   Connection& connection = **one;
   const bool was_empty = connection.bytes.empty();
   const bool open = connection.take_bytes();
+  const bool had_header = connection.header_bytes > 0;
   if (was_empty && !connection.bytes.empty()) connection.due = Clock::now() + limits_.header;
-  // The library answers a header that ends too early; it does not wait, because the connection has ended.
-  if (connection.has_header() || (!open && !connection.bytes.empty()))
+  if (connection.has_header() && !had_header) connection.due = Clock::now() + limits_.body;
+  // The library answers a request that ends too early; it does not wait, because the connection has ended.
+  if (connection.has_request(limits_.most_body) || (!open && !connection.bytes.empty()))
     hand_over(std::move(*one));
-  else if (open && connection.bytes.size() <= kMostHeaderBytes)
+  else if (open && (connection.has_header() || connection.bytes.size() <= kMostHeaderBytes))
     return;
   waiting.erase(one);
 }
@@ -100,7 +111,7 @@ void WaitingRoom::admit(std::list<Kept>& waiting) {
   // A request that came with its connection is answered without a place in the room.
   for (Kept& one : entered) {
     waiting.push_back(std::move(one));
-    if (waiting.back()->has_header()) {
+    if (waiting.back()->has_request(limits_.most_body)) {
       hand_over(std::move(waiting.back()));
       waiting.pop_back();
     } else {
@@ -132,7 +143,7 @@ void WaitingRoom::watch() {
     for (auto one = waiting.begin(); one != waiting.end(); ++k) {
       const auto now = one++;
       const bool late = (*now)->due <= Clock::now();
-      if (polled[k].revents != 0) {
+      if (polled[k].revents != 0 && !late) {
         read(waiting, now);
       } else if (late) {
         if (!(*now)->bytes.empty()) refuse_late(**now);
@@ -140,6 +151,7 @@ void WaitingRoom::watch() {
       }
     }
     admit(waiting);
+    make_room(waiting);
   }
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "tools/text/words.h"
+
 namespace vernier::lint {
 
 const char* weight_name(LintWeight weight) {
@@ -20,12 +22,12 @@ const char* weight_name(LintWeight weight) {
 }
 
 std::string in_one_line(const LintFinding& finding) {
-  std::string text = finding.file;
-  if (finding.line > 0) text += ":" + std::to_string(finding.line);
-  text += std::string(": ") + weight_name(finding.weight) + ": ";
-  if (!finding.word.empty()) text += "\"" + finding.word + "\": ";
-  text += finding.what;
-  return finding.meaning.empty() ? text : text + " -- " + finding.meaning;
+  std::string line = text::printable(finding.file);
+  if (finding.line > 0) line += ":" + std::to_string(finding.line);
+  line += std::string(": ") + weight_name(finding.weight) + ": ";
+  if (!finding.word.empty()) line += "\"" + text::quotable(finding.word) + "\": ";
+  line += finding.what;
+  return text::shown_message(finding.meaning.empty() ? line : line + " -- " + finding.meaning);
 }
 
 void LintFindings::add(LintWeight weight, std::size_t line, const std::string& word, const std::string& what,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/text/error.h"
 
+#include "tools/text/words.h"
+
 namespace vernier::text {
 namespace {
 
@@ -8,7 +10,7 @@ std::string message(const Place& place, const std::string& word, const std::stri
   std::string text = place.file;
   if (place.line > 0) text += ":" + std::to_string(place.line);
   if (!text.empty()) text += ": ";
-  if (!word.empty()) text += "\"" + word + "\": ";
+  if (!word.empty()) text += "\"" + quotable(word) + "\": ";
   return text + what;
 }
 

@@ -52,6 +52,32 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
+namespace {
+
+/// At most `most` bytes of the text, whole characters, and the size of the rest.
+std::string shortened(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return printable(text);
+  std::size_t end = most;
+  constexpr int kKind = 0xc0, kFollows = 0x80;  // bits of a byte in the middle of a character
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & kKind) == kFollows) --end;
+  return printable(text.substr(0, end)) + "... (" + std::to_string(text.size() - end) + " more bytes)";
+}
+
+}  // namespace
+
+std::string quotable(std::string_view word) { return shortened(word, kMostQuotedBytes); }
+
+std::string shown_message(std::string_view message) {
+  std::string shown;
+  for (bool more = true; more;) {
+    const std::size_t end = message.find('\n');
+    shown += shortened(message.substr(0, end), kMostMessageBytes);
+    more = end != std::string_view::npos;
+    if (more) shown += '\n', message.remove_prefix(end + 1);
+  }
+  return shown;
+}
+
 std::string trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n";
   const auto first = text.find_first_not_of(kBlanks);

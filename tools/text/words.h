@@ -26,6 +26,17 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
 /// texts of a board through this function. tool.
 std::string printable(std::string_view text);
 
+/// Returns a word of a file as a message quotes it: printable, and shortened if it is longer than
+/// kMostQuotedBytes. tool.
+std::string quotable(std::string_view word);
+constexpr std::size_t kMostQuotedBytes = 200;
+
+/// Returns a message as a terminal shows it: each line printable, and shortened if it is longer than
+/// kMostMessageBytes. For the place that prints the messages of all commands: a name of a file may have any
+/// characters. tool.
+std::string shown_message(std::string_view message);
+constexpr std::size_t kMostMessageBytes = 4000;
+
 /// True if the brackets of a JSON text nest deeper than `most`. Text in strings does not count. Call
 /// nests_deeper_than before the parser for any text from outside. Deep nesting would exhaust the stack of the
 /// parser, or of code that walks its tree.

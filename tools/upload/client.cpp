@@ -23,6 +23,7 @@ constexpr double kNmPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts
 constexpr std::uint32_t kPieceBytes = kMaxRequestBytes - kRequestHeaderBytes - 4;
 constexpr std::uint32_t kReadBytes = 232;  // a reply of the link holds them (tables/link_messages.h)
 constexpr int kTriesWhileNotReady = 300;   // five seconds: a medium may be slow
+constexpr auto kLongestRequest = std::chrono::seconds(30);  // with all its tries
 
 void append(std::vector<std::uint8_t>& bytes, const void* from, std::size_t size) {
   const std::size_t before = bytes.size();
@@ -97,6 +98,7 @@ std::vector<std::uint8_t> Client::request_of(LinkOp op, const std::vector<std::u
 }
 
 std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>& payload) {
+  const auto end = std::chrono::steady_clock::now() + kLongestRequest;
   for (int attempt = 0;; ++attempt) {
     const std::vector<std::uint8_t> reply = ask_once(request_of(op, payload));
     const std::vector<std::uint8_t> rest(reply.begin() + kReplyHeaderBytes, reply.end());
@@ -107,7 +109,8 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
         refused(rest);
       case LinkStatus::kNotReady:
       case LinkStatus::kStale:  // another client was quicker
-        if (attempt >= kTriesWhileNotReady) throw text::InputError("the board is not ready");
+        if (attempt >= kTriesWhileNotReady || std::chrono::steady_clock::now() > end)
+          throw text::InputError("the board is not ready");
         transport_->pause(std::chrono::milliseconds(attempt < 50 ? 2 : 20));
         continue;
       case LinkStatus::kUnknownOp:
@@ -118,6 +121,10 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
         throw text::LimitNotMet("the board refuses: the request must be signed (--key, or VERNIER_KEY)");
       case LinkStatus::kBadSignature:
         throw text::LimitNotMet("the board refuses: the key has no right for this request");
+      case LinkStatus::kNotStored:
+        throw text::LimitNotMet(
+            "the board carries out the request and has not stored it: a start of the board may restore an "
+            "older setting; look at the medium of the board's store, and send the request again");
       case LinkStatus::kBadLength:
       case LinkStatus::kBadValue:
         throw text::InputError("the board refuses the request: it has a wrong form");
@@ -271,6 +278,19 @@ std::string limits_text(std::uint8_t limits) {
   return text;
 }
 
+std::string settings_text(std::uint8_t settings) {
+  std::string text;
+  if ((settings & kSettingDamaged) != 0)
+    text +=
+        "DEACTIVATED: a stored setting of the operator was damaged or missing at the start; the weights may "
+        "be older. Test the weights and the store of the board, then activate the correction\n";
+  if ((settings & kSettingRefused) != 0)
+    text +=
+        "NOT STORED: the store of the board refuses the newest setting of the operator; a start may restore "
+        "an older setting. Test the medium of the store\n";
+  return text;
+}
+
 BoardState Client::state() {
   const auto reply = ask(LinkOp::kState);
   if (reply.size() != sizeof(LinkState) + info_.axes.size() * sizeof(LinkAxisState))
@@ -281,6 +301,7 @@ BoardState Client::state() {
   state.image = static_cast<ImageState>(head.image);
   state.since_s = static_cast<double>(head.since_us) * 1e-6;
   state.weight = head.weight / 65536.0;
+  state.settings = head.settings;
   for (std::size_t i = 0; i < info_.axes.size(); ++i) {
     const auto axis = get<LinkAxisState>(reply, sizeof(LinkState) + i * sizeof(LinkAxisState));
     const double counts = info_.axes[i].rotary ? kCountsPerDeg : kNmPerMm;

@@ -63,7 +63,11 @@ struct BoardState {
     std::uint8_t limits = 0;  // AxisLimitFlag
   };
   std::vector<Axis> axes;
+  std::uint8_t settings = 0;  // SettingFlag
 };
+/// What the user must know of the stored settings of the operator, one line for each flag; empty if the
+/// settings are stored.
+std::string settings_text(std::uint8_t settings);
 /// Returns "confirmed", "on trial", "lost" or "none". For limits of an axis: "at the image's limit, on its
 /// way" or empty.
 const char* name_of(ImageState image);

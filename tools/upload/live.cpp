@@ -113,7 +113,9 @@ nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, c
       {"running", state.fingerprint == 0 ? nlohmann::ordered_json(nullptr)
                                          : nlohmann::ordered_json(text::fingerprint_text(state.fingerprint))},
       {"running_since_t", state.since_s},
-      {"weight", state.weight}};
+      {"weight", state.weight},
+      {"settings_damaged", (state.settings & kSettingDamaged) != 0},
+      {"settings_refused", (state.settings & kSettingRefused) != 0}};
   for (std::size_t i = 0; i < info.axes.size(); ++i)
     result["axes"][info.axes[i].name] = {{"position", tick.position[i]},
                                          {"correction", tick.correction[i]},
@@ -148,7 +150,7 @@ std::string live_text(const BoardInfo& info, const BoardTick& tick, const Health
   if (slots.trial != kNoSlot)
     fmt::format_to(out, "image {:016x} on trial, {:.0f} s left\n", slots.trial_fingerprint,
                    slots.trial_left_ms * 1e-3);
-  text += running_text(tick, state);
+  text += running_text(tick, state) + settings_text(state.settings);
   fmt::format_to(out, "{:<12} {:>16} {:>16} {:>13} {:>7}\n", "axis", "position", "achieved", "wanted",
                  "weight");
   for (std::size_t i = 0; i < info.axes.size(); ++i)

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 
 #include "hal/linux/can/isotp_link.h"
@@ -17,14 +18,15 @@
 namespace vernier::upload {
 namespace {
 
-// Checking an image and bringing it to a slow medium takes a board some seconds.
-constexpr std::uint32_t kReplyTimeoutS = 15;
-
 class ModbusTransport : public Transport {
  public:
-  ModbusTransport(modbus_t* context, std::string name) : context_(context), name_(std::move(name)) {
+  ModbusTransport(modbus_t* context, std::string name, std::chrono::milliseconds wait)
+      : context_(context), name_(std::move(name)) {
     if (context_ == nullptr) throw text::InputError(name_ + ": " + modbus_strerror(errno));
-    modbus_set_response_timeout(context_, kReplyTimeoutS, 0);
+    modbus_set_response_timeout(context_, static_cast<std::uint32_t>(wait.count() / 1000),
+                                static_cast<std::uint32_t>(wait.count() % 1000 * 1000));
+    // No time of its own for each byte: an answer is complete in time or not at all.
+    modbus_set_byte_timeout(context_, 0, 0);
     if (modbus_connect(context_) == 0) return;
     const std::string why = modbus_strerror(errno);
     modbus_free(context_);
@@ -67,7 +69,8 @@ class ModbusTransport : public Transport {
 
 class IsotpTransport : public Transport {
  public:
-  explicit IsotpTransport(const BoardUrl& url) : name_("can://" + url.place) {
+  IsotpTransport(const BoardUrl& url, std::chrono::milliseconds wait)
+      : name_("can://" + url.place), wait_(wait) {
     std::string error;
     link_ = IsotpLink::open(url.place, url.number("receive", 0x601), url.number("send", 0x600), error);
     if (!link_) throw text::InputError(error);
@@ -75,7 +78,7 @@ class IsotpTransport : public Transport {
   std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
     std::vector<std::uint8_t> reply(kMaxReplyBytes);
     const int size = link_->ask(request.data(), static_cast<std::uint32_t>(request.size()), reply.data(),
-                                kMaxReplyBytes, TimeUs(std::int64_t{kReplyTimeoutS} * 1'000'000));
+                                kMaxReplyBytes, TimeUs(1000 * std::int64_t{wait_.count()}));
     if (size < 0) throw text::InputError(name_ + ": no reply: " + std::strerror(errno));
     reply.resize(static_cast<std::size_t>(size));
     return reply;
@@ -84,6 +87,7 @@ class IsotpTransport : public Transport {
  private:
   std::unique_ptr<IsotpLink> link_;
   std::string name_;
+  std::chrono::milliseconds wait_;
 };
 
 // libmodbus wants a numeric address.
@@ -104,18 +108,20 @@ std::string numeric(const std::string& host) {
 
 }  // namespace
 
-std::unique_ptr<Transport> open_transport(const BoardUrl& url) {
-  if (url.scheme == "serial") return open_serial_transport(url);
-  if (url.scheme == "can") return std::make_unique<IsotpTransport>(url);
+std::unique_ptr<Transport> open_transport(const BoardUrl& url,
+                                          std::optional<std::chrono::milliseconds> given) {
+  if (url.scheme == "serial") return open_serial_transport(url, given.value_or(kSerialReplyDeadline));
+  const std::chrono::milliseconds wait = given.value_or(kReplyDeadline);
+  if (url.scheme == "can") return std::make_unique<IsotpTransport>(url, wait);
   if (url.scheme == "tcp")
     return std::make_unique<ModbusTransport>(modbus_new_tcp(numeric(url.place).c_str(), url.port),
-                                             "tcp://" + url.place + ":" + std::to_string(url.port));
+                                             "tcp://" + url.place + ":" + std::to_string(url.port), wait);
   const auto parity = url.options.find("parity");
   modbus_t* const context =
       modbus_new_rtu(url.place.c_str(), static_cast<int>(url.number("baud", 115200)),
                      parity == url.options.end() || parity->second.empty() ? 'E' : parity->second[0], 8, 1);
   if (context != nullptr) modbus_set_slave(context, static_cast<int>(url.number("unit", 1)));
-  return std::make_unique<ModbusTransport>(context, "rtu://" + url.place);
+  return std::make_unique<ModbusTransport>(context, "rtu://" + url.place, wait);
 }
 
 }  // namespace vernier::upload

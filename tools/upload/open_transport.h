@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <chrono>
 #include <memory>
+#include <optional>
 
 #include "tools/upload/transport.h"
 #include "tools/upload/url.h"
 
 namespace vernier::upload {
 
-/// Opens the way to a board. Throws InputError naming the address. tool.
-std::unique_ptr<Transport> open_transport(const BoardUrl& url);
+/// Checking an image and writing it to a slow medium takes a board some seconds; a small board at a serial
+/// line checks two signatures for the end of an upload, seconds each.
+inline constexpr std::chrono::milliseconds kReplyDeadline{15'000}, kSerialReplyDeadline{60'000};
+
+/// Opens the way to a board. wait: longest time until an answer is complete, however its bytes come (without
+/// a value: one of the deadlines above); over Modbus a request has two answers. Throws InputError naming the
+/// address. tool.
+std::unique_ptr<Transport> open_transport(const BoardUrl& url,
+                                          std::optional<std::chrono::milliseconds> wait = std::nullopt);
 
 }  // namespace vernier::upload

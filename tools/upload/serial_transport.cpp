@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 
 #include "tables/serial_frame.h"
@@ -14,9 +15,6 @@
 
 namespace vernier::upload {
 namespace {
-
-constexpr int kReplyTimeoutMs =
-    60'000;  // a small board checks two signatures for the end of an upload: seconds each
 
 speed_t speed_of(std::uint32_t baud) {
   switch (baud) {
@@ -43,7 +41,8 @@ speed_t speed_of(std::uint32_t baud) {
 
 class SerialTransport : public Transport {
  public:
-  explicit SerialTransport(const BoardUrl& url) : name_("serial://" + url.place) {
+  SerialTransport(const BoardUrl& url, std::chrono::milliseconds wait)
+      : wait_(wait), name_("serial://" + url.place) {
     const speed_t speed = speed_of(url.number("baud", 115200));
     line_ = ::open(url.place.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
     if (line_ < 0) fail(errno);
@@ -64,8 +63,9 @@ class SerialTransport : public Transport {
       if (now < 0 && errno != EINTR) fail(errno);
       if (now > 0) sent += static_cast<std::uint32_t>(now);
     }
+    const auto end = std::chrono::steady_clock::now() + wait_;
     for (;;) {
-      const std::vector<std::uint8_t> reply = next_message();
+      const std::vector<std::uint8_t> reply = next_message(end);
       // What answers an earlier request, whose time had run out, is not ours.
       if (reply.size() >= 2 && reply[0] == request[0] && reply[1] == request[1]) return reply;
     }
@@ -81,10 +81,13 @@ class SerialTransport : public Transport {
            ::tcflush(line_, TCIOFLUSH) == 0;
   }
   [[noreturn]] void fail(int error) const { throw text::InputError(name_ + ": " + std::strerror(error)); }
-  std::vector<std::uint8_t> next_message() {
+  /// Bytes that come do not move the end.
+  std::vector<std::uint8_t> next_message(std::chrono::steady_clock::time_point end) {
     for (;;) {
       pollfd waiting{line_, POLLIN, 0};
-      const int ready = ::poll(&waiting, 1, kReplyTimeoutMs);
+      const auto left =
+          std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now()).count();
+      const int ready = left <= 0 ? 0 : ::poll(&waiting, 1, static_cast<int>(left));
       if (ready < 0 && errno == EINTR) continue;
       if (ready == 0) throw text::InputError(name_ + ": no reply");
       std::uint8_t byte = 0;
@@ -97,14 +100,15 @@ class SerialTransport : public Transport {
   }
 
   int line_ = -1;
+  std::chrono::milliseconds wait_;
   std::string name_;
   FrameReader reader_;
 };
 
 }  // namespace
 
-std::unique_ptr<Transport> open_serial_transport(const BoardUrl& url) {
-  return std::make_unique<SerialTransport>(url);
+std::unique_ptr<Transport> open_serial_transport(const BoardUrl& url, std::chrono::milliseconds wait) {
+  return std::make_unique<SerialTransport>(url, wait);
 }
 
 }  // namespace vernier::upload

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <chrono>
 #include <memory>
 
 #include "tools/upload/transport.h"
@@ -7,8 +8,8 @@
 
 namespace vernier::upload {
 
-/// A board at a serial line of bytes (tables/serial_frame.h): serial://DEVICE[?baud=115200], 8N1, raw. Throws
-/// InputError naming the device. tool.
-std::unique_ptr<Transport> open_serial_transport(const BoardUrl& url);
+/// A board at a serial line of bytes (tables/serial_frame.h): serial://DEVICE[?baud=115200], 8N1, raw. wait:
+/// longest time until a reply is complete. Throws InputError naming the device. tool.
+std::unique_ptr<Transport> open_serial_transport(const BoardUrl& url, std::chrono::milliseconds wait);
 
 }  // namespace vernier::upload

@@ -157,6 +157,7 @@ struct Exchange {
   // State of the mode as the store keeps it (OperatorState): bit 0 out, bit 8 holding, from bit 16 the
   // latched fault.
   std::atomic<std::uint32_t> operator_said{0};
+  std::atomic<std::uint32_t> setting_flags{0};  // SettingFlag, written by the context of the store
   std::atomic<BoundProgram*> offered{nullptr};  // to be taken over by the next tick
   std::atomic<BoundProgram*> retired{nullptr};  // was taken out; the owner may free it
 

@@ -94,6 +94,12 @@ bool Link::may_need_store(const std::uint8_t* request, std::uint32_t size) noexc
   return needs_store(request, size) || op == LinkOp::kBegin || op == LinkOp::kData || op == LinkOp::kSigned;
 }
 
+bool Link::is_setting(const std::uint8_t* request, std::uint32_t size) noexcept {
+  if (size < kRequestHeaderBytes) return false;
+  const auto op = static_cast<LinkOp>(request[0]);
+  return op == LinkOp::kCommand || op == LinkOp::kWeight;
+}
+
 std::uint32_t Link::answer_with(LinkStatus status, const std::uint8_t* request,
                                 std::uint8_t* reply) noexcept {
   reply[0] = request[0], reply[1] = request[1];
@@ -310,8 +316,12 @@ LinkStatus Link::state(Writer& out) {
   if (exchange_.ticks.count() == 0 || !exchange_.state.read(record)) return LinkStatus::kNotReady;
   const Look look(uploader_.programs());
   const Running now = running(look.program());
-  out.put(
-      LinkState{now.fingerprint, record.since_us, record.weight, static_cast<std::uint8_t>(now.image), {}});
+  out.put(LinkState{now.fingerprint,
+                    record.since_us,
+                    record.weight,
+                    static_cast<std::uint8_t>(now.image),
+                    static_cast<std::uint8_t>(exchange_.setting_flags.load(std::memory_order_relaxed)),
+                    {}});
   for (std::size_t i = 0; i < wiring_.axes.size(); ++i)
     out.put(LinkAxisState{record.wanted[i], record.achieved[i],
                           static_cast<std::uint32_t>(record.axis_weight[i]), record.limits[i]});
@@ -462,6 +472,7 @@ void Link::fill_registers(std::uint16_t* values) {
   values[kLiveMode] = tick.mode;
   values[kLiveFault] = tick.fault;
   values[kLiveHolding] = tick.holding;
+  values[kLiveSettings] = static_cast<std::uint16_t>(exchange_.setting_flags.load(std::memory_order_relaxed));
   fill_state(values, tick);
   put_pair(values + kLiveTicks, static_cast<std::int32_t>(static_cast<std::uint32_t>(count)));
   put_pair(values + kLiveOverruns, static_cast<std::int64_t>(health.overruns));

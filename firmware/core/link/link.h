@@ -26,6 +26,8 @@ class Link {
   /// True if the request is, or may contain (signed), a request for the store or a step of an upload.
   /// may_need_store() is always false while the store works on a request. setup.
   static bool may_need_store(const std::uint8_t* request, std::uint32_t size) noexcept;
+  /// True if the request sets something that a start of the board restores. setup.
+  static bool is_setting(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// "Ask again": the reply to a request that comes while the store is at work. setup.
   static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept {
     return answer_with(LinkStatus::kNotReady, request, reply);

@@ -27,7 +27,7 @@ class StoreDesk {
     size_ = std::min<std::uint32_t>(size, sizeof(request_));
     std::copy_n(request, size_, request_);
     asked_while_done_ = 0;
-    ++ticket_;
+    ticket_ = (ticket_ + 1) & INT32_MAX;  // the highest bit marks a SettingTicket
     state_.store(State::kAsked, std::memory_order_release);
     return ticket_;
   }

@@ -8,7 +8,7 @@ namespace vernier {
 namespace {
 
 constexpr std::uint8_t kReadHolding = 3, kReadInput = 4, kWriteOne = 6, kWriteMany = 16;
-constexpr std::uint8_t kIllegalFunction = 1, kIllegalAddress = 2, kIllegalValue = 3;
+constexpr std::uint8_t kIllegalFunction = 1, kIllegalAddress = 2, kIllegalValue = 3, kDeviceFailure = 4;
 constexpr std::uint32_t kTcpHeader = 7, kRtuHeader = 1, kCrc = 2;
 constexpr int kMostRead = 125;
 // A serial line that was quiet for so long begins a new frame; drivers hold bytes back for up to 16 ms.
@@ -136,7 +136,13 @@ void ModbusConversation::respond(CommandHandler& handler, const std::uint8_t* pd
     return read_registers(handler, function, address, count);
   if (function == kWriteOne) {
     if (address != 0) return refuse(function, kIllegalAddress);
-    if (!handler.give(static_cast<std::uint16_t>(count))) return refuse(function, kIllegalValue);
+    const CommandGiven given = handler.give(static_cast<std::uint16_t>(count));
+    if (given == CommandGiven::kRefused) return refuse(function, kIllegalValue);
+    if (given == CommandGiven::kLater) {
+      waits_for_reply_ = of_command_ = true;
+      ticket_ = handler.ticket();
+      return;
+    }
   } else {
     if (address != layout_.mailbox || count < 2 || count > layout_.mailbox_registers)
       return refuse(function, kIllegalAddress);
@@ -147,7 +153,36 @@ void ModbusConversation::respond(CommandHandler& handler, const std::uint8_t* pd
   for (int i = 0; i < 5; ++i) put(pdu[i]);
 }
 
+/// The frame of the command is still the first one in in_.
+void ModbusConversation::confirm_command(std::uint8_t not_stored) noexcept {
+  const std::uint8_t* const pdu = in_ + (tcp() ? kTcpHeader : kRtuHeader);
+  begin_reply(in_);
+  if (not_stored != 0) return refuse(pdu[0], kDeviceFailure);
+  for (int i = 0; i < 5; ++i) put(pdu[i]);
+}
+
+void ModbusConversation::answer_frame(CommandHandler& handler, std::uint32_t size, InstantNs now) noexcept {
+  const std::uint32_t header = tcp() ? kTcpHeader : kRtuHeader, trailer = tcp() ? 0 : kCrc;
+  begin_reply(in_);
+  respond(handler, in_ + header, size - header - trailer);
+  if (of_command_)
+    out_size_ = 0;
+  else
+    end_reply(now);
+}
+
 void ModbusConversation::work(CommandHandler& handler, InstantNs now) noexcept {
+  if (waits_for_reply_ && of_command_) {
+    std::uint8_t reply[sizeof(reply_)] = {};
+    const std::uint32_t answered = handler.later(ticket_, reply);
+    if (answered == CommandHandler::kLater) return;
+    waits_for_reply_ = of_command_ = false;
+    confirm_command(answered == 1 ? reply[0] : 1);
+    end_reply(now);
+    drop(command_size_);
+    frame_began_ = now;
+    return;
+  }
   if (waits_for_reply_) {
     const std::uint32_t answered = handler.later(ticket_, reply_);
     if (answered == CommandHandler::kLater) return;
@@ -158,17 +193,16 @@ void ModbusConversation::work(CommandHandler& handler, InstantNs now) noexcept {
   if (waiting() > 0) return;
   const std::uint32_t size = frame_size();
   if (size == 0) return;
-  const std::uint32_t header = tcp() ? kTcpHeader : kRtuHeader, trailer = tcp() ? 0 : kCrc;
   const bool whole = tcp() || (in_[size - 2] | in_[size - 1] << 8) == modbus_crc(in_, size - kCrc);
   if (!whole) {
     senseless_ = true;
     return;
   }
   last_request_ = now;
-  if (tcp() || in_[0] == unit_) {
-    begin_reply(in_);
-    respond(handler, in_ + header, size - header - trailer);
-    end_reply(now);
+  if (tcp() || in_[0] == unit_) answer_frame(handler, size, now);
+  if (of_command_) {
+    command_size_ = size;
+    return;
   }
   drop(size);
   frame_began_ = now;

@@ -69,6 +69,8 @@ class ModbusConversation {
   bool busy() const noexcept { return waiting() > 0 || waits_for_reply_; }
   std::uint32_t frame_size() noexcept;
   void respond(CommandHandler& handler, const std::uint8_t* pdu, std::uint32_t size) noexcept;
+  void answer_frame(CommandHandler& handler, std::uint32_t size, InstantNs now) noexcept;
+  void confirm_command(std::uint8_t not_stored) noexcept;
   void open_mailbox(CommandHandler& handler, const std::uint8_t* bytes, std::uint32_t size) noexcept;
   void read_registers(CommandHandler& handler, std::uint8_t function, int address, int count) noexcept;
   void refuse(std::uint8_t function, std::uint8_t code) noexcept;
@@ -85,8 +87,9 @@ class ModbusConversation {
   std::uint32_t used_ = 0, out_size_ = 0, sent_ = 0;
   std::uint8_t mailbox_[2 * kMostMailbox] = {};  // written by the peer
   std::uint8_t reply_[256] = {};
-  std::uint32_t reply_size_ = 0, ticket_ = 0;
+  std::uint32_t reply_size_ = 0, ticket_ = 0, command_size_ = 0;
   bool waits_for_reply_ = false, senseless_ = false, signed_ = false;
+  bool of_command_ = false;  // the reply that is waited for confirms the write of a command
 };
 
 /// Returns the CRC of an RTU frame (Modbus over Serial Line V1.02, 6.2.2).

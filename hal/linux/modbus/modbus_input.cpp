@@ -27,9 +27,8 @@ ModbusLine::ModbusLine(_modbus* context, bool serial, TimeUs wait)
     : context_(context), serial_(serial), wait_(wait) {
   modbus_set_response_timeout(context_, static_cast<std::uint32_t>(wait.count / kUsPerS),
                               static_cast<std::uint32_t>(wait.count % kUsPerS));
-  // An answer that stops in the middle counts as no answer.
-  modbus_set_byte_timeout(context_, static_cast<std::uint32_t>(wait.count / kUsPerS),
-                          static_cast<std::uint32_t>(wait.count % kUsPerS));
+  // No time of its own for each byte: the answer has to be complete within `wait`, however its bytes come.
+  modbus_set_byte_timeout(context_, 0, 0);
 }
 
 ModbusLine::~ModbusLine() {

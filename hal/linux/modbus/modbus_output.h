@@ -12,13 +12,15 @@
 
 #include "hal/linux/modbus/modbus_input.h"
 #include "hal/linux/output_device.h"
+#include "hal/support/register_block.h"
 
 namespace vernier {
 
 /// Registers of a controller (PLC) that take corrections. The block begins at `address`: sequence number,
 /// valid bits (bit p: place p), then two registers for each place, a signed 32-bit number, high word first.
 struct ModbusOutputSettings {
-  static constexpr int kSequence = 0, kValid = 1, kValues = 2, kPlaces = 16;
+  static constexpr int kSequence = RegisterBlock::kSequence, kValid = RegisterBlock::kValid,
+                       kValues = RegisterBlock::kValues, kPlaces = RegisterBlock::kPlaces;
 
   struct Axis {
     AnalogueScale scale;                     // the register holds code - scale.zero

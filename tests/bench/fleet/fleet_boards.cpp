@@ -47,7 +47,7 @@ class Noting : public CommandHandler {
     return handler_.later(ticket, reply);
   }
   void fill_registers(std::uint16_t* values) override { handler_.fill_registers(values); }
-  bool give(std::uint16_t command) override { return handler_.give(command); }
+  CommandGiven give(std::uint16_t command) override { return handler_.give(command); }
 
  private:
   void note(const std::uint8_t* told) const {

@@ -23,7 +23,9 @@ class Echo : public CommandHandler {
   void fill_registers(std::uint16_t* values) override {
     std::fill_n(values, kLiveRegisters, std::uint16_t{1});
   }
-  bool give(std::uint16_t command) override { return command < 8; }
+  CommandGiven give(std::uint16_t command) override {
+    return command >= 8 ? CommandGiven::kRefused : command == 7 ? CommandGiven::kLater : CommandGiven::kTaken;
+  }
 
  private:
   std::uint32_t asked_ = 0;

@@ -143,7 +143,7 @@ struct Through : Transport, CommandLink {
   }
   HalFault serve(CommandHandler& handler, TimeUs) noexcept override {
     if (registers != 0) {
-      given = handler.give(registers);
+      given = handler.give(registers) != CommandGiven::kRefused;
       registers = 0;
       return HalFault::kNone;
     }

@@ -4,6 +4,8 @@
 
 #include <cstring>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "tests/unit/firmware/upload_rig.h"
 
@@ -133,11 +135,101 @@ TEST_F(OperatorSetting, UnreadableRecordsKeepTheCorrectionOut) {
   store_.write_record(kOperatorPlace, spoiled, sizeof(spoiled));
   store_.write_record(kOperatorPlace + 1, spoiled, sizeof(spoiled));
   UploadRig rig(store_, key_);
-  EXPECT_TRUE(rig.service().operator_memory().lost());
+  EXPECT_TRUE(rig.service().operator_memory().damaged());
   rig.run(3000);
   EXPECT_EQ(mode(rig), Mode::kReady);
   give(rig, Command::kActivate, 2000);
   EXPECT_EQ(mode(rig), Mode::kActive);
+  EXPECT_FALSE(rig.service().operator_memory().damaged()) << "the operator has decided";
+}
+
+// The newest record may have said: deactivated. With one record only, and with an older one beside it that
+// says activated, a damage brought the correction back.
+TEST_F(OperatorSetting, AnyDamageOfOneRecordKeepsTheCorrectionOut) {
+  const std::vector<std::vector<Command>> kHistories = {
+      {Command::kDeactivate},
+      {Command::kDeactivate, Command::kActivate},
+      {Command::kDeactivate, Command::kActivate, Command::kDeactivate}};
+  int starts = 0;
+  for (const auto& history : kHistories) {
+    SimSlotStore sound = store_;
+    {
+      UploadRig rig(sound, key_);
+      rig.run(3000);
+      for (const Command command : history) give(rig, command);
+    }
+    const bool out = history.back() == Command::kDeactivate;
+    {
+      SimSlotStore store = sound;
+      UploadRig rig(store, key_);
+      ASSERT_EQ(rig.service().operator_memory().found(), OperatorRecordsState::kIntact);
+      ASSERT_EQ(rig.service().deactivated(), out) << "without a damage";
+    }
+    for (const std::uint32_t place : {kOperatorPlace, kOperatorPlace + 1}) {
+      const auto expect_out = [&](SimSlotStore& store, const std::string& what) {
+        UploadRig rig(store, key_);
+        EXPECT_TRUE(rig.service().deactivated()) << what << ", place " << place;
+        EXPECT_TRUE(rig.service().operator_memory().damaged()) << what << ", place " << place;
+        if (++starts % 16 != 0) return;
+        rig.run(3);
+        // The next start finds the same decision in two sound records.
+        UploadRig next(store, key_);
+        EXPECT_TRUE(next.service().deactivated()) << what << ", place " << place;
+        EXPECT_EQ(next.service().operator_memory().found(), OperatorRecordsState::kIntact) << what;
+      };
+      for (std::uint32_t byte = 0; byte < sizeof(OperatorRecord); ++byte) {
+        SimSlotStore store = sound;
+        std::uint8_t bytes[sizeof(OperatorRecord)];
+        store.read_record(place, bytes, sizeof(bytes));
+        bytes[byte] ^= 0x10;
+        store.write_record(place, bytes, sizeof(bytes));
+        expect_out(store, "changed byte " + std::to_string(byte));
+      }
+      for (std::uint32_t size = 0; size < sizeof(OperatorRecord); ++size) {
+        SimSlotStore store = sound;
+        store.cut_record(place, size);
+        expect_out(store, "cut to " + std::to_string(size));
+      }
+      SimSlotStore store = sound;
+      const std::uint8_t zeros[sizeof(OperatorRecord)] = {};
+      store.write_record(place, zeros, sizeof(zeros));
+      expect_out(store, "zeros");
+      // A copy of the other record, as from a backup.
+      store = sound;
+      std::uint8_t other[sizeof(OperatorRecord)];
+      store.read_record(2 * kOperatorPlace + 1 - place, other, sizeof(other));
+      store.write_record(place, other, sizeof(other));
+      expect_out(store, "twice the same");
+    }
+  }
+}
+
+// Half a record was begun: its setting is unknown.
+TEST_F(OperatorSetting, PowerLostInADeactivationNeverActivates) {
+  for (const bool first : {true, false}) {
+    SimSlotStore before = store_;
+    if (!first) {
+      UploadRig rig(before, key_);
+      rig.run(3000);
+      give(rig, Command::kHold);
+      give(rig, Command::kRelease);
+    }
+    for (std::uint64_t cut = 0; cut <= 2 * sizeof(OperatorRecord); ++cut) {
+      SimSlotStore store = before;
+      {
+        UploadRig rig(store, key_);
+        rig.run(1000);
+        store.cut_power_after(cut);
+        give(rig, Command::kDeactivate, 10);
+      }
+      store.restore_power();
+      UploadRig rig(store, key_);
+      // The magic is that of the record before: nothing of the change is on the medium, and the operator has
+      // no answer by then.
+      EXPECT_EQ(rig.service().deactivated(), cut > (first ? 0 : sizeof(kOperatorMagic)))
+          << cut << " bytes" << (first ? ", first setting" : "");
+    }
+  }
 }
 
 // The power fails after every byte that a change of the setting writes.

@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kHeader = 300ms;
+constexpr auto kHeader = 300ms, kBody = 600ms;
 /// A new request among many bad ones: a few ms, and what a busy computer adds.
 constexpr auto kSoon = 200ms;
 const std::string kRequest = "GET / HTTP/1.1\r\nHost: x\r\n\r\n", kHalf = "GET / HTTP/1.1\r\nHost: x\r\n";
@@ -90,7 +90,8 @@ class Gate : public testing::Test {
     return clients;
   }
 
-  http::GatedServer server_{{.threads = 2, .most_waiting = 50, .header = kHeader, .idle = 5000ms}};
+  http::GatedServer server_{
+      {.threads = 2, .most_waiting = 50, .header = kHeader, .idle = 5000ms, .body = kBody}};
   int port_ = 0;
   std::thread thread_;
 };
@@ -140,10 +141,39 @@ TEST_F(Gate, AConnectionIsUsedAgainAndBytesThatCameEarlyAreKept) {
   }
 }
 
+// Each body held a thread until its end: as many as threads, and nobody had an answer.
+TEST_F(Gate, BodiesThatAreNotCompleteHoldNoThreadAndHaveADeadline) {
+  std::vector<std::unique_ptr<Client>> bodies;
+  for (int i = 0; i < 40; ++i) {
+    bodies.push_back(std::make_unique<Client>(port_));
+    ASSERT_TRUE(bodies.back()->send("POST / HTTP/1.1\r\nHost: x\r\ncontent-length:  30\r\n\r\nabc"));
+  }
+  std::this_thread::sleep_for(50ms);
+  const auto begin = Clock::now();
+  const Client fresh(port_);
+  ASSERT_TRUE(fresh.send(kRequest));
+  EXPECT_NE(fresh.answer("yes").find("200 OK"), std::string::npos);
+  EXPECT_LT(Clock::now() - begin, kSoon);
+  // One that completes its body has its answer; the others a refusal.
+  ASSERT_TRUE(bodies[3]->send(std::string(27, 'd')));
+  EXPECT_NE(bodies[3]->answer("posted").find("200 OK"), std::string::npos);
+  EXPECT_NE(bodies[7]->answer("\r\n\r\n").find("408"), std::string::npos);
+  EXPECT_LT(Clock::now() - begin, kBody + kSoon);
+}
+
+TEST_F(Gate, ALargeBodyArrivesWhole) {
+  const Client client(port_);
+  const std::string body(3'000'000, 'b');
+  ASSERT_TRUE(client.send("POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 3000000\r\n\r\n" + body + kRequest));
+  const std::string both = client.answer("yes");
+  EXPECT_NE(both.find("posted"), std::string::npos);
+  EXPECT_NE(both.find("yes"), std::string::npos);
+}
+
 TEST_F(Gate, StopsWhileClientsAreSilent) {
   const auto clients = half_open(20);
   std::vector<std::unique_ptr<Client>> bodies;
-  for (int i = 0; i < 2; ++i) {  // each holds a thread
+  for (int i = 0; i < 2; ++i) {
     bodies.push_back(std::make_unique<Client>(port_));
     ASSERT_TRUE(bodies.back()->send("POST / HTTP/1.1\r\nContent-Length: 30\r\n\r\nabc"));
   }

@@ -234,5 +234,29 @@ TEST(ImportCommand, IsGivenForSpreadsheetsOnly) {
             "vernier import laser 'run 1.RTL' -o 'run 1_read.csv'");
 }
 
+// A file of one long word was printed whole, with its terminal sequences.
+TEST(LintLine, QuotesAShortWordAndNoControlCharacter) {
+  LintFinding finding;
+  finding.file = "a\033[31m.csv";
+  finding.line = 3;
+  finding.word = std::string(1'000'000, 'x') + "\033[0m";
+  finding.what = "unknown \033]0;title\a";
+  const std::string line = in_one_line(finding);
+  EXPECT_LT(line.size(), 400u);
+  EXPECT_EQ(line.find('\033'), std::string::npos);
+  EXPECT_TRUE(line.starts_with("a?[31m.csv:3: ")) << line;
+  EXPECT_NE(line.find("x... (999804 more bytes)"), std::string::npos) << line;
+}
+
+TEST(Messages, OfACommandAreShortAndPrintable) {
+  const text::InputError error({"b\033.csv", 2}, std::string(5000, 'y'), "unknown");
+  EXPECT_LT(std::string(error.what()).size(), 300u);
+  EXPECT_EQ(text::shown_message("a\033b\nc\rd\n"), "a?b\nc?d\n") << "its lines stay lines";
+  EXPECT_LT(text::shown_message(std::string(30'000'000, 'z')).size(), 5000u);
+  // The cut is between characters.
+  EXPECT_TRUE(
+      text::quotable(std::string(199, 'a') + "\u00b5m").starts_with(std::string(199, 'a') + "... (3"));
+}
+
 }  // namespace
 }  // namespace vernier::measurement_lint_test

@@ -106,7 +106,9 @@ struct Echo : CommandHandler {
     return static_cast<std::uint32_t>(kept.size());
   }
   void fill_registers(std::uint16_t* values) override { values[kLiveMode] = 3; }
-  bool give(std::uint16_t command) override { return command == 2; }
+  CommandGiven give(std::uint16_t command) override {
+    return command == 2 ? CommandGiven::kTaken : command == 4 ? CommandGiven::kLater : CommandGiven::kRefused;
+  }
   std::vector<std::uint8_t> kept;
   bool late = false;
   std::uint32_t asked_with = 0;
@@ -134,8 +136,10 @@ TEST(Hatch, LinkBehindItAnswersAsTheHandlerDoes) {
   std::uint16_t values[kLiveRegisters] = {};
   handler.fill_registers(values);
   EXPECT_EQ(values[kLiveMode], 3);
-  EXPECT_TRUE(handler.give(2));
-  EXPECT_FALSE(handler.give(3));
+  EXPECT_EQ(handler.give(2), CommandGiven::kTaken);
+  EXPECT_EQ(handler.give(3), CommandGiven::kRefused);
+  EXPECT_EQ(handler.give(4), CommandGiven::kLater);
+  EXPECT_EQ(handler.ticket(), 41u);
   stop = true;
   component.join();
 }

@@ -3,7 +3,10 @@
 // number that changes does.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <utility>
 
 #include "comp/probing/latch.h"
 #include "comp/probing/touch_filter.h"
@@ -201,6 +204,7 @@ std::string message_codes() {
   VERNIER_CODE(LinkStatus, kUnsigned);
   VERNIER_CODE(LinkStatus, kBadSignature);
   VERNIER_CODE(LinkStatus, kStale);
+  VERNIER_CODE(LinkStatus, kNotStored);
   VERNIER_CODE(LiveRegister, kLiveLayout);
   VERNIER_CODE(LiveRegister, kLiveMode);
   VERNIER_CODE(LiveRegister, kLiveFault);
@@ -212,6 +216,7 @@ std::string message_codes() {
   VERNIER_CODE(LiveRegister, kLiveWeight);
   VERNIER_CODE(LiveRegister, kLiveLimits);
   VERNIER_CODE(LiveRegister, kLiveSince);
+  VERNIER_CODE(LiveRegister, kLiveSettings);
   VERNIER_CODE(LiveRegister, kLiveAxes);
   VERNIER_CODE(LiveRegister, kLiveInputs);
   VERNIER_CODE(LiveRegister, kLiveFingerprint);
@@ -221,6 +226,8 @@ std::string message_codes() {
   VERNIER_CODE(ImageState, kConfirmed);
   VERNIER_CODE(ImageState, kTrial);
   VERNIER_CODE(ImageState, kLost);
+  VERNIER_CODE(SettingFlag, kSettingDamaged);
+  VERNIER_CODE(SettingFlag, kSettingRefused);
   VERNIER_CODE(AxisLimitFlag, kAtImageLimit);
   VERNIER_CODE(AxisLimitFlag, kAtBoardLimit);
   VERNIER_CODE(AxisLimitFlag, kAtOutputLimit);
@@ -232,6 +239,33 @@ TEST(GoldenCodes, OfTheLink) {
   expect_golden("link_codes_v" + std::to_string(kLinkVersion) + ".txt",
                 "= codes of the link, version " + std::to_string(kLinkVersion) + "\n" + message_codes() +
                     state_codes() + upload_codes());
+}
+
+// The page said 2 in register 0.
+TEST(GoldenCodes, PageOfTheLinkHasTheRegistersAndTheVersion) {
+  std::ifstream file(VERNIER_SOURCE_DIR "/tools/docs/link.md");
+  const std::string page((std::istreambuf_iterator<char>(file)), {});
+  const std::string version = std::to_string(kLinkVersion);
+  const auto row = [](int first, int last = -1) {
+    return "\n| " + std::to_string(first) + (last < 0 ? "" : "-" + std::to_string(last)) + " | ";
+  };
+  const std::pair<std::string, const char*> kRows[] = {
+      {row(kLiveLayout), "version of the layout"},
+      {row(kLiveLatency), "99th percentile"},
+      {row(kLiveImage), "running image"},
+      {row(kLiveWeight), "weight"},
+      {row(kLiveLimits), "bit i"},
+      {row(kLiveSince, kLiveSince + 1), "time in s"},
+      {row(kLiveSettings), "stored settings"},
+      {row(kLiveFingerprint, kLiveFingerprint + 3), "fingerprint"}};
+  for (const auto& [begin, text] : kRows)
+    EXPECT_NE(page.find(begin + text), std::string::npos) << begin << text;
+  EXPECT_NE(page.find(row(kLiveLayout) + "version of the layout, " + version + " |"), std::string::npos);
+  EXPECT_NE(page.find("tests/golden/link_v" + version + ".txt"), std::string::npos);
+  EXPECT_NE(page.find("\n| " + std::to_string(kLiveAxes) + " + 4 i | axis i"), std::string::npos);
+  EXPECT_NE(page.find("\n| " + std::to_string(kLiveInputs) + " + 2 i | input i"), std::string::npos);
+  EXPECT_NE(page.find("\n| " + std::to_string(kLiveAxisWeights) + " + i | weight of axis i"),
+            std::string::npos);
 }
 
 // Lists above that lack a code would let it wander.

@@ -265,8 +265,8 @@ void talk_of_state(Talk& talk) {
             {"execution p99", 8},
             {"execution p99.9", 8},
             {"execution maximum", 8}});
-  std::vector<Field> state = {
-      {"fingerprint", 8}, {"since_us", 8}, {"weight", 4}, {"image", 1}, {"reserved", 3}};
+  std::vector<Field> state = {{"fingerprint", 8}, {"since_us", 8}, {"weight", 4},
+                              {"image", 1},       {"settings", 1}, {"reserved", 2}};
   for (int i = 0; i < 3; ++i)
     state = state + std::vector<Field>{{"wanted", 4}, {"achieved", 4}, {"weight", 4}, {"limits", 1}};
   talk.say("what runs", LinkOp::kState, {}, {}, state);

@@ -7,6 +7,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace vernier::commands::lint_cli {
 namespace {
@@ -42,7 +43,8 @@ void run_lint(const LintArguments& arguments) {
     for (const lint::LintFinding& finding : file.findings)
       fmt::print(out, "{}\n", lint::in_one_line(finding));
     if (file.findings.empty())
-      fmt::print(out, "{}: nothing odd about this {} file\n", file.file, lint::linted_kind_name(file.kind));
+      fmt::print(out, "{}: nothing odd about this {} file\n", text::printable(file.file),
+                 lint::linted_kind_name(file.kind));
     useless += file.usable ? 0 : 1;
   }
   if (useless > 0)
