@@ -26,6 +26,9 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
 /// texts of a board through this function. tool.
 std::string printable(std::string_view text);
 
+/// Returns the text with "?" in place of each byte that is not UTF-8. tool.
+std::string utf8_only(std::string_view text);
+
 /// True if the brackets of a JSON text nest deeper than `most`. Text in strings does not count. Call
 /// nests_deeper_than before the parser for any text from outside. Deep nesting would exhaust the stack of the
 /// parser, or of code that walks its tree.
