@@ -13,6 +13,7 @@
 #include "tools/fit/coverage/reach.h"
 #include "tools/fit/coverage/unmeasured.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/set_up.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/chain/prediction.h"
 #include "tools/model/chain/work_poses.h"
@@ -191,6 +192,22 @@ TEST(FitFindings, AStepOfTheInstrumentHasItsSizeAndTheRowOfTheFile) {
       EXPECT_NEAR(step.height * kU_mm, 0.06, 5 * step.std * kU_mm + 0.002) << seed;
     }
   }
+}
+
+TEST(OtherSetUp, AFileOfAnotherSetUpIsNamedWithBothResiduals) {
+  const Machine bridge = parse_machine(support::bridge_text(7), "bridge.xml");
+  const auto none = [](int) { return Eigen::Vector3d::Zero(); };
+  Measurement m = survey_of(bridge, 9, none);
+  EXPECT_TRUE(files_set_up_elsewhere(bridge, m).empty());
+  // GIVEN a file of check rows, read by an instrument that stood a metre away
+  for (Observation& o : m.observations) o.value += o.kind == ObservationKind::kX ? 1000 : 0;
+  m.check.assign(m.check.size(), 1);
+  const std::vector<OtherSetUp> found = files_set_up_elsewhere(bridge, m);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].before_um, 1e6 / std::sqrt(3), 1e3);
+  EXPECT_LT(found[0].own_um, 3);
+  EXPECT_NE(found[0].sentence().find("s.csv: the set-up of this file is not known to the model"),
+            std::string::npos);
 }
 
 TEST(FitFindings, AReversalErrorIsNoDisturbance) {
