@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "tools/effects/probe.h"
+#include "tools/fit/fit.h"
 #include "tools/fit/noise/noise.h"
 #include "tools/fit/set_up.h"
 #include "tools/fit/solve.h"
@@ -32,6 +33,9 @@ constexpr double kOwn = 1e-3;
 /// Share of a column's length, without the set-up, below which the column is rounding: no independent
 /// direction and no degree of freedom.
 constexpr double kRounding = 1e-7;
+/// Effect of a change by 1 on the readings, of the largest effect of a parameter with the same unit. Below it
+/// a change that the readings show is not plausible: 5 u of 2 um at a reach of 1 m need 6 deg.
+constexpr double kLeastEffect = 1e-4;
 
 /// Collects the columns of the tested parameters, weighted, with the set-up projected out.
 class Collector {
@@ -56,6 +60,7 @@ class Collector {
     record_.gram = x.transpose() * x;
     record_.moment = x.transpose() * residual_;
     const MatrixXd basis = maths::orthonormal(x, 1e-6, nullptr);
+    record_.square = residual_.squaredNorm();
     record_.rest = (residual_ - basis * (basis.transpose() * residual_)).squaredNorm();
     record_.beyond_set_up = static_cast<double>(weight_.size() - set_up_.cols());
     record_.freedom = static_cast<double>(weight_.size() - set_up_.cols() - basis.cols());
@@ -131,14 +136,22 @@ class Collector {
     for (std::size_t i = 0; i < m_.observations.size(); ++i)
       left[static_cast<Index>(i)] = m_.observations[i].value - linear.predicted[static_cast<Index>(i)];
     residual_ = beside_set_up(left);
+    std::map<std::string, double> largest;  // effect of the parameters of each unit of lengths and angles
+    for (const Index i : others)
+      if (const std::string& unit = parameters[static_cast<std::size_t>(i)].unit;
+          unit == "mm" || unit == "deg" || unit == "rad")
+        largest[unit] = std::max(largest[unit], jacobian.col(i).norm());
     for (const Index i : others) {
       const model::Parameter& p = parameters[static_cast<std::size_t>(i)];
-      columns_.push_back(beside_set_up(jacobian.col(i)));
+      const auto most = largest.find(p.unit);
+      const bool has_effect = most == largest.end() || jacobian.col(i).norm() > kLeastEffect * most->second;
+      columns_.push_back(has_effect ? beside_set_up(jacobian.col(i)) : VectorXd::Zero(weight_.size()));
       raw_.push_back(weight_.cwiseProduct(VectorXd(jacobian.col(i))));
       record_.suspects.push_back({p.name, p.unit, false});
     }
     record_.parameters = columns_.size();
-    for (const VectorXd& column : columns_) known_.push_back(column.normalized());
+    for (const VectorXd& column : columns_)
+      if (column.norm() > 0) known_.push_back(column.normalized());
   }
 
   void offer(Suspect suspect, const VectorXd& raw) {
@@ -236,6 +249,13 @@ MatrixXd spread_of_fit(const model::Machine& machine, const std::vector<Suspect>
       spread.row(static_cast<Index>(i)) = fitted.factor.row(found - fitted.parameters.begin());
   }
   return spread;
+}
+
+bool is_unmeasured(const model::Machine& machine, const Suspect& suspect) {
+  const model::FitRecord& fitted = *machine.fitted;
+  const auto found = std::find(fitted.parameters.begin(), fitted.parameters.end(), suspect.name);
+  const auto at = static_cast<std::size_t>(found - fitted.parameters.begin());
+  return at < fitted.origins.size() && fitted.origins[at] == fit::origin_name(fit::Origin::kPrior);
 }
 
 CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,

@@ -25,9 +25,14 @@ struct CheckRecord {
   Eigen::MatrixXd gram;           // tested parameters x tested parameters
   Eigen::VectorXd moment;
   double rest = 0, freedom = 0;  // chi^2 without all tested parameters, and its degrees of freedom
+  double square = 0;             // chi^2 of the readings after projection of the set-ups; 0: not known
   std::size_t readings = 0;
   double beyond_set_up = 0;  // number of readings minus numbers of the set-up
 };
+
+/// True for a parameter of the machine that no reading of the fit determined (origin prior): a check cannot
+/// tell its change from its unknown value.
+bool is_unmeasured(const model::Machine& machine, const Suspect& suspect);
 
 /// Evaluates a measurement against a fitted machine; fit and check rows are treated alike. The set-up of the
 /// instrument is fitted again, with any rotation. The sensitivities are computed at the new set-up. Tested

@@ -28,6 +28,9 @@ constexpr double kSeen = 1e-6;
 constexpr double kScatterShare = 0.2;
 /// Standard deviations of a change that a check is sure to show.
 constexpr double kShown = 5;
+/// Chance of the scatter below which it reduces the evidence of its check. Scatter by chance would hide one
+/// change in 40 (measured with Checks.AChangeIsNamedWithItsSize).
+constexpr double kLoudChance = 1e-3;
 /// Sizes of a change, in standard deviations of the first check that could show it, that are mixed with equal
 /// weight.
 constexpr std::array kSizes = {2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
@@ -35,9 +38,11 @@ constexpr std::array kSizes = {2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
 /// Evidence on one tested parameter from a certain check onwards.
 struct Information {
   double amount = 0, score = 0;  // of a change by 1; its most likely value is score / amount
-  double log_ratio(double size) const {
+  /// scatter: square of the readings' noise over their stated uncertainty, at least 1. It reduces the
+  /// evidence only: the expected ratio without a change stays below 1.
+  double log_ratio(double size, double scatter) const {
     const double share = size * size * amount;
-    return -0.5 * std::log1p(share) + 0.5 * size * size * score * score / (1 + share);
+    return -0.5 * std::log1p(share) + 0.5 * size * size * score * score / (1 + share) / scatter;
   }
 };
 
@@ -58,6 +63,7 @@ class Judge {
         std::vector<std::string> left_out, double false_alarms)
       : checks_(checks), last_(checks.back()), left_out_(std::move(left_out)), false_alarms_(false_alarms) {
     answer_.alarm = 1 / ((1 - kScatterShare) * false_alarms);
+    for (const Suspect& one : last_.suspects) unmeasured_.push_back(is_unmeasured(machine, one));
     const MatrixXd spread = spread_of_fit(machine, last_.suspects, last_.parameters);
     const auto p = static_cast<Index>(last_.parameters);
     from_.resize(checks.size());
@@ -69,18 +75,22 @@ class Judge {
       from_[k].moment += from_[k + 1].moment;
     }
     // Uncertainty of the fit, reduced by the checks up to each one: L (1 + L' G L)^-1 L'.
+    const auto doubt_beside = [&](const MatrixXd& gram) -> MatrixXd {
+      const MatrixXd inner =
+          MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * gram * spread;
+      return spread * maths::solve_positive(inner, spread.transpose());
+    };
     MatrixXd told = MatrixXd::Zero(p, p);
     for (const CheckRecord& check : checks) {
       told += check.gram.topLeftCorner(p, p);
-      const MatrixXd inner =
-          MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * told * spread;
-      doubt_after_.push_back(spread * maths::solve_positive(inner, spread.transpose()));
+      doubt_after_.push_back(doubt_beside(told));
+      doubt_of_.push_back(doubt_beside(check.gram.topLeftCorner(p, p)));
     }
   }
 
   CheckAnswer answer() {
-    weigh();
     look_at_noise();
+    weigh();
     decide();
     return std::move(answer_);
   }
@@ -149,13 +159,13 @@ class Judge {
       for (const Index j : known) {
         const Information one = information(since, j);
         const auto first = first_look(since, j);
-        if (!first || !is_seen(since, j, one)) {
+        if (!first || unmeasured_[static_cast<std::size_t>(j)] || !is_seen(since, j, one)) {
           all.push_back(share);
           continue;
         }
         std::vector<double> sizes;
         for (const double size : kSizes)
-          sizes.push_back(one.log_ratio(size / std::sqrt(first_amount(*first, j))));
+          sizes.push_back(one.log_ratio(size / std::sqrt(first_amount(*first, j)), scatter_since(since)));
         const double ratio = share + log_sum(sizes) - std::log(static_cast<double>(kSizes.size()));
         all.push_back(text::decisive(
             ratio, "the evidence for a change of " + last_.suspects[static_cast<std::size_t>(j)].name));
@@ -172,14 +182,15 @@ class Judge {
       const std::size_t since = std::max_element(ratios.begin(), ratios.end())->second;
       const Information one = information(since, j);
       ranked_.push_back({last_.suspects[static_cast<std::size_t>(j)], one.score / one.amount,
-                         1 / std::sqrt(one.amount), std::exp(log_sum(logs) - total), since});
+                         std::sqrt(scatter_since(since) / one.amount), std::exp(log_sum(logs) - total),
+                         since});
     }
     std::sort(ranked_.begin(), ranked_.end(),
               [](const Change& a, const Change& b) { return a.weight > b.weight; });
     for (Index j = 0; j < static_cast<Index>(last_.parameters); ++j) {
       const Information one = information(checks_.size() - 1, j);
       const Suspect& suspect = last_.suspects[static_cast<std::size_t>(j)];
-      if (!is_seen(checks_.size() - 1, j, one))
+      if (unmeasured_[static_cast<std::size_t>(j)] || !is_seen(checks_.size() - 1, j, one))
         answer_.not_seen.push_back(suspect.name);
       else
         answer_.resolved.push_back({suspect, 0, 1 / std::sqrt(one.amount), 0, checks_.size() - 1});
@@ -192,10 +203,46 @@ class Judge {
     return amount_beside(checks_[first].gram, suspect, doubt_after_[first]);
   }
 
+  /// chi^2 of one check that remains beside the uncertainty of the fit and the change of any one tested
+  /// parameter. Without a change it is at most that of its degrees of freedom.
+  struct Remainder {
+    double square = 0, freedom = 0;
+  };
+  Remainder beside_one_change(std::size_t k) const {
+    const CheckRecord& check = checks_[k];
+    if (!(check.square > 0) || check.beyond_set_up < 2) return {};
+    const MatrixXd& doubt = doubt_of_[k];
+    const VectorXd moment = check.moment.head(doubt.rows());
+    const double whole = std::max(0.0, check.square - moment.dot(doubt * moment));
+    double best = whole;
+    for (Index j = 0; j < check.gram.rows(); ++j) {
+      const VectorXd with = parameters_of(check.gram, j);
+      const double amount = check.gram(j, j) - with.dot(doubt * with);
+      if (unmeasured_[static_cast<std::size_t>(j)] || !(amount > kSeen * check.gram(j, j))) continue;
+      const double score = check.moment[j] - with.dot(doubt * moment);
+      best = std::min(best, whole - score * score / amount);
+    }
+    return {std::max(0.0, best), check.beyond_set_up - 1};
+  }
+
+  /// Square of the noise over the stated uncertainty, of the worst check since then.
+  double scatter_since(std::size_t since) const {
+    return *std::max_element(scatter_.begin() + static_cast<std::ptrdiff_t>(since), scatter_.end());
+  }
+
+  /// Two tests of the scatter have half of its share each: the readings beside all tested parameters, and
+  /// beside the most likely change of one of them.
   void look_at_noise() {
-    if (last_.freedom < 1) return;
-    answer_.noise_p = text::decisive(maths::chi_square_tail(last_.rest, last_.freedom),
-                                     "the chance of the readings' scatter");
+    for (std::size_t k = 0; k < checks_.size(); ++k) {
+      const Remainder one = beside_one_change(k);
+      const bool loud = one.freedom > 0 && maths::chi_square_tail(one.square, one.freedom) < kLoudChance;
+      scatter_.push_back(loud ? std::max(1.0, one.square / one.freedom) : 1.0);
+    }
+    if (last_.freedom >= 1) rest_p_ = std::min(1.0, 2 * maths::chi_square_tail(last_.rest, last_.freedom));
+    double chance = rest_p_;
+    if (const Remainder one = beside_one_change(checks_.size() - 1); one.freedom > 0)
+      chance = std::min(chance, 2 * maths::chi_square_tail(one.square, one.freedom));
+    answer_.noise_p = text::decisive(chance, "the chance of the readings' scatter");
   }
 
   /// Numbers beyond the set-up of all checks. With fewer than three, any of them may belong to any tested
@@ -233,8 +280,12 @@ class Judge {
   void decide() {
     state_rules();
     const bool alarm = fails("evidence");
-    if (fails("scatter") || (alarm && !ranked_.empty() && ranked_.front().suspect.of_instrument))
-      return report_instrument();
+    const bool scatters = fails("scatter");
+    const bool beside_all = rest_p_ < scatter_limit(false_alarms_, static_cast<double>(checks_.size()));
+    // A change that is evident beside the larger noise is reported.
+    if (beside_all || (scatters && !alarm) ||
+        (alarm && !ranked_.empty() && ranked_.front().suspect.of_instrument))
+      return report_instrument(scatters && (beside_all || !alarm), beside_all);
     if (fails("readings") || fails("sensitivity")) {
       answer_.verdict = CheckVerdict::kTooLittle;
       answer_.explanation =
@@ -253,16 +304,20 @@ class Judge {
                       fmt::join(answer_.not_seen, ", "));
   }
 
-  void report_instrument() {
+  void report_instrument(bool scatters, bool beside_all) {
     answer_.verdict = CheckVerdict::kInstrument;
+    if (!scatters) {
+      answer_.explanation =
+          fmt::format("{} by {:.3g} {} +- {:.2g}.", ranked_.front().suspect.name, ranked_.front().change,
+                      ranked_.front().suspect.unit, ranked_.front().std);
+      return;
+    }
     answer_.explanation =
-        fails("scatter")
-            ? fmt::format(
-                  "The readings scatter by {:.2g} times their stated uncertainty, whatever may have "
-                  "changed in the machine (chance {:.1g}).",
-                  std::sqrt(last_.rest / last_.freedom), answer_.noise_p)
-            : fmt::format("{} by {:.3g} {} +- {:.2g}.", ranked_.front().suspect.name, ranked_.front().change,
-                          ranked_.front().suspect.unit, ranked_.front().std);
+        fmt::format("The readings scatter by {:.2g} times their stated uncertainty, {} (chance {:.1g}).",
+                    std::sqrt(beside_all ? last_.rest / last_.freedom : scatter_.back()),
+                    beside_all ? "whatever may have changed in the machine"
+                               : "and no change of one parameter explains it",
+                    answer_.noise_p);
   }
 
   void report_change() {
@@ -276,6 +331,10 @@ class Judge {
     answer_.explanation =
         fmt::format("{} has changed by {:.4g} +- {:.2g} {} since check {} ({}).", best.suspect.name,
                     best.change, best.std, best.suspect.unit, best.since + 1, checks_[best.since].label);
+    constexpr double kLoud = 1.5;  // times the stated uncertainty
+    if (const double loud = std::sqrt(scatter_since(best.since)); loud > kLoud)
+      answer_.explanation += fmt::format(
+          " Beside this change the readings scatter by {:.2g} times their stated uncertainty.", loud);
     if (!answer_.not_told_apart.empty())
       answer_.explanation += fmt::format(" These readings do not distinguish it from: {}.",
                                          fmt::join(answer_.not_told_apart, ", "));
@@ -285,8 +344,11 @@ class Judge {
   const CheckRecord& last_;
   std::vector<std::string> left_out_;
   double false_alarms_;
-  std::vector<Sum> from_;  // over the checks from each on
-  std::vector<MatrixXd> doubt_after_;
+  std::vector<Sum> from_;                         // over the checks from each on
+  std::vector<MatrixXd> doubt_after_, doubt_of_;  // after the checks up to each; after each one alone
+  std::vector<double> scatter_;                   // of each check, as scatter_since
+  std::vector<bool> unmeasured_;                  // by no reading of the fit
+  double rest_p_ = 1;
   std::vector<Change> ranked_;
   CheckAnswer answer_;
 };
@@ -332,12 +394,13 @@ CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>&
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto k = static_cast<double>(i + 1);
     if (all[i].freedom < 1 ||
-        maths::chi_square_tail(all[i].rest, all[i].freedom) >= scatter_limit(false_alarms, k))
+        2 * maths::chi_square_tail(all[i].rest, all[i].freedom) >= scatter_limit(false_alarms, k))
       continue;
     // Scatter and evidence come from different parts of the readings: the exclusion of a check favours no
     // parameter.
     all[i].gram.setZero();
     all[i].moment.setZero();
+    all[i].square = 0;
     if (i + 1 < all.size()) left_out.push_back(all[i].label);
   }
   return Judge(machine, all, std::move(left_out), false_alarms).answer();

@@ -64,6 +64,7 @@ std::string history_text(const CheckHistory& history) {
                               {"gram", numbers(check.gram)},
                               {"moment", numbers(check.moment)},
                               {"rest", check.rest},
+                              {"square", check.square},
                               {"freedom", check.freedom}});
   }
   return json.dump(1) + "\n";
@@ -92,6 +93,7 @@ CheckHistory parse_history(const std::string& text, const std::string& file) {
       check.gram = matrix_of(one.at("gram"), count, count);
       check.moment = matrix_of(one.at("moment"), count, 1);
       check.rest = one.at("rest").get<double>();
+      check.square = one.value("square", 0.0);  // older histories have none
       check.freedom = one.at("freedom").get<double>();
       if (check.parameters > check.suspects.size())
         throw std::invalid_argument("more parameters than tested parameters");

@@ -32,11 +32,16 @@ namespace {
 
 /// Returns the rows that the fit needs: the fit rows, or all rows if lag makes a row depend on
 /// those before it.
-model::Measurement rows_for_fit(const model::Machine& machine, const model::Measurement& all) {
-  if (model::uses_lag(machine)) return all;
+/// Indices of the rows that a fit reads, in the measurement.
+std::vector<std::size_t> kept_for_fit(const model::Machine& machine, const model::Measurement& all) {
+  const bool whole = model::uses_lag(machine);
   std::vector<std::size_t> keep;
   for (std::size_t row = 0; row < all.rows(); ++row)
-    if (all.check[row] == 0) keep.push_back(row);
+    if (whole || all.check[row] == 0) keep.push_back(row);
+  return keep;
+}
+model::Measurement rows_for_fit(const model::Machine& machine, const model::Measurement& all) {
+  const std::vector<std::size_t> keep = kept_for_fit(machine, all);
   return keep.size() == all.rows() ? all : model::select_rows(all, keep);
 }
 
@@ -171,8 +176,10 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
 
 /// Finds what moved during the survey outside the machine: the largest step or drift of the
 /// instrument, or a residual far above its noise, divided by the residual of the nominal machine.
-void find_disturbance(const FitResult& result, const model::Measurement& rows, const Convention& convention,
-                      bool robust, model::FitRecord& record) {
+/// Returns true if the instrument or the set-up did; false if the residual alone is far above its noise,
+/// which a missing effect does as well.
+bool find_disturbance(const FitResult& result, const model::Measurement& rows, const model::Measurement& all,
+                      const Convention& convention, bool robust, model::FitRecord& record) {
   const auto offer = [&](double mm, std::string words) {
     if (!(mm / result.misfit_mm > record.disturbed)) return;
     record.disturbed = mm / result.misfit_mm;
@@ -183,29 +190,50 @@ void find_disturbance(const FitResult& result, const model::Measurement& rows, c
     const auto kind = static_cast<model::ObservationKind>(step.kind);
     if (model::is_rotation(kind)) continue;
     offer(1e-3 * std::abs(step.height) * unit.um,
-          fmt::format("a step of {:.3g} um in {} from row {} on", std::abs(step.height) * unit.um,
-                      format::name_of(static_cast<format::ReadingKind>(step.kind)), step.row + 1));
+          fmt::format("a step of {:.3g} um in {} from {} on", std::abs(step.height) * unit.um,
+                      format::name_of(static_cast<format::ReadingKind>(step.kind)),
+                      step.row < all.line.size()
+                          ? fmt::format("row {} ({}:{})", step.row + 1, all.files[all.file[step.row]],
+                                        all.line[step.row])
+                          : fmt::format("row {}", step.row + 1)));
   }
   const double drift = result.noise.drift * unit.of_all();
   offer(unit.angles_only ? drift / maths::kArcsecPerDeg * maths::kRadPerDeg * result.reach_mm : 1e-3 * drift,
         fmt::format("a drift of {:.3g} {}", drift, unit_name(unit.angles_only)));
   constexpr double kFarAbove = 5;  // times the noise
+  const std::string of_instrument = record.disturbance;
   if (!robust && result.noise_um && 1e3 * left_mm(result) > kFarAbove * *result.noise_um)
-    offer(left_mm(result), fmt::format("{:.3g} um are left of the readings, whose noise is {:.3g} um",
+    offer(left_mm(result), fmt::format("{:.3g} um are left of the readings, whose noise is {:.3g} um: the "
+                                       "model lacks an effect, or the survey was disturbed",
                                        1e3 * left_mm(result), *result.noise_um));
+  const bool only_residual = record.disturbance != of_instrument;
   // A shift whose direction rotates with the pose is not a step of any reading. Its influence on
   // the nominal machine would hide it in a share of that residual.
   constexpr double kAbove = 2;  // times the noise
   if (robust || result.parameters.size() == 0 ||
       (result.noise_um && 1e3 * left_mm(result) < kAbove * *result.noise_um))
-    return;
+    return !only_residual;
   model::Machine nominal = result.machine;
   result.parameters.set(nominal, convention.centre);
   const auto move = find_move(result.machine, rows, result.parameters, convention.centre, convention.scale,
                               residuals(nominal, rows));
-  if (!move || move->share <= record.disturbed) return;
+  if (!move || move->share <= record.disturbed) return !only_residual;
   record.disturbed = move->share;
   record.disturbance = move->words;
+  return true;
+}
+
+/// A residual far above its noise is no evidence of a disturbance: the finding of a missing effect states it.
+void leave_one_cause(std::vector<model::FitRecord::Finding>& findings) {
+  const bool missing = std::any_of(findings.begin(), findings.end(),
+                                   [](const auto& one) { return one.code == "something-missing"; });
+  const auto disturbed =
+      std::find_if(findings.begin(), findings.end(), [](const auto& one) { return one.code == "disturbed"; });
+  if (disturbed == findings.end()) return;
+  if (missing)
+    findings.erase(disturbed);
+  else
+    disturbed->text = "The model lacks an effect, or the survey was disturbed.";
 }
 
 /// Returns the noise for later checks of the machine. Steps of the instrument apply only to that
@@ -257,7 +285,7 @@ void remember(FitResult& result, const model::Measurement& rows, const model::Me
   record->check_ratio = result.check_ratio.value_or(0);
   record->check_count = result.check_ratio ? result.check.count : 0;
   record->worst_check = result.check_ratio ? result.worst_check.reading : "";
-  find_disturbance(result, rows, convention, robust, *record);
+  const bool by_instrument = find_disturbance(result, rows, all, convention, robust, *record);
   record->noise = kept_noise(result.noise, rows);
   record->values.resize(static_cast<Eigen::Index>(result.estimates.size()));
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
@@ -276,6 +304,7 @@ void remember(FitResult& result, const model::Measurement& rows, const model::Me
   record->unvaried = unvaried_dependences(readings);
   record->alternatives = find_alternatives(readings);
   record->findings = findings_of(result, *record, all);
+  if (!by_instrument) leave_one_cause(record->findings);
 }
 
 /// Returns the rms of a machine's check rows in the best set-up for them, um.
@@ -404,6 +433,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
     end = nothing_free(problem, result.before.count, with_u);
     result.converged = true;
   } else {
+<<<<<<< HEAD
     const auto solved = [&] {
       const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
       const bool squared = options.loss == Loss::kSquared;
@@ -414,6 +444,18 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
     };
     solved();
     if (hold_turned_away(end, convention)) solved();
+=======
+    const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
+    const bool squared = options.loss == Loss::kSquared;
+    end = squared ? settle(problem, near, convention, stated, result.before.count, with_u, options.noise)
+                  : describe(problem, near, convention, stated, result.before.count, with_u, options.noise);
+    // Steps were found among the rows of the fit, and are stated by the rows of the files.
+    const std::vector<std::size_t> keep = kept_for_fit(machine, measurement);
+    for (NoiseStep& step : end.noise.steps)
+      if (!options.noise && step.row < keep.size()) step.row = keep[step.row];
+    result.iterations += squared ? end.iterations : 0;
+    result.converged = result.converged && (!squared || end.converged);
+>>>>>>> journey2
   }
   result.parameters.set(result.machine, end.point);
   result.residual = residuals(result.machine, measurement);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/set_up.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "tools/fit/least_squares/levenberg.h"
 #include "tools/fit/least_squares/problem.h"
+#include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/selection.h"
 #include "tools/fit/unseen_turns.h"
 #include "tools/maths/alignment.h"
@@ -181,6 +184,37 @@ model::Machine set_up_anywhere(const model::Machine& machine, const model::Measu
   if (best.cost > kFound * static_cast<double>(rows.observations.size()))
     for (const Eigen::VectorXd& start : quarter_turns(own)) attempt(start);
   return best.machine;
+}
+
+std::string OtherSetUp::sentence() const {
+  return fmt::format(
+      "{}: the set-up of this file is not known to the model (residual {:.3g} um; {:.3g} um in a set-up of "
+      "its "
+      "own)",
+      file, before_um, own_um);
+}
+
+std::vector<OtherSetUp> files_set_up_elsewhere(const model::Machine& machine, const model::Measurement& m) {
+  constexpr double kFar_um = 500, kFalls = 20;
+  constexpr std::size_t kLeast = 9;  // readings: a set-up has six numbers
+  std::vector<OtherSetUp> list;
+  for (std::size_t file = 0; file < m.files.size(); ++file) {
+    std::vector<std::size_t> keep;
+    for (std::size_t row = 0; row < m.rows(); ++row)
+      if (m.file[row] == file) keep.push_back(row);
+    if (keep.empty()) continue;
+    model::Measurement rows = model::select_rows(m, keep);
+    rows.check.assign(rows.check.size(), 0);
+    if (rows.observations.size() < kLeast) continue;
+    const auto rms_um = [&](const model::Machine& one) {
+      return role_statistics(rows, residuals(one, rows), false).rms_um.value_or(0);
+    };
+    OtherSetUp one{m.files[file], rms_um(machine), 0};
+    if (one.before_um < kFar_um) continue;
+    one.own_um = rms_um(set_up_anywhere(machine, rows));
+    if (kFalls * one.own_um < one.before_um) list.push_back(std::move(one));
+  }
+  return list;
 }
 
 }  // namespace vernier::fit

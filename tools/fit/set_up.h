@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <string>
+#include <vector>
+
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
@@ -19,5 +22,18 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
 /// for readings of a known machine. A survey that will be fitted uses set_up(), because a rotated set-up can
 /// hide swapped columns of a flat survey. tool.
 model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& measured);
+
+/// A file whose set-up the machine does not know: the residual of its rows in the set-up of the machine, and
+/// in a set-up of its own, um.
+struct OtherSetUp {
+  std::string file;
+  double before_um = 0, own_um = 0;
+  /// "other.csv: the set-up of this file is not known to the model (residual …)".
+  std::string sentence() const;
+};
+
+/// Returns the files whose residual falls to a twentieth or less in a set-up of their own, and is above half
+/// a millimetre before. machine: as fitted or as given; check rows count as well. Lengths only. tool.
+std::vector<OtherSetUp> files_set_up_elsewhere(const model::Machine& machine, const model::Measurement& m);
 
 }  // namespace vernier::fit

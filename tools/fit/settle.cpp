@@ -10,6 +10,7 @@
 #include "tools/fit/noise/noise_estimate.h"
 #include "tools/fit/seen_errors.h"
 #include "tools/maths/decompositions.h"
+#include "tools/maths/orthonormal.h"
 
 namespace vernier::fit {
 namespace {
@@ -244,6 +245,16 @@ class Settler {
     result_.normal = std::move(data);
   }
 
+  /// Orthonormal directions of the readings that the parameters can follow. A column that moves the readings
+  /// by no more than rounding, at the scale of its parameter, is no direction.
+  MatrixXd fitted_directions(const MatrixXd& jacobian, double size) const {
+    constexpr double kRounding = 1e-6;  // of the residual
+    MatrixXd columns = jacobian * scale_.asDiagonal();
+    for (Eigen::Index k = 0; k < columns.cols(); ++k)
+      if (!(columns.col(k).norm() > kRounding * size)) columns.col(k).setZero();
+    return maths::orthonormal(columns, kRounding, nullptr);
+  }
+
   /// Returns J^T W cov(readings) W J. It is `variance` times the normal matrix if errors are
   /// independent. If they are correlated, it is their influence on a fit that assumed independence
   /// (White 1980).
@@ -269,8 +280,10 @@ class Settler {
       result_.noise = *noise_;
     } else {
       MatrixXd basis(residual.size(), 0);
-      if (n * p * p < kMostNoiseProducts) basis = maths::range_of(j);
-      result_.noise = estimate_noise(layout, residual, basis, with_u_);
+      if (n * p * p < kMostNoiseProducts) basis = fitted_directions(j, residual.norm());
+      // The scales leave a part of the fitted directions in the residual, which is no noise.
+      const VectorXd beside = residual - basis * (basis.transpose() * residual);
+      result_.noise = estimate_noise(layout, beside, basis, with_u_);
     }
     if (result_.noise.independent()) return result_.variance * data;
     MatrixXd hanging = j.transpose() * covariance_times(layout, result_.noise, j);

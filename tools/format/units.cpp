@@ -12,16 +12,18 @@ namespace {
 /// Standard gravity, mm/s^2 (ISO 80000-3).
 constexpr double kStandardGravity = 9806.65;
 
-constexpr std::array<Unit, 38> kUnits = {{
+constexpr std::array<Unit, 40> kUnits = {{
     {"", Dimension::kNone, 1, 0},
     {"mm", Dimension::kLength, 1, 0},
     {"um", Dimension::kLength, 1e-3, 0},
     {"m", Dimension::kLength, 1e3, 0},
     {"in", Dimension::kLength, 25.4, 0},
     {"thou", Dimension::kLength, 0.0254, 0},
+    {"uin", Dimension::kLength, 25.4e-6, 0},
     {"deg", Dimension::kAngle, 1, 0},
     {"rad", Dimension::kAngle, maths::kDegPerRad, 0},
     {"mrad", Dimension::kAngle, maths::kDegPerRad / 1000, 0},
+    {"urad", Dimension::kAngle, maths::kDegPerRad / 1e6, 0},
     {"arcmin", Dimension::kAngle, 1.0 / 60, 0},
     {"arcsec", Dimension::kAngle, 1.0 / 3600, 0},
     {"degC", Dimension::kTemperature, 1, 0},

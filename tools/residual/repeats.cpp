@@ -31,53 +31,79 @@ struct PoseGroup {
   }
 };
 
+/// Sums of the lengths that one instrument (one file) read.
+struct Lengths {
+  std::size_t freedom = 0, conditions = 0;
+  double plain = 0, total = 0, readings = 0;
+};
+
+/// Sums of one kind of reading of one instrument.
+struct OneKind {
+  std::map<std::vector<double>, PoseGroup> groups;
+  double total = 0, readings = 0;
+};
+
 }  // namespace
 
 Repeats compare_repeats(const std::vector<KindSample>& samples, const model::Measurement& m) {
   Repeats result;
-  double within = 0, between = 0, within_freedom = 0, between_freedom = 0, plain = 0, plain_total = 0,
-         readings = 0;
-  std::size_t conditions = 0;
+  double within = 0, between = 0, within_freedom = 0, between_freedom = 0;
+  std::map<std::size_t, Lengths> lengths;  // of each instrument: its scatter is no other one's
   std::vector<std::vector<double>> of_row(m.rows());
   for (const KindSample& sample : samples) {
-    std::map<std::vector<double>, PoseGroup> groups;
+    std::map<std::size_t, OneKind> of_file;
     for (std::size_t i = 0; i < sample.rows.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
-      std::vector<double>& key = of_row[sample.rows[i]];
-      if (key.empty()) key = fit::row_conditions(m, sample.rows[i]);
-      groups[key].add(sample.held[at], sample.weight[at], sample.residual[at]);
+      const std::size_t row = sample.rows[i];
+      std::vector<double>& key = of_row[row];
+      if (key.empty()) key = fit::row_conditions(m, row);
+      OneKind& own = of_file[row < m.file.size() ? m.file[row] : 0];
+      own.groups[key].add(sample.held[at], sample.weight[at], sample.residual[at]);
+      own.total += sample.residual[at] * sample.residual[at];
+      own.readings += 1;
     }
-    double own = 0, own_between = 0;
-    std::size_t freedom = 0;
-    for (const auto& [key, group] : groups) {
-      own += group.squares;
-      own_between += group.weight * group.mean * group.mean;
-      freedom += group.count - 1;
-      if (!model::is_rotation(sample.kind)) plain += group.plain_squares;
+    for (const auto& [file, one] : of_file) {
+      double own = 0, own_between = 0, plain = 0;
+      std::size_t freedom = 0;
+      for (const auto& [key, group] : one.groups) {
+        own += group.squares;
+        own_between += group.weight * group.mean * group.mean;
+        freedom += group.count - 1;
+        plain += group.plain_squares;
+      }
+      if (freedom == 0) continue;
+      if (!model::is_rotation(sample.kind)) {
+        Lengths& sums = lengths[file];
+        sums.freedom += freedom;
+        sums.conditions += one.groups.size();
+        sums.plain += plain;
+        sums.total += one.total;
+        sums.readings += one.readings;
+      }
+      // Each kind of each instrument in units of its own pure error.
+      const double variance = own / static_cast<double>(freedom);
+      if (freedom < kLeastFreedom || variance <= 0) continue;
+      within += own / variance;
+      between += own_between / variance;
+      within_freedom = within_freedom == 0 ? static_cast<double>(freedom)
+                                           : std::min(within_freedom, static_cast<double>(freedom));
+      between_freedom += static_cast<double>(one.groups.size());
     }
-    if (model::is_rotation(sample.kind)) plain += 0;
-    if (freedom == 0) continue;
-    if (!model::is_rotation(sample.kind)) {
-      result.freedom += freedom;
-      plain_total += sample.residual.squaredNorm();
-      readings += static_cast<double>(sample.rows.size());
-      conditions += groups.size();
-    }
-    // Each kind in units of its own pure error.
-    const double variance = own / static_cast<double>(freedom);
-    if (freedom < kLeastFreedom || variance <= 0) continue;
-    within += own / variance;
-    between += own_between / variance;
-    within_freedom = within_freedom == 0 ? static_cast<double>(freedom)
-                                         : std::min(within_freedom, static_cast<double>(freedom));
-    between_freedom += static_cast<double>(groups.size());
   }
   if (within > 0 && between_freedom > 0)
     result.log_p = maths::log_f_tail(between / between_freedom, between_freedom, within_freedom);
+  double plain = 0, rest = 0, readings = 0;
+  for (const auto& [file, one] : lengths) {
+    if (one.freedom < kLeastFreedom) continue;
+    result.freedom += one.freedom;
+    const double pure = one.plain / static_cast<double>(one.freedom);
+    plain += one.plain;
+    rest += one.total - one.plain - static_cast<double>(one.conditions) * pure;
+    readings += one.readings;
+    result.files.push_back(file);
+  }
   if (result.freedom >= kLeastFreedom) {
-    const double pure = plain / static_cast<double>(result.freedom);
-    const double rest = plain_total - plain - static_cast<double>(conditions) * pure;
-    result.pure_error_um = maths::kUmPerMm * std::sqrt(pure);
+    result.pure_error_um = maths::kUmPerMm * std::sqrt(plain / static_cast<double>(result.freedom));
     result.lack_of_fit_um = maths::kUmPerMm * std::sqrt(std::max(0.0, rest / readings));
   }
   return result;

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "tools/residual/sample.h"
 
 namespace vernier::residual {
 
 /// Scatter of rows at equal conditions, compared with the residual between conditions (lack of
-/// fit; Draper and Smith, Applied Regression Analysis, 3rd ed., section 2.1).
+/// fit; Draper and Smith, Applied Regression Analysis, 3rd ed., section 2.1). Each file is an instrument with
+/// a scatter of its own; a file with few repeats has no part in the figures.
 struct Repeats {
   std::size_t freedom = 0;                              // of the pure error, all lengths
   std::optional<double> pure_error_um, lack_of_fit_um;  // at least 5 degrees of freedom
   std::optional<double> log_p;                          // all kinds together
+  std::vector<std::size_t> files;                       // whose repeats count, by their index
 };
 
 /// tool.

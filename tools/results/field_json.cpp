@@ -42,7 +42,9 @@ Json field_json(const model::Machine& machine, const map::ErrorField& field) {
     const Eigen::VectorXd std_um = reach.std_of_machine_um(field.states);
     json["std_um"] = std::vector<double>(std_um.begin(), std_um.end());
     json["max_std_um"] = std_um.maxCoeff();
-    json["rms_std_um"] = std::sqrt(std_um.squaredNorm() / static_cast<double>(std_um.size()));
+    const auto nodes = static_cast<double>(std_um.size());
+    json["rms_std_um"] = std::sqrt(std_um.squaredNorm() / nodes);
+    json["rms_std_not_measured_um"] = std::sqrt(reach.std_unmeasured_um(field.states).squaredNorm() / nodes);
   }
   return json;
 }

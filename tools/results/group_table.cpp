@@ -25,20 +25,44 @@ struct Sums {
 };
 using Groups = std::map<std::string, Sums>;
 
-std::vector<std::string> known_columns(const model::Measurement& m) {
+/// Approach direction, axis or input of the machine in every row; `nullptr`: the machine has no such column.
+const model::Column* machine_column(const model::Machine& machine, const model::Measurement& m,
+                                    const std::string& name) {
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    if (name == machine.axes[i].name) return &m.states.axis[i];
+    if (name == format::axis_column(format::AxisQuantity::kSense, machine.axes[i].name))
+      return &m.states.direction[i];
+  }
+  const auto input = machine.find_input(name);
+  return input ? &m.states.input[*input] : nullptr;
+}
+
+std::vector<std::string> known_columns(const model::Machine& machine, const model::Measurement& m) {
   std::vector<std::string> names = {format::columns::kRun};
   for (const model::LabelColumn& label : m.labels) names.push_back(label.name);
   for (const model::CandidateInput& candidate : m.candidates) names.push_back(candidate.name);
+  for (const model::Axis& axis : machine.axes) {
+    names.push_back(axis.name);
+    names.push_back(format::axis_column(format::AxisQuantity::kSense, axis.name));
+  }
+  for (const model::Input& input : machine.inputs)
+    if (!input.hidden_axis) names.push_back(input.name);
   return names;
 }
 
 /// The group of every row.
-std::vector<std::string> values_of(const model::Measurement& m, const std::string& column) {
+std::vector<std::string> values_of(const model::Machine& machine, const model::Measurement& m,
+                                   const std::string& column) {
   for (const model::LabelColumn& label : m.labels)
     if (label.name == column) return label.value;
   std::vector<std::string> values(m.rows());
   if (column == format::columns::kRun) {
     for (std::size_t row = 0; row < m.rows(); ++row) values[row] = m.states.run_names[m.states.run[row]];
+    return values;
+  }
+  if (const model::Column* const number = machine_column(machine, m, column)) {
+    for (std::size_t row = 0; row < m.rows(); ++row)
+      values[row] = fmt::format("{:g}", (*number)[static_cast<Eigen::Index>(row)]);
     return values;
   }
   for (const model::CandidateInput& candidate : m.candidates) {
@@ -51,7 +75,7 @@ std::vector<std::string> values_of(const model::Measurement& m, const std::strin
   }
   throw text::InputError({}, column,
                          "the measurement has no such column for groups; its columns are " +
-                             text::joined(known_columns(m), ", "));
+                             text::joined(known_columns(machine, m), ", "));
 }
 
 /// log of the probability that means of groups with the same standard deviation differ so much; 0 without
@@ -70,9 +94,9 @@ double log_chance(const Groups& groups) {
   return maths::log_f_tail((between / d1) / (within / d2), d1, d2);
 }
 
-ordered_json one_column(const model::Measurement& m, const Eigen::VectorXd& residual,
-                        const std::string& column) {
-  const std::vector<std::string> values = values_of(m, column);
+ordered_json one_column(const model::Machine& machine, const model::Measurement& m,
+                        const Eigen::VectorXd& residual, const std::string& column) {
+  const std::vector<std::string> values = values_of(machine, m, column);
   std::map<model::ObservationKind, Groups> kinds;
   std::map<std::string, bool> seen;
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
@@ -110,10 +134,10 @@ ordered_json one_column(const model::Measurement& m, const Eigen::VectorXd& resi
 
 }  // namespace
 
-ordered_json group_table(const model::Measurement& m, const Eigen::VectorXd& residual,
-                         const std::vector<std::string>& columns) {
+ordered_json group_table(const model::Machine& machine, const model::Measurement& m,
+                         const Eigen::VectorXd& residual, const std::vector<std::string>& columns) {
   ordered_json table = ordered_json::array();
-  for (const std::string& column : columns) table.push_back(one_column(m, residual, column));
+  for (const std::string& column : columns) table.push_back(one_column(machine, m, residual, column));
   return table;
 }
 

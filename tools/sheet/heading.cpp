@@ -17,7 +17,7 @@ namespace vernier::sheet {
 namespace {
 
 /// Words for units in the languages of shop floors, in small letters, after the signs are spelled out.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 58> kUnitWords = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 66> kUnitWords = {{
     {"millimeter", "mm"},
     {"millimetre", "mm"},
     {"millimeters", "mm"},
@@ -39,6 +39,14 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 58> kUnitWor
     {"mils", "thou"},
     {"thousandths", "thou"},
     {"milliradian", "mrad"},
+    {"milliradians", "mrad"},
+    {"microradian", "urad"},
+    {"microradians", "urad"},
+    {"mikrorad", "urad"},
+    {"mikroradiant", "urad"},
+    {"microinch", "uin"},
+    {"microinches", "uin"},
+    {"uinch", "uin"},
     {"arc min", "arcmin"},
     {"winkelminuten", "arcmin"},
     {"degree", "deg"},
@@ -133,6 +141,48 @@ bool is_second_line(const Sheet& sheet, std::size_t row) {
   return wanting;
 }
 
+/// No row of data: the message names the probable cause.
+[[noreturn]] void refuse_without_numbers(const Sheet& sheet) {
+  const std::string none = "no row of this table contains numbers";
+  std::size_t colons = 0;
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row)
+    for (const std::string& cell : sheet.rows[row]) {
+      if (const auto both = number_and_unit(cell, sheet.decimal_comma))
+        throw text::InputError({sheet.file, sheet.line[row]}, cell,
+                               "a number with the unit " + both->second + ", and " + none +
+                                   "; write the unit in the heading ([" + both->second +
+                                   "]), numbers alone in the cells");
+      const auto at = cell.find(':');
+      const bool number = at != std::string::npos && plain_number(cell.substr(0, at), sheet.decimal_comma);
+      colons += number && !is_date(cell) ? 1 : 0;
+    }
+  if (2 * colons > sheet.rows.size())
+    throw text::InputError(
+        {sheet.file, sheet.line.front()}, ":",
+        "columns separated by colons are not read; save the table with semicolons or tabs");
+  throw text::InputError(
+      {sheet.file, sheet.line.front()}, "",
+      none + (sheet.sheets.size() > 1
+                  ? "; choose the sheet with --sheet: " + text::joined(sheet.sheets, ", ")
+                  : "; columns may be separated by comma, semicolon, tab, | or blanks (--separator)"));
+}
+
+/// A unit may be written in two cells, and then both state the same.
+void refuse_two_units(const Sheet& sheet, std::size_t row, const std::string& cell, const std::string& unit,
+                      std::size_t heading_row, const std::string& heading, const std::string& heading_unit) {
+  if (heading_unit.empty() || unit.empty() || unit == heading_unit) return;
+  throw text::InputError({sheet.file, sheet.line[row]}, cell,
+                         "the heading \"" + heading + "\" in line " +
+                             std::to_string(sheet.line[heading_row]) + " has the unit " + heading_unit +
+                             ", this cell below it " + unit + ": correct the wrong one of the two cells");
+}
+
+/// The unit of a cell in a line of headings: the cell is the unit, or has the unit; else empty.
+std::string unit_of_cell(const std::string& cell) {
+  const auto unit = cell.size() > 1 ? unit_meant(cell) : std::nullopt;
+  return unit ? *unit : parse_heading(cell).unit;
+}
+
 /// "Messung 1" above "hin [µm]" is "Messung 1 hin [µm]".
 Heading heading_of_two(const std::string& upper, const std::string& lower) {
   const auto unit = lower.size() > 1 ? unit_meant(lower) : std::nullopt;
@@ -168,6 +218,16 @@ std::optional<std::string> unit_meant(std::string_view word) {
   if (bare.size() > 1)
     if (const auto unit = format::find_unit(small)) return std::string(unit->name);
   return std::nullopt;
+}
+
+std::optional<std::pair<std::string, std::string>> number_and_unit(std::string_view cell,
+                                                                   bool decimal_comma) {
+  const std::size_t end = cell.find_last_of("0123456789");
+  if (end == std::string_view::npos || end + 1 == cell.size()) return std::nullopt;
+  const auto number = plain_number(cell.substr(0, end + 1), decimal_comma);
+  const auto unit = unit_meant(cell.substr(end + 1));
+  if (!number || !unit) return std::nullopt;
+  return std::pair(*number, *unit);
 }
 
 Heading parse_heading(std::string_view cell) {
@@ -214,12 +274,7 @@ SheetTable parts_of_sheet(const Sheet& sheet) {
   SheetTable table;
   std::size_t first = 0;
   while (first < sheet.rows.size() && !is_row_of_data(sheet, first)) ++first;
-  if (first == sheet.rows.size())
-    throw text::InputError(
-        {sheet.file, sheet.line.front()}, "",
-        "no row of this table contains numbers" +
-            (sheet.sheets.size() > 1 ? "; choose the sheet with --sheet: " + text::joined(sheet.sheets, ", ")
-                                     : ""));
+  if (first == sheet.rows.size()) refuse_without_numbers(sheet);
   table.first_data = first;
   std::size_t heading = first;
   if (heading > 0 && is_units(sheet.rows[heading - 1])) table.units_row = --heading;
@@ -246,10 +301,17 @@ SheetTable parts_of_sheet(const Sheet& sheet) {
   }
   for (std::size_t k = 0; k < sheet.rows.front().size(); ++k) {
     const std::string& cell = table.has_headings ? sheet.rows[table.heading_row][k] : "";
+    if (!upper.empty())
+      refuse_two_units(sheet, table.heading_row, cell, unit_of_cell(cell), *table.upper_row, upper[k],
+                       parse_heading(upper[k]).unit);
     Heading one = upper.empty() ? parse_heading(cell) : heading_of_two(upper[k], cell);
     if (one.text.empty()) one.text = one.name = std::to_string(k + 1);
     if (table.units_row != 0)
-      if (const auto unit = unit_meant(sheet.rows[table.units_row][k])) one.unit = *unit;
+      if (const auto unit = unit_meant(sheet.rows[table.units_row][k])) {
+        refuse_two_units(sheet, table.units_row, sheet.rows[table.units_row][k], *unit, table.heading_row,
+                         one.text, one.unit);
+        one.unit = *unit;
+      }
     table.headings.push_back(std::move(one));
   }
   return table;

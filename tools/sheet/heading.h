@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tools/sheet/sheet.h"
@@ -12,6 +13,9 @@ namespace vernier::sheet {
 /// Converts a word in any usual spelling to a unit of the formats: "µm", "micron", "(°C)", "Grad", "inch",
 /// "mm/Min.", "U/min"; brackets around the word are ignored. `nullopt` if the word is not a unit. tool.
 std::optional<std::string> unit_meant(std::string_view word);
+
+/// Number and unit of a cell that has both: "0,5 mm", "12.5°". `nullopt` for any other cell. tool.
+std::optional<std::pair<std::string, std::string>> number_and_unit(std::string_view cell, bool decimal_comma);
 
 /// A heading: its words without the unit, and its unit: "X [mm]", "X(mm)", "X / mm", "Temp. in °C".
 struct Heading {

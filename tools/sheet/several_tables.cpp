@@ -73,6 +73,7 @@ void keep_table(Sheet& sheet, std::optional<std::size_t> number) {
   };
   part(sheet.rows);
   part(sheet.line);
+  if (!sheet.written.empty()) part(sheet.written);
 }
 
 }  // namespace vernier::sheet

@@ -2,12 +2,15 @@
 #include "tools/sheet/sheet.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <string_view>
 
 #include "tools/sheet/sheet_number.h"
 #include "tools/sheet/workbook.h"
 #include "tools/text/csv.h"
 #include "tools/text/error.h"
+#include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
 namespace vernier::sheet {
@@ -18,8 +21,42 @@ struct Line {
   std::size_t number = 0;
 };
 
-std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std::string& comment) {
-  std::vector<Line> lines;
+/// A row that begins with its number: "#12;100,5". Returns the number, else 0.
+std::size_t number_of_row(const std::string& bare) {
+  std::size_t at = 1;
+  while (at < bare.size() && at < 8 && bare[at] >= '0' && bare[at] <= '9') ++at;
+  if (!bare.starts_with("#") || at == 1 || at >= bare.size()) return 0;
+  const char parts = bare[at];
+  if (std::string_view(";,\t| ").find(parts) == std::string_view::npos) return 0;
+  // "#1 first run" is a remark; a comma or a blank separates cells only if a number follows.
+  const std::size_t next = bare.find_first_not_of(" \t", at + 1);
+  const bool weak = parts == ',' || parts == ' ';
+  if (next == std::string::npos ||
+      (weak && std::string_view("0123456789+-.,").find(bare[next]) == std::string_view::npos))
+    return 0;
+  return text::parse_count(std::string_view(bare).substr(1, at - 1)).value_or(0);
+}
+
+/// True if the lines "#1;…", "#2;…" are numbered rows: their numbers are one, two, three … from the first
+/// one, and no other row begins with a number. Rows beside them that begin with a number are a table in which
+/// rows were switched off by the sign.
+bool are_numbered(const std::vector<Line>& lines, const std::vector<Line>& signed_lines) {
+  std::size_t expected = 0;
+  for (const Line& line : signed_lines) {
+    const std::size_t number = number_of_row(text::trimmed(line.text));
+    if (expected != 0 && number != expected) return false;
+    expected = number + 1;
+  }
+  return std::none_of(lines.begin(), lines.end(), [](const Line& line) {
+    const std::string bare = text::trimmed(line.text);
+    return std::string_view("0123456789+-.").find(bare.front()) != std::string_view::npos;
+  });
+}
+
+/// The lines of a table without remarks. `notes`: remarks that could be rows are named there.
+std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std::string& comment,
+                           std::vector<std::string>* notes = nullptr) {
+  std::vector<Line> lines, numbered;
   std::size_t number = 0;
   for (std::size_t at = 0; at < text.size();) {
     // Old Macintosh files end their lines by a carriage return alone.
@@ -28,11 +65,24 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
     at = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
     ++number;
     const std::string bare = text::trimmed(line);
-    if (number <= skip || bare.empty() ||
-        (!comment.empty() && bare.starts_with(comment) && !begins_with_error_value(bare)))
-      continue;
-    lines.push_back({line, number});
+    if (number <= skip || bare.empty()) continue;
+    const bool remark = !comment.empty() && bare.starts_with(comment) && !begins_with_error_value(bare);
+    if (!remark)
+      lines.push_back({line, number});
+    else if (comment == "#" && number_of_row(bare) > 0)
+      numbered.push_back({line, number});
   }
+  if (numbered.empty()) return lines;
+  if (are_numbered(lines, numbered)) {
+    const auto earlier = [](const Line& a, const Line& b) { return a.number < b.number; };
+    std::vector<Line> all;
+    std::merge(lines.begin(), lines.end(), numbered.begin(), numbered.end(), std::back_inserter(all),
+               earlier);
+    return all;
+  }
+  for (std::size_t k = 0; notes != nullptr && k < numbered.size() && k < 5; ++k)
+    notes->push_back("line " + std::to_string(numbered[k].number) + " begins with # and is left out: \"" +
+                     text::trimmed(numbered[k].text).substr(0, 30) + "\"; is it a row? (--comment none)");
   return lines;
 }
 
@@ -141,6 +191,7 @@ void split(Sheet& sheet, const std::vector<Line>& lines) {
         cells = std::move(aligned);
     if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
       continue;
+    sheet.written.push_back(cells.size());
     sheet.rows.push_back(std::move(cells));
     sheet.line.push_back(line.number);
   }
@@ -208,6 +259,12 @@ void settle_decimal(Sheet& sheet, const std::vector<std::vector<char>>& is_numbe
     each_number(sheet, [](std::string& cell) { std::replace(cell.begin(), cell.end(), '.', ','); });
 }
 
+/// A cell that makes its row a remark. In a workbook "#1" numbers a row: nobody switches rows off by it.
+bool is_remark(const std::string& cell, const std::string& comment) {
+  if (comment.empty() || !cell.starts_with(comment) || begins_with_error_value(cell)) return false;
+  return comment != "#" || cell.size() == 1 || !text::parse_count(std::string_view(cell).substr(1));
+}
+
 void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetFormat& format) {
   WorkbookSheet read = read_workbook(bytes, sheet.file, format.sheet);
   sheet.workbook = true;
@@ -216,9 +273,7 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
   std::vector<std::vector<char>> is_number;
   for (std::size_t i = 0; i < read.rows.size(); ++i) {
     if (read.line[i] <= format.skip) continue;
-    if (!format.comment.empty() && read.rows[i].front().starts_with(format.comment) &&
-        !begins_with_error_value(read.rows[i].front()))
-      continue;
+    if (is_remark(read.rows[i].front(), format.comment)) continue;
     sheet.rows.push_back(std::move(read.rows[i]));
     sheet.line.push_back(read.line[i]);
     is_number.push_back(std::move(read.is_number[i]));
@@ -234,6 +289,13 @@ bool begins_with_error_value(const std::string& line) {
                            "#BEZUG!", "#WERT!", "#ZAHL!"})
     if (line.starts_with(word)) return true;
   return false;
+}
+
+void remove_row(Sheet& sheet, std::size_t row) {
+  const auto at = static_cast<std::ptrdiff_t>(row);
+  sheet.rows.erase(sheet.rows.begin() + at);
+  sheet.line.erase(sheet.line.begin() + at);
+  if (!sheet.written.empty()) sheet.written.erase(sheet.written.begin() + at);
 }
 
 bool is_workbook(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"); }
@@ -272,7 +334,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     if (text.find('\0') != std::string::npos)
       throw text::InputError({file, 0}, "",
                              "the file has bytes of value 0: it is neither a text nor a workbook (.xlsx)");
-    std::vector<Line> lines = lines_of(text, format.skip, format.comment);
+    std::vector<Line> lines = lines_of(text, format.skip, format.comment, &sheet.notes);
     const char said = said_separator(lines);
     sheet.separator = format.separator != 0 ? format.separator : said != 0 ? said : separator_of_lines(lines);
     split(sheet, lines);

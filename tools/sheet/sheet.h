@@ -31,7 +31,12 @@ struct Sheet {
   bool decimal_doubtful = false;               // every sign found could be either ("1,234")
   std::vector<std::vector<std::string>> rows;  // cells without blanks around them; as many in each
   std::vector<std::size_t> line;               // 1-based, of each row
+  std::vector<std::size_t> written;            // cells of each row in the text; empty for a workbook
+  std::vector<std::string> notes;              // what was left out, for the user
 };
+
+/// Removes one row with its line. row: index.
+void remove_row(Sheet& sheet, std::size_t row);
 
 /// True if a line begins with the text that a spreadsheet writes for a failed formula, in English or German.
 /// It is a row.

@@ -13,11 +13,12 @@ struct Place {
 };
 
 /// Invalid input of the user: file, line and the offending word, in one message. Commands convert an
-/// InputError into exit status 1. Message form: `machine.xml:12: "alhpa": unknown name`. tool.
+/// InputError into exit status 1. The message is valid UTF-8: other bytes of the input become "?". Message
+/// form: `machine.xml:12: "alhpa": unknown name`. tool.
 class InputError : public std::runtime_error {
  public:
   InputError(const Place& place, const std::string& word, const std::string& what);
-  explicit InputError(const std::string& what) : std::runtime_error(what) {}
+  explicit InputError(const std::string& what);
 };
 
 /// The job was executed and its result is negative: a limit of the user is not met. Exit status 2.

@@ -26,4 +26,8 @@ std::string fingerprint_text(std::uint64_t fingerprint);
 /// Returns the shortest decimal text that reads back to the same double.
 std::string number_text(double value);
 
+/// Returns a finite number without exponent, with at most `decimals` decimals, no zeros at its end and no
+/// negative zero: "0.0006", "0". tool.
+std::string fixed_text(double value, int decimals);
+
 }  // namespace vernier::text

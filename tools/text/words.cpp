@@ -78,6 +78,16 @@ std::string shown_message(std::string_view message) {
   return shown;
 }
 
+std::string utf8_only(std::string_view text) {
+  std::string valid;
+  while (!text.empty()) {
+    const std::size_t bytes = first_of(text).bytes;
+    valid += bytes == 0 ? std::string_view("?") : text.substr(0, bytes);
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return valid;
+}
+
 std::string trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n";
   const auto first = text.find_first_not_of(kBlanks);

@@ -37,6 +37,9 @@ constexpr std::size_t kMostQuotedBytes = 200;
 std::string shown_message(std::string_view message);
 constexpr std::size_t kMostMessageBytes = 4000;
 
+/// Returns the text with "?" in place of each byte that is not UTF-8. tool.
+std::string utf8_only(std::string_view text);
+
 /// True if the brackets of a JSON text nest deeper than `most`. Text in strings does not count. Call
 /// nests_deeper_than before the parser for any text from outside. Deep nesting would exhaust the stack of the
 /// parser, or of code that walks its tree.

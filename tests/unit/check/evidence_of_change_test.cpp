@@ -317,6 +317,69 @@ TEST(Checks, TheInstrumentIsTold) {
       CheckVerdict::kInstrument);
 }
 
+/// The bridge with six errors of each axis at stations: far more parameters than a check has readings.
+std::string bridge_with_tables() {
+  std::string text = kBridge;
+  const auto table = [](const char* axis, int from, int to, int step) {
+    std::string rows = fmt::format("<table axis=\"{}\" fit=\"X Y Z rX rY rZ\">", axis);
+    for (int at = from; at <= to; at += step)
+      rows += fmt::format("<station loc=\"{}\" X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>", at);
+    return rows + "</table>";
+  };
+  const auto before = [&](const std::string& mark, const std::string& what) {
+    text.insert(text.find(mark), what);
+  };
+  before("</variables>", "<comptables>" + table("X", 0, 600, 100) + table("Y", 0, 400, 100) +
+                             table("Z", -300, 0, 50) + "</comptables>");
+  before("</transforms>", "<sixdof n=\"4\" Z=\"-100\"/>");
+  const auto replace = [&](const std::string& what, const std::string& with) {
+    text.replace(text.find(what), what.size(), with);
+  };
+  const auto angles = [](char axis) { return fmt::format(" rX=\"r{0}x\" rY=\"r{0}y\" rZ=\"r{0}z\"", axis); };
+  replace("X=\"X+kx*X\"", "X=\"X+kx*X+lXx\" Y=\"lXy\" Z=\"lXz\"" + angles('X'));
+  replace("Y=\"Y\" X=\"sxy*Y\"", "Y=\"Y+lYy\" X=\"sxy*Y+lYx\" Z=\"lYz\"" + angles('Y'));
+  replace("Z=\"Z\" X=\"szx*Z\"", "Z=\"Z+lZz\" X=\"szx*Z+lZx\" Y=\"lZy\"" + angles('Z'));
+  return text;
+}
+
+/// The verdict of a check against the machine with tables, with noise of so many times its u.
+CheckAnswer check_of_tables(const Machine& machine, double times, const std::function<void(Machine&)>& change,
+                            std::mt19937_64& random) {
+  return judge(machine, {check(machine, rows(10, change, random, times * kNoise_mm))}, kFalseAlarms);
+}
+
+TEST(Checks, LoudReadingsOfAMachineOfManyParametersNameNoChange) {
+  // GIVEN a machine of 123 parameters, whose checks leave no degree of freedom beside all of them
+  std::mt19937_64 random(52);
+  const Machine machine = parse_machine(bridge_with_tables(), "m.xml");
+  const Machine fit_machine =
+      fit::fit(machine, parse_measurement(rows(100, nothing, random, kNoise_mm), "s.csv", machine)).machine;
+  int changed = 0, instrument = 0, quiet_alarms = 0, right = 0;
+  constexpr int kChecks = 20;
+  const auto crash = [](Machine& m) { m.statics[*m.find_static("sxy")].value += 60e-6; };
+  for (int k = 0; k < kChecks; ++k) {
+    // WHEN the readings scatter by three times their u
+    const CheckAnswer loud = check_of_tables(fit_machine, 3, nothing, random);
+    changed += loud.verdict == CheckVerdict::kChanged ? 1 : 0;
+    instrument += loud.verdict == CheckVerdict::kInstrument ? 1 : 0;
+    quiet_alarms += check_of_tables(fit_machine, 1, nothing, random).verdict != CheckVerdict::kValid ? 1 : 0;
+    const CheckAnswer moved = check_of_tables(fit_machine, 1, crash, random);
+    for (const Change& one : moved.changed) {
+      right += one.suspect.name == "sxy" ? 1 : 0;
+      EXPECT_LT(std::abs(one.change), one.suspect.unit == "deg" ? 1 : 0.2) << one.suspect.name;
+    }
+    for (const Change& one : moved.resolved)
+      EXPECT_LT(one.std, one.suspect.unit == "deg" ? 10 : 1) << one.suspect.name;
+  }
+  std::printf("loud: %d changed, %d instrument; quiet: %d alarms; sxy named in %d of %d\n", changed,
+              instrument, quiet_alarms, right, kChecks);
+  // THEN the noise is reported, no change of the machine; a change of a machine at rest is still named
+  EXPECT_LE(changed, 1);
+  EXPECT_GE(instrument, kChecks - 2);
+  EXPECT_LE(quiet_alarms, 1);
+  EXPECT_GE(right, kChecks * 3 / 4);
+}
+
 TEST(Checks, TooLittleIsSaid) {
   std::mt19937_64 random(44);
   const Machine machine = fitted(random);

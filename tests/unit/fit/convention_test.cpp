@@ -257,6 +257,33 @@ TEST(Reach, CoversMostOfOneBadAxisWhoseSquarenessHidesItsAngles) {
   EXPECT_GT(covered_share(300, 20, true, true), 0.75);
 }
 
+// The errors bend the line that was measured by micrometres, which determine no rotation about it.
+TEST(Reach, HasTheScaleOfTheParametersBesideALineOfAngles) {
+  // GIVEN a fit of angles along one axis
+  const Bridge bridge;
+  std::string csv = "X[mm],Y[mm],Z[mm],rx[deg],ry[deg],rz[deg],u[deg]\n";
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i <= 60; ++i)
+    csv += fmt::format("{},200,-100,{:.7f},{:.7f},{:.7f},0.0001\n", 10 * i,
+                       5e-4 * std::sin(0.1 * i) + 1e-4 * normal(random), 1e-4 * normal(random),
+                       1e-4 * normal(random));
+  const FitResult result = fit::fit(bridge.model, parse_measurement(csv, "a.csv", bridge.model));
+  // WHEN the uncertainty is asked for beside the line
+  const Reach reach(result.machine);
+  const States poses = bridge.rows.states;
+  const Eigen::VectorXd std_um = reach.std_um(poses);
+  // THEN it has the size of the scales, and comes from parameters that no reading determined
+  double scale_um = 0;
+  for (const ParameterEstimate& estimate : result.estimates)
+    if (estimate.name.starts_with("table.") && estimate.unit == "mm")
+      scale_um = std::max(scale_um, 1000 * estimate.scale);
+  EXPECT_LT(std_um.maxCoeff(), 20 * scale_um);
+  EXPECT_GT(std_um.minCoeff(), 0.1 * scale_um);
+  const Eigen::Matrix3Xd open_um = reach.std_unmeasured_um(poses);
+  for (Eigen::Index i = 0; i < std_um.size(); ++i) EXPECT_GT(open_um.col(i).norm(), 0.7 * std_um[i]);
+}
+
 TEST(FitRecord, TravelsInTheMachineFile) {
   const Bridge bridge;
   const FitResult result = fit::fit(bridge.model, bridge.rows);

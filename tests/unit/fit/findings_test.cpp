@@ -9,10 +9,13 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/machines.h"
 #include "tools/fit/coverage/reach.h"
 #include "tools/fit/coverage/unmeasured.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/set_up.h"
 #include "tools/model/chain/chain.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/chain/work_poses.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
@@ -118,6 +121,104 @@ TEST(FitFindings, ARightModelHasNone) {
     EXPECT_TRUE(result.machine.fitted->unvaried.empty());
   }
   EXPECT_LE(something, 2);  // one in a thousand of each survey: 0.06 expected
+}
+
+// A joint that turns by 118 deg has varied, whatever travel its file declares.
+TEST(FitFindings, ATrueRobotHasNoJointThatStoodStill) {
+  const Machine nominal = read_machine(VERNIER_SOURCE_DIR "/tables/machines/ur10e.xml");
+  int unvaried = 0;
+  constexpr unsigned kRobots = 12;
+  for (unsigned seed = 1; seed <= kRobots; ++seed) {
+    // GIVEN a robot with small errors of its joints and links, J2 over 118 deg of 720
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> share(-1, 1);
+    Machine truth = nominal;
+    for (Static& item : truth.statics)
+      if (!item.hidden) item.value += (item.unit == "deg" ? 0.01 : 0.1) * normal(random);
+    std::string csv = "J1[deg],J2[deg],J3[deg],J4[deg],J5[deg],J6[deg],x[mm],y[mm],z[mm],u[mm]\n";
+    for (int i = 0; i < 60; ++i)
+      csv += fmt::format("{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},0,0,0,0.05\n", 170 * share(random),
+                         59 * share(random) - 2, 90 * share(random), 90 * share(random), 90 * share(random),
+                         170 * share(random));
+    Measurement m = parse_measurement(csv, "r.csv", nominal);
+    const Eigen::VectorXd exact = predict(truth, m);
+    for (std::size_t i = 0; i < m.observations.size(); ++i)
+      m.observations[i].value = exact[static_cast<Eigen::Index>(i)] + 0.05 * normal(random);
+    // THEN the fit names no coefficient as measured at one value of a joint only
+    const Machine fitted = fit::fit(nominal, m).machine;
+    for (const FitRecord::Unvaried& one : fitted.fitted->unvaried)
+      std::printf("%u: %s at %s = %g\n", seed, one.coefficient.c_str(), one.variable.c_str(), one.at);
+    unvaried += fitted.fitted->unvaried.empty() ? 0 : 1;
+  }
+  EXPECT_EQ(unvaried, 0);
+}
+
+/// A survey of 100 rows of a bridge with tables, every fifth row a check row; `error` adds to each reading.
+Measurement survey_of(const Machine& bridge, unsigned seed,
+                      const std::function<Eigen::Vector3d(int row)>& error) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0, kU_mm);
+  std::uniform_real_distribution<double> place(0, 1);
+  std::string csv = "X[mm],Y[mm],Z[mm],x[mm],y[mm],z[mm],u[mm],role\n";
+  for (int i = 0; i < 100; ++i)
+    csv += fmt::format("{:.3f},{:.3f},{:.3f},0,0,0,{},{}\n", 600 * place(random), 400 * place(random),
+                       -300 * place(random), kU_mm, i % 5 == 4 ? "check" : "fit");
+  Measurement m = parse_measurement(csv, "s.csv", bridge);
+  const Eigen::VectorXd exact = predict(bridge, m);
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    Observation& o = m.observations[i];
+    o.value = exact[static_cast<Eigen::Index>(i)] + normal(random) +
+              error(static_cast<int>(
+                  o.row))[static_cast<Eigen::Index>(o.kind) - static_cast<Eigen::Index>(ObservationKind::kX)];
+  }
+  return m;
+}
+
+TEST(FitFindings, AStepOfTheInstrumentHasItsSizeAndTheRowOfTheFile) {
+  const Machine bridge = parse_machine(support::bridge_text(7), "bridge.xml");
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    // GIVEN a step of 60 um in y from the 61st row on
+    const FitResult result = fit::fit(
+        bridge, survey_of(bridge, seed, [](int row) { return Eigen::Vector3d(0, row >= 60 ? 0.06 : 0, 0); }));
+    // THEN the finding names the row and line of the file, and no step is far from that size
+    ASSERT_TRUE(has(result.machine, "disturbed")) << seed;
+    const std::string& words = result.machine.fitted->disturbance;
+    EXPECT_TRUE(words.find("row 61 (s.csv:62)") != std::string::npos ||
+                words.find("before s.csv:62") != std::string::npos)
+        << seed << ": " << words;
+    for (const NoiseStep& step : result.noise.steps) {
+      EXPECT_EQ(step.row, 60U) << seed;
+      EXPECT_NEAR(step.height * kU_mm, 0.06, 5 * step.std * kU_mm + 0.002) << seed;
+    }
+  }
+}
+
+TEST(OtherSetUp, AFileOfAnotherSetUpIsNamedWithBothResiduals) {
+  const Machine bridge = parse_machine(support::bridge_text(7), "bridge.xml");
+  const auto none = [](int) { return Eigen::Vector3d::Zero(); };
+  Measurement m = survey_of(bridge, 9, none);
+  EXPECT_TRUE(files_set_up_elsewhere(bridge, m).empty());
+  // GIVEN a file of check rows, read by an instrument that stood a metre away
+  for (Observation& o : m.observations) o.value += o.kind == ObservationKind::kX ? 1000 : 0;
+  m.check.assign(m.check.size(), 1);
+  const std::vector<OtherSetUp> found = files_set_up_elsewhere(bridge, m);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].before_um, 1e6 / std::sqrt(3), 1e3);
+  EXPECT_LT(found[0].own_um, 3);
+  EXPECT_NE(found[0].sentence().find("s.csv: the set-up of this file is not known to the model"),
+            std::string::npos);
+}
+
+TEST(FitFindings, AReversalErrorIsNoDisturbance) {
+  const Machine bridge = parse_machine(support::bridge_text(7), "bridge.xml");
+  const FitResult result = fit::fit(bridge, survey_of(bridge, 5, [](int row) {
+                                      return Eigen::Vector3d(row % 2 == 0 ? 0.03 : -0.03, 0, 0);
+                                    }));
+  EXPECT_TRUE(has(result.machine, "something-missing"));
+  EXPECT_FALSE(has(result.machine, "disturbed"));
+  // The sheet of a safe run still counts the residual.
+  EXPECT_GT(result.machine.fitted->disturbed, 0);
 }
 
 TEST(FitFindings, HeatMeasuredAtOnePlaceIsNoSquareness) {

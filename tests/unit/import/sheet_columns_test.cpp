@@ -6,6 +6,8 @@
 
 #include <functional>
 
+#include "tools/import/tables/computed_rows.h"
+#include "tools/import/tables/sheet_import.h"
 #include "tools/import/tables/wide_sheet.h"
 #include "tools/sheet/several_tables.h"
 #include "tools/text/files.h"
@@ -23,6 +25,8 @@ std::string import(const std::string& bytes, SheetWishes wishes = {},
     Sheet sheet = read_sheet(bytes, "s.csv", wishes.format);
     keep_table(sheet, wishes.format.table);
     SheetTable table = parts_of_sheet(sheet);
+    note_short_rows(sheet, table);
+    leave_computed_rows(sheet, table);
     unfold_runs(sheet, table);
     if (say) say(wishes, table);
     return measurement_csv(table_of_sheet(sheet, table, columns_of_sheet(sheet, table, wishes), wishes));
@@ -97,7 +101,7 @@ const Case kCases[] = {
     {"MinutesOfArc", "C [°];Abweichung C [arcmin]\n90;3\n", "C[deg],rz[deg]\n90,90.05\n"},
     {"Milliradians", "X[mm];rx [mrad]\n1;2,5\n2;3,5\n", "X[mm],rx[mrad]\n1,2.5\n2,3.5\n"},
     {"ColumnARunAndSense", "X [mm];1+;1-;2+;2-\n0;1;2;3;4\n100;5;6;7;\n",
-     "refused: s.csv:1: no unit: give it for all (--unit mm) or for each, such as --deviation "
+     "refused: s.csv:1: no unit: give it for all (--unit um) or for each, such as --deviation "
      "\"X[um]=Deviation\""},
     {"ColumnARunAndSenseWithUnits", "X [mm];1+ [µm];1- [µm];2+ [µm];2- [µm]\n0;1;2;3;4\n100;5;6;7;\n",
      "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n100,1,1,100.005\n0,-1,1,0.002\n100,-1,1,100.006\n0,1,2,0.003\n"
@@ -194,6 +198,45 @@ const Case kCases[] = {
      "refused: s.csv:2: \"2026-03-04\": a date or a time of day, not a number, for x"},
     {"DatesLabelTheirRows", "X[mm];x[mm];Datum\n1;2;2026-03-04\n", "X[mm],x[mm],Datum\n1,2,2026-03-04\n"},
     {"ErrorValueBeginsARow", "X[mm];x[mm]\n1;2\n#REF!;3\n3;4\n", "refused: s.csv:3: \"#REF!\": not a number"},
+    {"MeanBelowNamedPoints", "Punkt;X [mm];x [mm]\nP1;0;1\nP2;9;10\nMittelwert;4,5;5,5\n",
+     "Punkt,X[mm],x[mm]\nP1,0,1\nP2,9,10\n"},
+    {"ComputedRowsBelowThePositions",
+     "X [mm];x [mm];T [°C]\n0;1;20\n9;10;21\nMean;5,5;20,5\nMax;10;21\nStd. "
+     "dev.;1;1\nStabw;1;1\nAverage;5;20\n",
+     "X[mm],x[mm],T[degC]\n0,1,20\n9,10,21\n"},
+    {"LargestAndSmallestBelowNamedPoints", "Punkt;X [mm];x [mm]\nP1;0;1\nP2;9;10\nMax;9;10\nMin;0;1\n",
+     "Punkt,X[mm],x[mm]\nP1,0,1\nP2,9,10\n"},
+    {"ComputedRowsBelowRuns", "X [mm];1+ [µm];1- [µm]\n0;1;2\n9;3;4\nMittelwert;2;3\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n9,1,1,9.003\n0,-1,1,0.002\n9,-1,1,9.004\n"},
+    {"StatesCalledMinAndMaxAreRows", "Last;X [mm];x [mm]\nmin;0;1\nmax;0;1\nmin;9;10\nmax;9;10\n",
+     "Last,X[mm],x[mm]\nmin,0,1\nmax,0,1\nmin,9,10\nmax,9,10\n"},
+    {"Microradians", "C [°];Abweichung C [µrad]\n90;3\n", "C[deg],rz[deg]\n90,90.000171887\n"},
+    {"MicroradiansOnTheKeyboard", "X[mm];rx [urad]\n1;2\n", "X[mm],rx[urad]\n1,2\n"},
+    {"Microinches", "X [in];dX [µin]\n10;2\n", "X[in],x[mm]\n10,254.0000508\n"},
+    {"UnknownUnit", "X [mm];Abweichung X [foo]\n10;2\n",
+     "refused: s.csv:1: \"Abweichung X [foo]\": [foo] is no known unit; known are mm um"},
+    {"RotaryDeviationWithoutUnit", "C [°];Abweichung C\n90;3\n", "--deviation \"C[arcsec]=Abweichung C\""},
+    {"NumberedRows", "Nr;X [mm];x [mm]\n#1;0;1\n#2;9;10\n", "Nr,X[mm],x[mm]\n\"#1\",0,1\n\"#2\",9,10\n"},
+    {"NumberedRowsSeparatedByBlanks", "Nr X[mm] x[mm]\n#1 0 1\n#2 9 10\n",
+     "Nr,X[mm],x[mm]\n\"#1\",0,1\n\"#2\",9,10\n"},
+    {"RowsSwitchedOff", "X [mm];x [mm]\n#0;1\n9;10\n#12;13\n", "X[mm],x[mm]\n9,10\n"},
+    {"RemarksWithANumber", "# 1 remark\n#1 remark, long\nX [mm];x [mm]\n9;10\n", "X[mm],x[mm]\n9,10\n"},
+    {"RowOfUnitsAgainstTheHeading", "X [mm];x [mm]\n[mm];[µm]\n0;1\n",
+     "refused: s.csv:2: \"[µm]\": the heading \"x [mm]\" in line 1 has the unit mm, this cell below it um"},
+    {"TwoLinesOfHeadingsOfTwoUnits", "X [mm];X [mm];Y [mm];Y [mm]\nSoll;Ist [um];Soll;Ist\n1;1;2;2\n",
+     "refused: s.csv:2: \"Ist [um]\": the heading \"X [mm]\" in line 1 has the unit mm"},
+    {"NotANumberIsMissing", "X[mm];x[mm]\n1;NaN\n2;3\n", "X[mm],x[mm]\n1,\n2,3\n"},
+    {"UnitsInAllCells", "X[mm];x[mm]\n1 mm;2 mm\n2 mm;3 mm\n",
+     "refused: s.csv:2: \"1 mm\": a number with the unit mm, and no row of this table contains numbers; "
+     "write the "
+     "unit in the heading ([mm])"},
+    {"UnitsInTheReadings", "X[mm];x[mm]\n1;2 mm\n2;3 mm\n",
+     "refused: s.csv:2: \"2 mm\": a number with the unit mm, for x; write the unit in the heading ([mm])"},
+    {"Colons", "X[mm]:x[mm]\n1:2.5\n2:3.5\n",
+     "refused: s.csv:1: \":\": columns separated by colons are not read"},
+    {"SmallNumbersHaveNoExponent", "X [mm];Abw. X [µm]\n0;0,6\n1;-1000\n", "X[mm],x[mm]\n0,0.0006\n1,0\n"},
+    {"ShortRowsOfBlanks", "X[mm] Y[mm] x[mm]\n0 1 2\n9 10\n",
+     "refused: s.csv:3: \"9 10 \": 2 cells, the headings in line 1 are 3"},
     {"OpenQuote", "X[mm];x[mm]\n1;\"2\n", "a closing quote is missing"},
 };
 
@@ -257,12 +300,48 @@ TEST(SheetWish, TheSameInEveryRowIsAReadingToo) {
             std::string::npos);
 }
 
+TEST(SheetWish, AConstantMayHaveADecimalComma) {
+  const auto with = [](const char* said, const char* bytes) {
+    SheetWishes wishes;
+    ColumnMap map;
+    add_constant(map, said);
+    wishes.constants = map.columns;
+    return import(bytes, wishes);
+  };
+  EXPECT_EQ(with("Y[mm]=0,5", "X [mm];x [mm]\n1;2\n"), "X[mm],x[mm],Y[mm]\n1,2,0.5\n");
+  EXPECT_EQ(with("Y[mm]=1,234", "X [mm];x [mm]\n1;2,5\n"), "X[mm],x[mm],Y[mm]\n1,2.5,1.234\n");
+  EXPECT_NE(
+      with("Y[mm]=1,234", "X [mm];x [mm]\n1;2.5\n").find("\"1,234\": for Y: a decimal comma or thousands?"),
+      std::string::npos);
+  EXPECT_NE(with("Y[mm]=half", "X [mm];x [mm]\n1;2\n").find("\"half\": not a number, for Y"),
+            std::string::npos);
+  EXPECT_EQ(with("run=1,5", "X [mm];x [mm]\n1;2\n"), "X[mm],x[mm],run\n1,2,\"1,5\"\n");
+}
+
+TEST(SheetNote, NamesEveryRowThatIsLeftOutOrShort) {
+  const SheetReading reading = read_as_sheet(
+      "Punkt;X [mm];x [mm];y [mm]\nP1;0;1\nP2;9;10;1\nMittelwert;4,5;5,5;1\n", "s.csv", SheetWords());
+  const std::vector<std::string> wanted = {
+      "line 2: 3 cells, 4 headings: no value for \"y [mm]\"",
+      "line 4: the row \"Mittelwert\" is computed from the rows above, left out"};
+  EXPECT_EQ(reading.sheet.notes, wanted);
+  const SheetReading off = read_as_sheet("X [mm];x [mm]\n0;1\n#9;10\n", "s.csv", SheetWords());
+  ASSERT_EQ(off.sheet.notes.size(), 1u);
+  EXPECT_EQ(off.sheet.notes[0],
+            "line 3 begins with # and is left out: \"#9;10\"; is it a row? (--comment none)");
+}
+
 TEST(SheetWish, UnknownHeadingIsNamedWithThoseThatAreThere) {
   const std::string result = import(
       kOdd, {}, [](SheetWishes& wishes, const SheetTable& table) { assign_column(wishes, table, "x=Weg"); });
   EXPECT_NE(result.find("the sheet has no such heading; its headings are Pos, Anzeige [µm], Stift"),
             std::string::npos)
       << result;
+}
+
+TEST(Message, IsUtf8AlsoAboutAFileOfAnotherCodePage) {
+  EXPECT_EQ(std::string(InputError({"f.csv", 1}, "x[\xB5m]", "bad").what()), "f.csv:1: \"x[?m]\": bad");
+  EXPECT_EQ(std::string(InputError("gr\xFC\xDF \u00b5m").what()), "gr?? \u00b5m");
 }
 
 TEST(SheetProfile, ReadsTheNextFileAsThisOne) {

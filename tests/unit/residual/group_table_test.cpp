@@ -24,7 +24,7 @@ const char* const kMachine =
 nlohmann::ordered_json by(const std::string& rows, const std::string& column) {
   const Machine machine = parse_machine(kMachine, "x.xml");
   const Measurement m = parse_measurement(rows, "m.csv", machine);
-  return group_table(m, residuals(machine, m), {column});
+  return group_table(machine, m, residuals(machine, m), {column});
 }
 
 TEST(GroupTable, MeansAndTheirTestByHand) {
@@ -56,12 +56,23 @@ TEST(GroupTable, NumbersAndRunsGroupTooAndEmptyCellsAreAGroup) {
   EXPECT_TRUE(by("X[mm],x[mm],tool\n0,0.001,T1\n1,1.001,T1\n", "tool")[0]["differ_p"].is_null());
 }
 
+TEST(GroupTable, ApproachDirectionsAndAxesGroupToo) {
+  const std::string rows = "X[mm],dirX,x[mm]\n0,1,0.001\n0,-1,-0.001\n9,1,9.002\n9,-1,8.998\n";
+  const auto table = by(rows, "dirX");
+  const auto& each = table[0]["each"];
+  ASSERT_EQ(each.size(), 2u);
+  EXPECT_EQ(each[0]["value"], "-1");
+  EXPECT_NEAR(each[0]["readings"][0]["mean"], -1.5, 1e-9);
+  EXPECT_EQ(by(rows, "X")[0]["each"].size(), 2u);
+}
+
 TEST(GroupTable, UnknownColumnIsNamedWithThoseThatAreThere) {
   try {
     by("X[mm],x[mm],tool\n0,0.001,T1\n1,1.001,T1\n", "operator");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("its columns are run, tool"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("its columns are run, tool, X, dirX"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -370,6 +370,28 @@ TEST(FailurePicture, RepeatsTellNoiseFromLackOfFit) {
   EXPECT_LT(*picture.lack_of_fit_p, 1e-10);
 }
 
+TEST(FailurePicture, RepeatsOfOneInstrumentSayNothingOfAnother) {
+  // GIVEN a right model, a laser of 0.5 um with repeats and a tracker of 5 um without
+  std::mt19937_64 random(kSeed);
+  const Machine machine = parse_machine(kMachine, "m.xml");
+  std::string text = "X[mm],Y[mm],Z[mm],x[mm],u[um]\n";
+  for (int i = 0; i < 100; ++i) text += std::to_string(30 * (i % 20)) + ",0,0,0,0.5\n";
+  for (int i = 0; i < 100; ++i) text += std::to_string(5 * i + 1) + ",200,-100,0,5\n";
+  Measurement m = parse_measurement(text, "both", machine);
+  m.files = {"laser.csv", "tracker.csv"};
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd r(200);
+  for (std::size_t i = 0; i < 200; ++i) {
+    m.file[i] = i < 100 ? 0 : 1;
+    r[static_cast<Eigen::Index>(i)] = (i < 100 ? 0.5e-3 : 5e-3) * normal(random);
+  }
+  const FailurePicture picture = failure_picture(machine, m, r);
+  // THEN the laser's repeats are compared with the laser's readings alone
+  ASSERT_TRUE(picture.pure_error_um && picture.lack_of_fit_um);
+  EXPECT_NEAR(*picture.pure_error_um, 0.5, 0.15);
+  EXPECT_LT(*picture.lack_of_fit_um, 0.3);
+}
+
 TEST(FailurePicture, StatedUncertaintyIsTested) {
   std::mt19937_64 random(kSeed);
   const Machine machine = parse_machine(kMachine, "m.xml");

@@ -41,6 +41,7 @@ void print_columns(std::FILE* out, const importer::SheetReading& reading) {
   for (const importer::SheetColumn& column : columns)
     if (column.turned)
       fmt::print(out, "deviation of {}: labelled nominal - actual, its sign is reversed\n", column.name);
+  for (const std::string& note : sheet.notes) fmt::print(out, "note: {}\n", note);
 }
 
 void print_rows(std::FILE* out, const std::string& csv) {
@@ -82,7 +83,8 @@ void run_table(const TableArguments& arguments) {
                  {"separator", sheet.workbook ? Json(nullptr) : Json(sheet::separator_word(sheet.separator))},
                  {"decimal", sheet.decimal_comma ? "comma" : "point"},
                  {"n_rows", read.line.size()},
-                 {"columns", importer::columns_json(reading)}};
+                 {"columns", importer::columns_json(reading)},
+                 {"notes", sheet.notes}};
   if (!arguments.machine.empty()) {
     const model::Measurement m =
         model::parse_measurement(csv, arguments.file, model::read_machine(arguments.machine));

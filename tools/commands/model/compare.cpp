@@ -225,7 +225,7 @@ void run_compare(const CompareArguments& arguments) {
   if (arguments.datum) json["datum"] = "fitted";
   if (!arguments.limit.empty())
     json["limit"] = results::judge_residuals(m, residual, results::residual_limit(arguments.limit));
-  if (!arguments.by.empty()) json["groups"] = results::group_table(m, residual, arguments.by);
+  if (!arguments.by.empty()) json["groups"] = results::group_table(machine, m, residual, arguments.by);
   if (!arguments.output.empty()) {
     nlohmann::ordered_json with_detail = json;
     results::add_detail(with_detail, machine, m, residual);
@@ -236,6 +236,10 @@ void run_compare(const CompareArguments& arguments) {
   if (!arguments.residuals.empty()) text::write_file(arguments.residuals, results::residual_csv(m, residual));
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
+  for (const fit::OtherSetUp& one : fit::files_set_up_elsewhere(machine, m))
+    fmt::print(stderr, "note: {}; {}\n", one.sentence(),
+               arguments.datum ? "fit a survey with rows of this set-up first"
+                               : "--datum fits the set-up to these rows, vernier check fits it always");
   print_result(human_stream(arguments.json), json);
   results::print_domains(human_stream(arguments.json), json["domains"]);
   if (!arguments.by.empty()) print_groups(human_stream(arguments.json), json["groups"]);

@@ -11,6 +11,7 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/freedom.h"
 #include "tools/fit/least_squares/statistics.h"
+#include "tools/fit/set_up.h"
 #include "tools/format/units.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/fit_record.h"
@@ -171,6 +172,10 @@ void run_fit(const FitArguments& arguments) {
     text::write_file(arguments.residuals, results::residual_csv(m, result.residual));
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
+  for (const fit::OtherSetUp& one : fit::files_set_up_elsewhere(result.machine, m))
+    fmt::print(stderr,
+               "note: {}; give at least three of its rows the role fit, then its set-up is fitted too\n",
+               one.sentence());
   print_result(human_stream(arguments.json), result, m);
   results::print_domains(human_stream(arguments.json), json["domains"]);
 }

@@ -25,6 +25,10 @@ struct MapArguments {
   ReportHeader header;
 };
 
+/// Part of the standard uncertainty above which the text states that it is not measured: half of the
+/// variance.
+constexpr double kMostlyOpen = 0.7;
+
 constexpr const char* kNotMeasured =
     "no lengths, diagonals, circles or squares are simulated: they need one to three linear axes with min "
     "and max";
@@ -187,6 +191,16 @@ void run_map(const MapArguments& arguments) {
                "standard uncertainty of the model {:.4g} um on average, {:.4g} um at most (also outside the "
                "measured range)\n",
                json["field"]["rms_std_um"].get<double>(), json["field"]["max_std_um"].get<double>());
+  if (!json["field"]["std_um"].is_null()) {
+    const double all = json["field"]["rms_std_um"].get<double>(),
+                 open = json["field"]["rms_std_not_measured_um"].get<double>();
+    if (open > kMostlyOpen * all)
+      fmt::print(
+          out,
+          "not measured: {:.4g} um of it come from parameters that no reading determined; they stay at "
+          "nominal +- scale\n",
+          open);
+  }
   if (!measured) fmt::print(out, "{}\n", kNotMeasured);
   if (!measured) return;
   for (const Json& line : json["diagonals"])

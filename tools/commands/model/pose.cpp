@@ -14,6 +14,10 @@
 namespace vernier::commands::pose_cli {
 namespace {
 
+/// Part of the standard uncertainty above which the text states that it is not measured: half of the
+/// variance.
+constexpr double kMostlyOpen = 0.7;
+
 struct PoseArguments {
   std::string machine, at, tool, json;
   bool with_rotary = false;
@@ -32,10 +36,15 @@ void run_pose(const PoseArguments& arguments) {
   const Eigen::Vector3d deviation = actual.position.col(0) - nominal.position.col(0);
   json["deviation_um"] = {1000 * deviation.x(), 1000 * deviation.y(), 1000 * deviation.z()};
   json["std_um"] = nullptr;
+  json["std_not_measured_um"] = nullptr;
+  bool mostly_open = false;
   const fit::Reach reach(machine);
   if (reach.known()) {
     const Eigen::Vector3d std_um = 1000 * reach.covariance_of_machine(states)[0].diagonal().cwiseSqrt();
     json["std_um"] = {std_um.x(), std_um.y(), std_um.z()};
+    const Eigen::Vector3d open_um = reach.std_unmeasured_um(states).col(0);
+    json["std_not_measured_um"] = {open_um.x(), open_um.y(), open_um.z()};
+    mostly_open = open_um.norm() > kMostlyOpen * std_um.norm();
   }
   json["findings"] = results::findings_json(machine);
   const double tilt_deg = kinematics::tilt_between(actual, nominal)[0];
@@ -49,6 +58,13 @@ void run_pose(const PoseArguments& arguments) {
     fmt::print(
         out, "known to   {:10.4f} {:10.4f} {:10.4f} um (standard uncertainty, with the model discrepancy)\n",
         json["std_um"][0].get<double>(), json["std_um"][1].get<double>(), json["std_um"][2].get<double>());
+  if (mostly_open)
+    fmt::print(
+        out,
+        "not measured: of this {:.4f} {:.4f} {:.4f} um come from parameters that no reading determined; "
+        "they stay at nominal +- scale\n",
+        json["std_not_measured_um"][0].get<double>(), json["std_not_measured_um"][1].get<double>(),
+        json["std_not_measured_um"][2].get<double>());
   fmt::print(out, "tilt       {:10.6f} deg\n", tilt_deg);
   const bool with_rotary = arguments.with_rotary || machine.correct_orientation;
   if (!with_rotary && kinematics::linear_axes(machine).empty()) {

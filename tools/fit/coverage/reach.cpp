@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "tools/fit/coverage/point_readings.h"
@@ -43,6 +44,33 @@ model::Machine without_set_up(const model::Machine& machine) {
   for (model::Axis& axis : bare.axes)
     axis.scale_free = std::find(names.begin(), names.end(), "scalefactor." + axis.name) != names.end();
   return bare;
+}
+
+/// Extent of the points across an axis, of their largest extent. Below it the points do not determine a
+/// rotation about this axis: along a line the micrometres of its errors would.
+constexpr double kLine = 1e-3;
+
+/// Rigid motion of points that fits each column best: translation at the origin and rotation, 6 x k. A
+/// rotation that the points do not determine is 0.
+Eigen::MatrixXd rigid_fit(const Eigen::Matrix3Xd& points, const Eigen::MatrixXd& columns) {
+  const Eigen::Vector3d centre = points.rowwise().mean();
+  const Eigen::Matrix3Xd around = points.colwise() - centre;
+  const double size = std::max(around.norm() / std::sqrt(static_cast<double>(points.cols())), 1e-12);
+  const Eigen::MatrixXd motions = rigid_motions(around / size);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(motions.transpose() * motions);
+  const double least = kLine * kLine * eigen.eigenvalues()[5];
+  const Eigen::VectorXd inverse =
+      eigen.eigenvalues().unaryExpr([&](double value) { return value > least ? 1 / value : 0.0; });
+  Eigen::MatrixXd fitted =
+      eigen.eigenvectors() *
+      (inverse.asDiagonal() * (eigen.eigenvectors().transpose() * (motions.transpose() * columns)));
+  fitted.bottomRows(3) /= size;
+  // The translation of the centre becomes that of the origin.
+  for (Eigen::Index k = 0; k < fitted.cols(); ++k) {
+    const Eigen::Vector3d turn = fitted.col(k).tail<3>();
+    fitted.col(k).head<3>() -= turn.cross(centre);
+  }
+  return fitted;
 }
 
 }  // namespace
@@ -92,7 +120,7 @@ Eigen::MatrixXd Reach::rigid_part(const model::States& like, Eigen::Index row, c
   model::States over = measured_;
   for (std::size_t i = 0; i < machine_.inputs.size(); ++i)
     if (machine_.inputs[i].hidden_axis) over.input[i].setConstant(like.input[i][row]);
-  return maths::least_norm(rigid_motions(model::forward(machine_, over).position), columns(over));
+  return rigid_fit(model::forward(machine_, over).position, columns(over));
 }
 
 Eigen::MatrixXd Reach::moved_at(const model::States& states, const Eigen::MatrixXd& change) const {
@@ -153,6 +181,13 @@ std::vector<Eigen::Matrix3d> Reach::covariance_of_machine(const model::States& s
 Eigen::VectorXd Reach::std_of_machine_um(const model::States& states) const {
   const Eigen::VectorXd model = std_um(states);
   return (model.array().square() + 1e6 * discrepancy_mm_.squaredNorm()).sqrt();
+}
+
+Eigen::Matrix3Xd Reach::std_unmeasured_um(const model::States& states) const {
+  const Eigen::MatrixXd spread = moved(states, open_), more = moved_unmeasured(states);
+  const Eigen::VectorXd both =
+      1000 * (spread.rowwise().squaredNorm() + more.rowwise().squaredNorm()).cwiseSqrt();
+  return both.reshaped(3, static_cast<Eigen::Index>(states.count));
 }
 
 Eigen::VectorXd Reach::std_um(const model::States& states) const {

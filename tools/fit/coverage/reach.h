@@ -39,6 +39,10 @@ class Reach {
   /// The discrepancy is the possible difference between the real machine and the model.
   std::vector<Eigen::Matrix3d> covariance_of_machine(const model::States& states) const;
   Eigen::VectorXd std_of_machine_um(const model::States& states) const;
+  /// Returns the part of the standard uncertainty that no reading of the fit determined: parameters at their
+  /// scale, and properties of the model that no reading confirms. Along x, y, z at each state, um. 0 if the
+  /// machine file does not state these parameters (open_known).
+  Eigen::Matrix3Xd std_unmeasured_um(const model::States& states) const;
   /// Returns the standard deviation of the discrepancy, along x, y, z of workpiece coordinates, mm.
   const Eigen::Vector3d& discrepancy_mm() const { return discrepancy_mm_; }
 

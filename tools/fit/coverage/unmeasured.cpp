@@ -26,6 +26,9 @@ constexpr double kPlain = 25;
 /// A variable whose weighted standard deviation is above this share of its range has varied (a
 /// uniform distribution has 0.29).
 constexpr double kVaried = 0.15;
+/// Largest range that counts for a rotary axis, deg: a turn by a third of a circle changes every direction
+/// across its axis, whatever travel the file declares (a robot's joint: 360 to 720 deg).
+constexpr double kMostTurn_deg = 120;
 /// An axis that moved by less than this share of its travel was not measured: rule
 /// `measured-range`.
 constexpr double kMoved = 0.05;
@@ -104,7 +107,8 @@ class UnvariedFinder {
     const double measured = q.maxCoeff() - q.minCoeff();
     const auto work = model::work_range(machine_, a);
     const double range = work ? (*work)[1] - (*work)[0] : measured;
-    if (measured > kMoved * range) candidates_.push_back({{true, a}, machine_.axes[a].name, range});
+    const double counted = machine_.axes[a].rotary ? std::min(range, kMostTurn_deg) : range;
+    if (measured > kMoved * range) candidates_.push_back({{true, a}, machine_.axes[a].name, counted});
   }
 
   void add_input(std::size_t i) {

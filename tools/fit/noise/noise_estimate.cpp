@@ -289,6 +289,16 @@ std::optional<NoiseModel> estimate_beside(const NoiseLayout& layout, const Eigen
   return free;
 }
 
+/// Heights of all steps in one least-squares fit beside the fitted directions: each was found without the
+/// later ones.
+void set_heights(const NoiseLayout& layout, const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted,
+                 std::vector<NoiseStep>& steps) {
+  Eigen::MatrixXd columns = step_columns(layout, steps, residual.size());
+  for (int pass = 0; pass < 2; ++pass) columns -= fitted * (fitted.transpose() * columns);
+  const Eigen::VectorXd heights = maths::least_norm(columns, residual);
+  for (std::size_t k = 0; k < steps.size(); ++k) steps[k].height = heights[static_cast<Eigen::Index>(k)];
+}
+
 }  // namespace
 
 NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
@@ -318,6 +328,7 @@ NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& resi
     }
   }
   if (steps.empty()) return without;
+  set_heights(layout, residual, fitted, steps);
   std::optional<NoiseModel> beside = estimate_beside(layout, left, all, with_u, limits);
   if (!beside) return without;
   NoiseModel& with = *beside;

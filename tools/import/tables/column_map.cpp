@@ -7,6 +7,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
 #include "tools/format/units.h"
+#include "tools/sheet/sheet_number.h"
 #include "tools/text/csv.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -122,6 +123,22 @@ void add_constant(ColumnMap& map, const std::string& words, const text::Place& p
   add(map, std::move(column));
 }
 
+std::string constant_cell(const MappedColumn& column, bool decimal_comma) {
+  const std::string& text = column.constant;
+  if (is_word(column.name) || text::parse_number(text)) return text;
+  const sheet::DecimalSign sign = sheet::decimal_sign_in(text);
+  const bool comma = text.find(',') != std::string::npos;
+  if (comma && (sign == sheet::DecimalSign::kComma || (sign == sheet::DecimalSign::kEither && decimal_comma)))
+    return *sheet::plain_number(text, true);
+  if (comma && sign == sheet::DecimalSign::kEither)
+    throw text::InputError(
+        column.place, text,
+        "for " + column.name + ": a decimal comma or thousands? Write the number with a decimal point");
+  // A column without a unit that the format does not know may have words.
+  if (column.unit.empty() && format::find_column(column.name) == nullptr) return text;
+  throw text::InputError(column.place, text, "not a number, for " + column.name);
+}
+
 void read_column_map(ColumnMap& map, const std::string& text, const std::string& file) {
   std::size_t at = 0, number = 0;
   while (at < text.size()) {
@@ -178,8 +195,9 @@ ImportTable mapped_table(const std::string& text, const std::string& file, const
     ImportTable::Column cells{column.name, column.unit, {}};
     const bool constant = column.source.empty();
     const std::size_t index = constant ? 0 : source_index(read, column);
+    const std::string same = constant ? constant_cell(column, format.decimal_comma) : "";
     for (std::size_t i = 0; i < read.rows.size(); ++i)
-      cells.cells.push_back(cell_of(constant ? column.constant : read.rows[i][index], column,
+      cells.cells.push_back(cell_of(constant ? same : read.rows[i][index], column,
                                     !constant && format.decimal_comma, {file, read.line[i]}));
     table.columns.push_back(std::move(cells));
   }

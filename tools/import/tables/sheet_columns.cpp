@@ -224,17 +224,34 @@ enum class Holds {
   kDates
 };  // words, dates: in most of the cells that are filled
 
+/// Marks of a cell without a value.
+bool is_missing(const std::string& cell) {
+  static const Words kMarks = {"", "-", "--", "---", "n/a", "na", "#nv", "#n/a", "nan"};
+  return kMarks.contains(text::in_small_letters(cell));
+}
+
 Holds holds(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
   std::size_t words = 0, dates = 0, filled = 0;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const std::string& cell = sheet.rows[row][column];
-    filled += cell.empty() ? 0 : 1;
+    filled += is_missing(cell) ? 0 : 1;
     dates += sheet::is_date(cell) ? 1 : 0;
-    words += !cell.empty() && !sheet::plain_number(cell, sheet.decimal_comma) ? 1 : 0;
+    words += !is_missing(cell) && !sheet::plain_number(cell, sheet.decimal_comma) ? 1 : 0;
   }
   if (filled == 0) return Holds::kNothing;
   if (2 * dates > filled) return Holds::kDates;
   return 2 * words > filled ? Holds::kWords : Holds::kNumbers;
+}
+
+/// True if most of the filled cells are a number with its unit: "0,5 mm".
+bool holds_units(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
+  std::size_t units = 0, filled = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::string& cell = sheet.rows[row][column];
+    filled += is_missing(cell) ? 0 : 1;
+    units += sheet::number_and_unit(cell, sheet.decimal_comma) ? 1 : 0;
+  }
+  return 2 * units > filled;
 }
 
 /// A column of words that no known name claims labels its rows.
@@ -394,7 +411,7 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       leave(column, "dates or times of day, no seconds");
     // Dates where a position or a reading should be are refused with their row.
     else if (!column.words && !is_label(column.name) && !is_sense(column.name) &&
-             content != Holds::kNumbers && content != Holds::kDates)
+             content != Holds::kNumbers && content != Holds::kDates && !holds_units(sheet, table, k))
       leave(column, content == Holds::kNothing ? "empty" : "no numbers");
   }
 }
@@ -411,14 +428,33 @@ void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& 
     SheetColumn& one = plain ? column : columns[first->second];
     if (!plain) first->second = k;
     leave(one, "column " + std::to_string(first->second + 1) + " (\"" + table.headings[first->second].text +
-                   "\") is " + column.name + " already");
+                   "\") is " + column.name + " already; to read this one: --leave " +
+                   std::to_string(first->second + 1) + ", or another name: --column \"NAME[unit]=" +
+                   std::to_string((&one - columns.data()) + 1) + "\"");
   }
 }
 
-/// Suggested unit for a column without one: that of the format, for an axis mm.
-std::string unit_to_say(const std::string& name) {
+/// Suggested unit for a deviation without one: of a rotary axis arcsec.
+std::string unit_of_deviation(const std::vector<SheetColumn>& columns, const std::string& axis) {
+  const bool rotary = std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+    return one.use == SheetColumn::Use::kColumn && one.name == axis &&
+           (one.unit.empty() ? !is_linear(axis) : is_angle(one.unit));
+  });
+  return rotary ? "arcsec" : "um";
+}
+
+/// Suggested unit for a column without one: that of the format, for an axis mm or deg.
+std::string unit_to_say(const std::string& name, const std::vector<SheetColumn>& columns) {
   const std::string unit = format::column_unit(name);
-  return unit.empty() ? "mm" : unit;
+  if (!unit.empty()) return unit;
+  const bool letter =
+      name.size() <= 2 && (name[0] == 'A' || name[0] == 'B' || name[0] == 'C' || name[0] == 'J');
+  const bool length = std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+    const auto found = format::find_unit(one.unit);
+    return one.use == SheetColumn::Use::kDeviation && one.name == name && found &&
+           found->dimension == format::Dimension::kLength && !one.unit.empty();
+  });
+  return letter && !length ? "deg" : "mm";
 }
 
 bool wants_unit(const SheetColumn& column) {
@@ -534,9 +570,7 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
     if (format::is_role(small) || small.empty()) return small;
     throw text::InputError(place, cell, format::kRoleRule);
   }
-  if (cell.empty() || cell == "-" || cell == "--" || cell == "n/a" || cell == "#NV" || cell == "#N/A") {
-    if (!is_sense(column.name)) return "";
-  }
+  if (is_missing(cell) && !is_sense(column.name)) return "";
   if (is_sense(column.name))
     if (const int sense = sense_said(cell); sense != 0) return std::to_string(sense);
   if (const auto number = sheet::plain_number(cell, sheet.decimal_comma)) return *number;
@@ -544,13 +578,19 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
     throw text::InputError(place, cell,
                            "a date or a time of day, not a number, for " + column.name +
                                "; give the cells of this column the number format of the spreadsheet");
+  if (const auto both = sheet::number_and_unit(cell, sheet.decimal_comma))
+    throw text::InputError(place, cell,
+                           fmt::format("a number with the unit {}, for {}; write the unit in the heading "
+                                       "([{}]), numbers alone in the cells",
+                                       both->second, column.name, both->second));
   const bool other_sign = sheet::plain_number(cell, !sheet.decimal_comma).has_value();
   throw text::InputError(
       place, cell,
       "not a number, for " + column.name +
-          (other_sign ? std::string("; a decimal ") + (sheet.decimal_comma ? "point" : "comma") +
-                            "? (give --decimal point or --decimal comma)"
-                      : std::string()));
+          (other_sign
+               ? std::string("; a decimal ") + (sheet.decimal_comma ? "point" : "comma") +
+                     "? (give --decimal point or --decimal comma)"
+               : std::string("; write - in a cell without a value, or leave the column out (--leave)")));
 }
 
 }  // namespace
@@ -689,7 +729,9 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                            const std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
   ImportTable result{sheet.file, {}, {}};
   const Guess guess(wishes);
+  const text::Place heading{sheet.file, sheet.line[table.heading_row]};
   std::string without;
+  Words units;  // suggested for the columns without one
   // The same value in every row (--set) is a column too.
   std::vector<SheetColumn> all = columns;
   for (const MappedColumn& constant : wishes.constants)
@@ -701,18 +743,28 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     const SheetColumn& column = columns[k];
     const bool geometry = guess.is_axis(column.name) ||
                           ((is_known_name(column.name) || readings.contain(column)) && wants_unit(column));
-    if (wants_unit(column) && column.unit.empty() && column.use == SheetColumn::Use::kDeviation)
-      without += fmt::format(" --deviation \"{}[um]={}\"", column.name, table.headings[k].text);
-    else if (wants_unit(column) && column.unit.empty() && geometry)
-      without += fmt::format(" --column \"{}={}\"", format::heading(column.name, unit_to_say(column.name)),
+    const bool deviation = column.use == SheetColumn::Use::kDeviation;
+    if (wants_unit(column) && column.unit.empty() && (deviation || geometry)) {
+      const std::string unit =
+          deviation ? unit_of_deviation(columns, column.name) : unit_to_say(column.name, columns);
+      if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
+        throw text::InputError(heading, table.headings[k].text,
+                               "[" + unknown + "] is no known unit; known are " + format::known_units() +
+                                   "; correct the heading, or give the unit, such as " +
+                                   (deviation ? "--deviation" : "--column") + " \"" + column.name + "[" +
+                                   unit + "]=" + std::to_string(k + 1) + "\"");
+      units.insert(unit);
+      without += fmt::format(" {} \"{}[{}]={}\"", deviation ? "--deviation" : "--column", column.name, unit,
                              table.headings[k].text);
+    }
     if (column.use == SheetColumn::Use::kLeft) continue;
     measured |= column.use == SheetColumn::Use::kDeviation || readings.contain(column);
   }
-  const text::Place heading{sheet.file, sheet.line[table.heading_row]};
   if (!without.empty())
     throw text::InputError(heading, "",
-                           "no unit: give it for all (--unit mm) or for each, such as" + without);
+                           "no unit: give it for " +
+                               (units.size() == 1 ? "all (--unit " + *units.begin() + ") or for " : "") +
+                               "each, such as" + without);
   if (!measured)
     throw text::InputError(heading, "",
                            "nothing measured among the columns (" + format::reading_column_names() +
@@ -771,8 +823,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
           throw text::InputError({sheet.file, sheet.line[row]}, column.name,
                                  "a deviation without its position");
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
-        text = text::number_text(
-            std::round((mm(at, columns[base].unit) + sign * mm(text, column.unit)) * 1e9) / 1e9);
+        text = text::fixed_text(mm(at, columns[base].unit) + sign * mm(text, column.unit), 9);
       }
       made.cells.push_back(std::move(text));
     }
@@ -786,7 +837,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
           heading, constant.name,
           "the table has this column: --set would give it a second time (--leave its heading)");
     result.columns.push_back(
-        {constant.name, constant.unit, std::vector<std::string>(result.line.size(), constant.constant)});
+        {constant.name, constant.unit,
+         std::vector<std::string>(result.line.size(), constant_cell(constant, sheet.decimal_comma))});
   }
   return result;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/import/tables/computed_rows.h"
 #include "tools/import/tables/wide_sheet.h"
 #include "tools/sheet/several_tables.h"
 #include "tools/text/error.h"
@@ -45,6 +46,8 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
   sheet::keep_table(result.sheet, result.wishes.format.table);
   result.table = sheet::parts_of_sheet(result.sheet);
+  note_short_rows(result.sheet, result.table);
+  leave_computed_rows(result.sheet, result.table);
   result.runs = unfold_runs(result.sheet, result.table);
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
   for (const std::string& one : words.deviations) assign_deviation(result.wishes, one);

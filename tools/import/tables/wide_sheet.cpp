@@ -293,6 +293,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   if (rows.size() == table.first_data) return 0;
   sheet.rows = std::move(rows);
   sheet.line = std::move(line);
+  sheet.written.clear();
   table.headings = std::move(headings);
   return runs.size();
 }

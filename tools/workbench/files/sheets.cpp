@@ -66,7 +66,9 @@ bool begins_as_measurement(const std::string& text) {
 Json sheet_preview(const std::string& bytes, const std::string& file, const importer::SheetWords& words) {
   const importer::SheetReading reading = importer::read_as_sheet(bytes, file, words);
   const sheet::Sheet& sheet = reading.sheet;
-  Json json = {{"how", importer::how_read(sheet)},
+  std::string how = importer::how_read(sheet);
+  for (const std::string& note : sheet.notes) how += "; " + note;
+  Json json = {{"how", how},
                {"workbook", sheet.workbook},
                {"sheet", sheet.sheet},
                {"sheets", sheet.sheets},

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/tables/computed_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+using WordSet = std::set<std::string, std::less<>>;
+
+// Words of computed rows in German and English, in small letters.
+const WordSet kAlways = {
+    "mittel",       "mittelwert", "mittelwerte", "mean",   "average",   "avg", "ø",
+    "durchschnitt", "stdev",      "stddev",      "stdabw", "stabw",     "std", "standardabweichung",
+    "spannweite",   "varianz",    "variance",    "sigma",  "σ",         "rms", "median",
+    "summe",        "mittelw",    "streuung",    "rmse",   "standardab"};
+// States of a machine can have these names too.
+const WordSet kSometimes = {"max",   "maximum", "maximal",  "min",    "minimum", "minimal", "range",
+                            "sum",   "total",   "gesamt",   "anzahl", "count",   "spread",  "s",
+                            "maxim", "größte",  "kleinste", "mw",     "sd",      "var"};
+// Further words of such a cell: "Std. dev.", "Max. Abweichung", "Mean value".
+const WordSet kBeside = {"value",  "values", "wert",  "werte", "dev", "deviation", "abweichung", "abw",
+                         "error",  "fehler", "of",    "the",   "der", "die",       "all",        "aller",
+                         "alle",   "runs",   "läufe", "von",   "abs", "standard",  "quadratic",  "square",
+                         "column", "spalte", "x",     "y",     "z"};
+
+enum class Names { kNoRow, kRowAtTheEnd, kRow };
+
+Names computed_word(const std::string& cell) {
+  Names found = Names::kNoRow;
+  bool standard = false, deviation = false;
+  for (const std::string& word : text::words_in(text::in_small_letters(cell), " \t_-./:;,()[]=")) {
+    standard |= word == "standard" || word == "std";
+    deviation |= word == "deviation" || word == "dev" || word == "abweichung";
+    if (kAlways.contains(word))
+      found = Names::kRow;
+    else if (kSometimes.contains(word))
+      found = std::max(found, Names::kRowAtTheEnd);
+    else if (!kBeside.contains(word))
+      return Names::kNoRow;
+  }
+  return standard && deviation ? Names::kRow : found;
+}
+
+/// True if the other cells of a column are numbers, in most rows.
+bool is_column_of_numbers(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
+  std::size_t numbers = 0, words = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::string& cell = sheet.rows[row][column];
+    if (cell.empty() || computed_word(cell) != Names::kNoRow) continue;
+    ++(sheet::plain_number(cell, sheet.decimal_comma) ? numbers : words);
+  }
+  return numbers > words;
+}
+
+/// True if the columns from this one have no numbers: remarks at the right end.
+bool are_words(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t from, std::size_t end) {
+  for (std::size_t k = from; k < end; ++k)
+    if (is_column_of_numbers(sheet, table, k)) return false;
+  return true;
+}
+
+/// Rows whose cell of this column names them as computed.
+std::vector<std::size_t> computed_rows_by(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                          std::size_t column) {
+  std::vector<std::size_t> rows;
+  std::vector<std::pair<std::size_t, std::string>> open;
+  std::size_t last_other = 0;
+  bool computed = false;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::string& cell = sheet.rows[row][column];
+    const Names word = computed_word(cell);
+    if (word == Names::kRow) {
+      rows.push_back(row);
+      computed = true;
+    } else if (word == Names::kRowAtTheEnd) {
+      open.emplace_back(row, text::in_small_letters(cell));
+    } else if (!cell.empty()) {
+      last_other = row;
+    }
+  }
+  if (open.empty()) return rows;
+  const bool numbers = is_column_of_numbers(sheet, table, column);
+  for (const auto& [row, word] : open) {
+    const auto times = std::count_if(open.begin(), open.end(),
+                                     [&, said = word](const auto& other) { return other.second == said; });
+    const bool labelled = last_other > 0 && last_other < row && times == 1;
+    if (numbers || computed || labelled) rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace
+
+bool says_computed_row(const std::string& cell) { return computed_word(cell) != Names::kNoRow; }
+
+void leave_computed_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  std::vector<std::pair<std::size_t, std::string>> computed;
+  std::set<std::size_t> rows;
+  for (std::size_t k = 0; !sheet.rows.empty() && k < sheet.rows.front().size(); ++k)
+    for (const std::size_t row : computed_rows_by(sheet, table, k))
+      if (rows.insert(row).second) computed.emplace_back(row, sheet.rows[row][k]);
+  if (rows.empty() || rows.size() + table.first_data >= sheet.rows.size()) return;
+  std::sort(computed.begin(), computed.end());
+  for (const auto& [row, word] : computed)
+    sheet.notes.push_back(fmt::format("line {}: the row \"{}\" is computed from the rows above, left out",
+                                      sheet.line[row], word));
+  for (auto row = rows.rbegin(); row != rows.rend(); ++row) sheet::remove_row(sheet, *row);
+}
+
+void note_short_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  if (!table.has_headings || sheet.written.empty()) return;
+  const std::size_t headings =
+      std::min(sheet.written[table.heading_row], sheet.rows[table.heading_row].size());
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::size_t cells = sheet.written[row];
+    if (cells >= headings) continue;
+    if (sheet.separator == ' ' && !are_words(sheet, table, cells, headings))
+      throw text::InputError(
+          {sheet.file, sheet.line[row]}, text::joined(sheet.rows[row], " ").substr(0, 40),
+          fmt::format("{} cells, the headings in line {} are {}; write - for a cell without a value", cells,
+                      sheet.line[table.heading_row], headings));
+    const std::string& first = table.headings[cells].text;
+    sheet.notes.push_back(fmt::format(
+        "line {}: {} cells, {} headings: no value for {}", sheet.line[row], cells, headings,
+        headings - cells == 1 ? fmt::format("\"{}\"", first)
+                              : fmt::format("\"{}\" to \"{}\"", first, table.headings[headings - 1].text)));
+  }
+}
+
+}  // namespace vernier::importer
