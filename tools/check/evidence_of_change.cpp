@@ -262,8 +262,8 @@ class Judge {
     word.at_most("evidence", answer_.evidence, answer_.alarm,
                  "Evidence (e-value) for a change of the machine or the instrument.");
     if (!answer_.not_seen.empty())
-      word.not_covered(
-          fmt::format("These readings do not depend on: {}.", fmt::join(answer_.not_seen, ", ")));
+      word.not_covered(fmt::format("These readings do not depend on, or the fit did not measure: {}.",
+                                   fmt::join(answer_.not_seen, ", ")));
     for (const Change& one : answer_.resolved)
       word.not_covered(fmt::format("A change of {} by less than about {:.2g} {} (five standard deviations).",
                                    one.suspect.name, kShown * one.std, one.suspect.unit));
@@ -299,9 +299,18 @@ class Judge {
     answer_.explanation = fmt::format("No evidence for a change ({:.3g}, alarm threshold {:g}).",
                                       answer_.evidence, answer_.alarm);
     if (!answer_.not_seen.empty())
-      answer_.explanation +=
-          fmt::format(" These readings do not depend on: {}. A change there is not covered.",
-                      fmt::join(answer_.not_seen, ", "));
+      answer_.explanation += fmt::format(" {}. A change there is not covered.", not_seen_words());
+  }
+
+  /// Parameters on which the readings give no evidence, the first of a long list.
+  std::string not_seen_words() const {
+    constexpr std::size_t kNamed = 8;  // names that a person reads in a sentence
+    const std::size_t count = std::min(kNamed, answer_.not_seen.size());
+    const std::vector<std::string> first(answer_.not_seen.begin(),
+                                         answer_.not_seen.begin() + static_cast<std::ptrdiff_t>(count));
+    return fmt::format(
+        "These readings do not depend on, or the fit did not measure: {}{}", fmt::join(first, ", "),
+        answer_.not_seen.size() > count ? fmt::format(" and {} more", answer_.not_seen.size() - count) : "");
   }
 
   void report_instrument(bool scatters, bool beside_all) {

@@ -10,6 +10,9 @@
 namespace vernier::create {
 namespace {
 
+/// A number of the file: computed values (of a URDF) without the tail of binary digits, 1e-9 mm or deg.
+std::string number(double value) { return text::fixed_text(value, 9); }
+
 constexpr std::array<char, 3> kLengths = {'X', 'Y', 'Z'}, kTurns = {'A', 'B', 'C'};
 /// Limits of a correction: a millimetre is a crash; a tenth of a degree at a distance of a metre is nearly
 /// two.
@@ -47,7 +50,7 @@ std::string error_static(const MachinePlan& plan, const std::string& name, const
 }
 std::string length_static(const std::string& name, double value, const std::string& note) {
   return fmt::format("      <{0} value=\"{1}\" unit=\"mm\" Hide=\"true\" note=\"{2}\"/>\n", name,
-                     text::number_text(value), note);
+                     number(value), note);
 }
 
 /// An angle of a slide's travel about one axis of the machine: E + turn + 0 + the slide's name.
@@ -196,8 +199,8 @@ std::string arm_statics(const MachinePlan& plan) {
     const std::string j = std::to_string(i + 1);
     const bool last = i + 1 == plan.arm.size(), parallel = row.parallel() && !last;
     const auto length = [&](const std::string& name, double value) {
-      text += fmt::format("      <{0} value=\"{1}\" nominal=\"{1}\" unit=\"mm\"/>\n", name + j,
-                          text::number_text(value));
+      text +=
+          fmt::format("      <{0} value=\"{1}\" nominal=\"{1}\" unit=\"mm\"/>\n", name + j, number(value));
     };
     text += error_static(plan, "th" + j, "deg", (row.prismatic ? "turn of joint " : "zero of joint ") + j);
     if (!parallel) length("d", row.d);
@@ -212,7 +215,7 @@ std::string arm_statics(const MachinePlan& plan) {
 }
 
 std::string plus(double value, const std::string& name) {
-  return value == 0 ? name : text::number_text(value) + "+" + name;
+  return value == 0 ? name : number(value) + "+" + name;
 }
 
 std::string arm_rows(const MachinePlan& plan) {
@@ -223,10 +226,9 @@ std::string arm_rows(const MachinePlan& plan) {
     const std::string j = std::to_string(i + 1), axis = plan.axes[i].name;
     const bool last = i + 1 == plan.arm.size(), parallel = row.parallel() && !last;
     const std::string theta = plus(row.theta, (row.prismatic ? "" : axis + "+") + "th" + j);
-    const std::string d = (row.prismatic ? axis + "+" : "") + (parallel ? text::number_text(row.d) : "d" + j);
+    const std::string d = (row.prismatic ? axis + "+" : "") + (parallel ? number(row.d) : "d" + j);
     text += fmt::format("    <DH n=\"{}\" theta=\"{}\" d=\"{}\" a=\"{}\" alpha=\"{}\"/>\n", n++, theta, d,
-                        last ? text::number_text(row.a) : "a" + j,
-                        last ? text::number_text(row.alpha) : plus(row.alpha, "al" + j));
+                        last ? number(row.a) : "a" + j, last ? number(row.alpha) : plus(row.alpha, "al" + j));
     if (parallel) text += fmt::format("    <sixdof n=\"{}\" rY=\"{}\"/>\n", n++, plus(row.beta, "be" + j));
   }
   return text + fmt::format("    <sixdof n=\"{}\" X=\"TPX\" Y=\"TPY\" Z=\"TPZ\"/>\n  </transforms>\n", n);
@@ -239,8 +241,7 @@ std::string axes_text(const MachinePlan& plan) {
       "         second. Set them to what your machine can take. -->\n    <machineaxes>\n";
   for (const PlannedAxis& axis : plan.axes)
     text += fmt::format("      <{} rotary=\"{}\"{} min=\"{}\" max=\"{}\" {}/>\n", axis.name, axis.rotary(),
-                        axis.rollover ? " rollover=\"true\"" : "", text::number_text(axis.min),
-                        text::number_text(axis.max),
+                        axis.rollover ? " rollover=\"true\"" : "", number(axis.min), number(axis.max),
                         !axis.rotary()     ? kLinearLimits
                         : plan.arm.empty() ? kRotaryLimits
                                            : kJointLimits);
@@ -265,9 +266,8 @@ std::string tables_text(const MachinePlan& plan) {
         "      <table axis=\"{}\" fit=\"{}\">\n", axis.name,
         plan.positioning_only ? kColumns[axis.along() + (axis.rotary() ? 3 : 0)] : "X Y Z rX rY rZ");
     for (const double loc : round_stations(axis.min, axis.max, axis.rotary()))
-      text +=
-          fmt::format("        <station loc=\"{}\" X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>\n",
-                      text::number_text(loc));
+      text += fmt::format(
+          "        <station loc=\"{}\" X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>\n", number(loc));
     text += "      </table>\n";
   }
   return text + "    </comptables>\n";
@@ -306,7 +306,7 @@ std::string base_attributes(const MachinePlan& plan) {
   constexpr std::array kNames = {"X", "Y", "Z", "rX", "rY", "rZ"};
   std::string text;
   for (std::size_t k = 0; k < kNames.size(); ++k)
-    text += fmt::format(" {}=\"{}\"", kNames[k], text::number_text(plan.base[k]));
+    text += fmt::format(" {}=\"{}\"", kNames[k], number(plan.base[k]));
   return text;
 }
 

@@ -195,6 +195,7 @@ std::string OtherSetUp::sentence() const {
 }
 
 std::vector<OtherSetUp> files_set_up_elsewhere(const model::Machine& machine, const model::Measurement& m) {
+  // Above the errors of a machine tool or robot; the decrease that only another set-up explains.
   constexpr double kFar_um = 500, kFalls = 20;
   constexpr std::size_t kLeast = 9;  // readings: a set-up has six numbers
   std::vector<OtherSetUp> list;

@@ -25,7 +25,7 @@ struct SheetColumn {
 };
 
 /// Six significant digits: far finer than any axis is set or read.
-std::string cell_text(double value) { return text::number_text(std::stod(fmt::format("{:.9g}", value))); }
+std::string cell_text(double value) { return text::fixed_text(std::stod(fmt::format("{:.9g}", value)), 9); }
 
 bool any_nonzero(const model::Column& column) { return (column != 0).any(); }
 

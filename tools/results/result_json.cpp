@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 namespace vernier::results {
@@ -51,8 +52,14 @@ Json correction_json(const model::Machine& machine, const kinematics::Correction
           {"proof", inverse_json(machine, result.each[0])}};
 }
 
+Eigen::Vector3d without_minus_zero(const Eigen::Vector3d& values, int decimals) {
+  const double least = 0.5 * std::pow(10.0, -decimals);
+  return values.unaryExpr([&](double value) { return std::abs(value) < least ? 0.0 : value; });
+}
+
 void print_pose(std::FILE* out, const char* what, const model::Poses& poses) {
-  const Eigen::Vector3d p = poses.position.col(0), r = rotation_deg(poses);
+  const Eigen::Vector3d p = without_minus_zero(poses.position.col(0), 6),
+                        r = without_minus_zero(rotation_deg(poses), 7);
   fmt::print(out, "{:<10} {:.6f} {:.6f} {:.6f} mm   rotation {:.7f} {:.7f} {:.7f} deg\n", what, p.x(), p.y(),
              p.z(), r.x(), r.y(), r.z());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <Eigen/Core>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +17,9 @@ nlohmann::ordered_json correction_json(const model::Machine& machine,
                                        const kinematics::CorrectionResult& result);
 /// {"converged", "fault", "axis", "iterations", "residual_mm", "residual_deg", "condition"}.
 nlohmann::ordered_json inverse_json(const model::Machine& machine, const kinematics::Inverse& proof);
+
+/// Values that print as zero with so many decimals as 0: no "-0.0000".
+Eigen::Vector3d without_minus_zero(const Eigen::Vector3d& values, int decimals);
 /// A line for people.
 void print_pose(std::FILE* out, const char* what, const model::Poses& poses);
 

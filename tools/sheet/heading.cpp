@@ -224,7 +224,9 @@ std::optional<std::pair<std::string, std::string>> number_and_unit(std::string_v
                                                                    bool decimal_comma) {
   const std::size_t end = cell.find_last_of("0123456789");
   if (end == std::string_view::npos || end + 1 == cell.size()) return std::nullopt;
-  const auto number = plain_number(cell.substr(0, end + 1), decimal_comma);
+  // The units hid the decimal sign of these cells when the sheet was read.
+  auto number = plain_number(cell.substr(0, end + 1), decimal_comma);
+  if (!number) number = plain_number(cell.substr(0, end + 1), !decimal_comma);
   const auto unit = unit_meant(cell.substr(end + 1));
   if (!number || !unit) return std::nullopt;
   return std::pair(*number, *unit);

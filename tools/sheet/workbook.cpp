@@ -5,12 +5,14 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
 #include <pugixml.hpp>
 
 #include "tools/sheet/dates.h"
+#include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -121,11 +123,19 @@ class Reader {
   }
 
  private:
-  /// Two rows with two numbers each: a cover sheet has a serial number and a date.
+  /// Two rows with two numbers each, as numbers or as text: a cover sheet has a serial number and a date.
   static bool is_table(const WorkbookSheet& sheet) {
-    return std::count_if(sheet.is_number.begin(), sheet.is_number.end(), [](const std::vector<char>& row) {
-             return std::count(row.begin(), row.end(), 1) >= 2;
-           }) >= 2;
+    std::size_t rows = 0;
+    for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
+      std::size_t numbers = 0;
+      for (std::size_t k = 0; k < sheet.rows[i].size(); ++k) {
+        const std::string& cell = sheet.rows[i][k];
+        numbers +=
+            sheet.is_number[i][k] != 0 || plain_number(cell, true) || plain_number(cell, false) ? 1 : 0;
+      }
+      rows += numbers >= 2 ? 1 : 0;
+    }
+    return rows >= 2;
   }
   void load(pugi::xml_document& document, const std::string& text, const std::string& name) const {
     const auto result =
@@ -242,7 +252,12 @@ class Reader {
     // 200.0051.
     const auto number = is_number(cell) ? text::parse_number(value) : std::nullopt;
     if (number && shows_date(cell)) return date_text(*number, from_1904_);
-    return number ? text::number_text(*text::parse_number(fmt::format("{:.15g}", *number))) : value;
+    if (!number) return value;
+    const double shown = *text::parse_number(fmt::format("{:.15g}", *number));
+    // A small number without an exponent: 0.0006, not 6e-04. 18 decimals hold its 15 digits.
+    constexpr double kSmall = 1e-3, kTiny = 1e-12;
+    const bool small = std::abs(shown) < kSmall && std::abs(shown) > kTiny;
+    return small ? text::fixed_text(shown, 18) : text::number_text(shown);
   }
 
   std::string file_;

@@ -237,6 +237,11 @@ const Case kCases[] = {
     {"SmallNumbersHaveNoExponent", "X [mm];Abw. X [µm]\n0;0,6\n1;-1000\n", "X[mm],x[mm]\n0,0.0006\n1,0\n"},
     {"ShortRowsOfBlanks", "X[mm] Y[mm] x[mm]\n0 1 2\n9 10\n",
      "refused: s.csv:3: \"9 10 \": 2 cells, the headings in line 1 are 3"},
+    {"UnitsInTheReadingsBehindADecimalComma", "X[mm];x[mm]\n1;0,1 mm\n100;100,002 mm\n",
+     "refused: s.csv:2: \"0,1 mm\": a number with the unit mm, for x"},
+    {"UnfilledTemplate", "X[mm],dirX,x[mm],y[mm],run\n0,1,,,a\n9,-1,,,a\n",
+     "refused: s.csv:1: the columns of readings are empty (x[mm], y[mm]): fill in the readings"},
+    {"AnApproachDirectionIsNoReading", "X[mm],dirX\n0,1\n9,-1\n", "such as --column \"x[mm]=HEADING\""},
     {"OpenQuote", "X[mm];x[mm]\n1;\"2\n", "a closing quote is missing"},
 };
 
@@ -316,6 +321,17 @@ TEST(SheetWish, AConstantMayHaveADecimalComma) {
   EXPECT_NE(with("Y[mm]=half", "X [mm];x [mm]\n1;2\n").find("\"half\": not a number, for Y"),
             std::string::npos);
   EXPECT_EQ(with("run=1,5", "X [mm];x [mm]\n1;2\n"), "X[mm],x[mm],run\n1,2,\"1,5\"\n");
+}
+
+TEST(SheetNote, ASecondColumnOfTheSameNameStatesHowToReadIt) {
+  const SheetReading reading = read_as_sheet("X [mm];x [mm];x [mm]\n0;1;2\n9;10;11\n", "s.csv", SheetWords());
+  EXPECT_EQ(reading.columns[2].why,
+            "column 2 (\"x [mm]\") is x already; to read this one: --leave 2, or another name: --column "
+            "\"NAME[unit]=3\"");
+  SheetWords words;
+  words.left = {"2"};
+  EXPECT_EQ(read_as_sheet("X [mm];x [mm];x [mm]\n0;1;2\n9;10;11\n", "s.csv", words).columns[2].use,
+            SheetColumn::Use::kColumn);
 }
 
 TEST(SheetNote, NamesEveryRowThatIsLeftOutOrShort) {

@@ -30,7 +30,9 @@ std::string refusal(const std::string& bytes, const std::string& sheet) {
 }
 
 /// A workbook of one sheet with these texts and rows.
-std::string workbook_of(const std::string& strings, const std::string& rows, const std::string& styles = "") {
+/// second: the rows of a further sheet T.
+std::string workbook_of(const std::string& strings, const std::string& rows, const std::string& styles = "",
+                        const std::string& second = "") {
   std::map<std::string, std::string> parts = {
       {"xl/workbook.xml",
        "<workbook><sheets><sheet name=\"S\" sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"},
@@ -38,6 +40,15 @@ std::string workbook_of(const std::string& strings, const std::string& rows, con
        "<Relationships><Relationship Id=\"rId1\" Target=\"worksheets/sheet1.xml\"/></Relationships>"},
       {"xl/sharedStrings.xml", "<sst>" + strings + "</sst>"},
       {"xl/worksheets/sheet1.xml", "<worksheet><sheetData>" + rows + "</sheetData></worksheet>"}};
+  if (!second.empty()) {
+    parts["xl/workbook.xml"] =
+        "<workbook><sheets><sheet name=\"S\" sheetId=\"1\" r:id=\"rId1\"/><sheet name=\"T\" sheetId=\"2\" "
+        "r:id=\"rId2\"/></sheets></workbook>";
+    parts["xl/_rels/workbook.xml.rels"] =
+        "<Relationships><Relationship Id=\"rId1\" Target=\"worksheets/sheet1.xml\"/><Relationship "
+        "Id=\"rId2\" Target=\"worksheets/sheet2.xml\"/></Relationships>";
+    parts["xl/worksheets/sheet2.xml"] = "<worksheet><sheetData>" + second + "</sheetData></worksheet>";
+  }
   if (!styles.empty()) parts["xl/styles.xml"] = "<styleSheet>" + styles + "</styleSheet>";
   zip_error_t error;
   zip_error_init(&error);
@@ -78,6 +89,24 @@ TEST(Workbook, CoverSheetIsNotTheTable) {
   EXPECT_EQ(sheet.rows.size(), 4u);
   EXPECT_EQ(read_workbook(bytes_of("cover.xlsx"), "b.xlsx", "1").rows[1],
             (std::vector<std::string>{"Auftrag", "4711"}));
+}
+
+TEST(Workbook, NumbersStoredAsTextMakeATableToo) {
+  const auto text = [](const char* value) {
+    return std::string("<c t=\"inlineStr\"><is><t>") + value + "</t></is></c>";
+  };
+  const auto row = [&](const char* a, const char* b) { return "<row>" + text(a) + text(b) + "</row>"; };
+  const std::string cover = row("Report", "Portal 4") + row("Operator", "K. M.");
+  const std::string table = row("X [mm]", "x [mm]") + row("0", "0,001") + row("100", "100,002");
+  EXPECT_EQ(read_workbook(workbook_of("", cover, "", table), "b.xlsx", "").name, "T");
+}
+
+TEST(Workbook, SmallNumbersHaveNoExponent) {
+  const WorkbookSheet sheet = read_workbook(
+      workbook_of("",
+                  "<row><c><v>5.9999999999999995E-4</v></c><c><v>-1.2E-5</v></c><c><v>1E-300</v></c></row>"),
+      "b.xlsx", "");
+  EXPECT_EQ(sheet.rows[0], (std::vector<std::string>{"0.0006", "-0.000012", "1e-300"}));
 }
 
 TEST(Workbook, SheetIsTakenByNameOrNumber) {

@@ -52,8 +52,8 @@ void run_pose(const PoseArguments& arguments) {
   json["correction"] = nullptr;
   results::print_pose(out, "nominal", nominal);
   results::print_pose(out, "actual", actual);
-  fmt::print(out, "deviation  {:10.4f} {:10.4f} {:10.4f} um\n", 1000 * deviation.x(), 1000 * deviation.y(),
-             1000 * deviation.z());
+  const Eigen::Vector3d shown_um = results::without_minus_zero(1000 * deviation, 4);
+  fmt::print(out, "deviation  {:10.4f} {:10.4f} {:10.4f} um\n", shown_um.x(), shown_um.y(), shown_um.z());
   if (reach.known())
     fmt::print(
         out, "known to   {:10.4f} {:10.4f} {:10.4f} um (standard uncertainty, with the model discrepancy)\n",

@@ -30,10 +30,10 @@ const WordSet kSometimes = {"max",   "maximum", "maximal",  "min",    "minimum",
                             "sum",   "total",   "gesamt",   "anzahl", "count",   "spread",  "s",
                             "maxim", "größte",  "kleinste", "mw",     "sd",      "var"};
 // Further words of such a cell: "Std. dev.", "Max. Abweichung", "Mean value".
-const WordSet kBeside = {"value",  "values", "wert",  "werte", "dev", "deviation", "abweichung", "abw",
-                         "error",  "fehler", "of",    "the",   "der", "die",       "all",        "aller",
-                         "alle",   "runs",   "läufe", "von",   "abs", "standard",  "quadratic",  "square",
-                         "column", "spalte", "x",     "y",     "z"};
+const WordSet kBeside = {"value",    "values",    "wert",   "werte",  "dev",   "deviation", "abweichung",
+                         "abw",      "error",     "fehler", "of",     "the",   "der",       "die",
+                         "all",      "aller",     "alle",   "runs",   "läufe", "von",       "abs",
+                         "standard", "quadratic", "square", "column", "spalte"};
 
 enum class Names { kNoRow, kRowAtTheEnd, kRow };
 
@@ -47,7 +47,7 @@ Names computed_word(const std::string& cell) {
       found = Names::kRow;
     else if (kSometimes.contains(word))
       found = std::max(found, Names::kRowAtTheEnd);
-    else if (!kBeside.contains(word))
+    else if (word.size() > 1 && !kBeside.contains(word))  // a letter alone is an axis
       return Names::kNoRow;
   }
   return standard && deviation ? Names::kRow : found;

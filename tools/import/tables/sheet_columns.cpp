@@ -538,7 +538,7 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
-        is_known_name(column.name))
+        guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name))
       continue;
     const Guess::Bare bare = Guess::bare(table.headings[k].name);
     if (bare == Guess::Bare::kTarget && axis == columns.end() && position.empty()) {
@@ -556,6 +556,18 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
       "{}--column \"{}{}={}\" for a measured position, or {}--deviation \"{}{}={}\" for a deviation",
       position, text::in_small_letters(name), unit.empty() ? "[mm]" : "", reading, position, name,
       unit.empty() ? "[um]" : "", reading);
+}
+
+/// The headings of readings whose cells are all empty: a template that was not filled in.
+std::string empty_readings(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns) {
+  std::vector<std::string> found;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const format::ColumnGroup* const known = format::find_column(table.headings[k].name);
+    const bool reading = known != nullptr && known->use == format::ColumnUse::kReading;
+    if (columns[k].use == SheetColumn::Use::kLeft && columns[k].why == "empty" && reading)
+      found.push_back(table.headings[k].text);
+  }
+  return text::joined(found, ", ");
 }
 
 /// One cell as the measurement file writes it.
@@ -765,6 +777,10 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                            "no unit: give it for " +
                                (units.size() == 1 ? "all (--unit " + *units.begin() + ") or for " : "") +
                                "each, such as" + without);
+  if (const std::string empty = measured ? "" : empty_readings(table, columns); !empty.empty())
+    throw text::InputError(heading, "",
+                           "the columns of readings are empty (" + empty +
+                               "): fill in the readings, then import the table again");
   if (!measured)
     throw text::InputError(heading, "",
                            "nothing measured among the columns (" + format::reading_column_names() +
