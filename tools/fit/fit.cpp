@@ -433,7 +433,6 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
     end = nothing_free(problem, result.before.count, with_u);
     result.converged = true;
   } else {
-<<<<<<< HEAD
     const auto solved = [&] {
       const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
       const bool squared = options.loss == Loss::kSquared;
@@ -444,18 +443,10 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
     };
     solved();
     if (hold_turned_away(end, convention)) solved();
-=======
-    const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
-    const bool squared = options.loss == Loss::kSquared;
-    end = squared ? settle(problem, near, convention, stated, result.before.count, with_u, options.noise)
-                  : describe(problem, near, convention, stated, result.before.count, with_u, options.noise);
     // Steps were found among the rows of the fit, and are stated by the rows of the files.
     const std::vector<std::size_t> keep = kept_for_fit(machine, measurement);
     for (NoiseStep& step : end.noise.steps)
       if (!options.noise && step.row < keep.size()) step.row = keep[step.row];
-    result.iterations += squared ? end.iterations : 0;
-    result.converged = result.converged && (!squared || end.converged);
->>>>>>> journey2
   }
   result.parameters.set(result.machine, end.point);
   result.residual = residuals(result.machine, measurement);
