@@ -89,7 +89,27 @@ void add_help_command(CLI::App& app) {
   }
 }
 
+/// What `vernier` prints without a command: the way of the first hour.
+constexpr const char* kFirstHour =
+    "Vernier makes machine tools, measuring machines and robots more accurate.\n\n"
+    "The first hour:\n"
+    "  vernier new gantry --axis X:0:600 --axis Y:0:400 --axis Z:0:300 -o machine.xml\n"
+    "                                                  create a machine file (a robot: --urdf)\n"
+    "  vernier import table laser.xlsx -o survey.csv   read the file of an instrument\n"
+    "  vernier fit machine.xml survey.csv -o fitted.xml\n"
+    "                                                  estimate the errors of the machine\n"
+    "  vernier diagnose machine.xml survey.csv -o report.html\n"
+    "                                                  find which physical effect is missing\n"
+    "  vernier evaluate iso230-2 survey.csv --axis X   evaluate a positioning test\n\n"
+    "The same in a browser: vernier workbench\n"
+    "All commands:          vernier --help\n"
+    "One command:           vernier fit --help\n";
+
 int run(const std::vector<std::string>& arguments) {
+  if (arguments.empty()) {
+    std::fputs(kFirstHour, stdout);
+    return kDone;
+  }
   CLI::App app{
       "Vernier makes machine tools, measuring machines and robots more accurate. It fits a model of the "
       "machine's errors to measurements and corrects the axes with it.",
@@ -102,10 +122,6 @@ int run(const std::vector<std::string>& arguments) {
   add_help_command(app);
   vernier::commands::take_plain_numbers(app);
   app.require_subcommand(1);
-  if (arguments.empty()) {
-    std::fputs(app.help().c_str(), stdout);
-    return kDone;
-  }
   vernier::commands::require_known_commands(app, arguments);
   vernier::commands::require_known_dashes(app, arguments);
   app.parse_complete_callback([&] {
