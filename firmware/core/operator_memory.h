@@ -37,7 +37,7 @@ class OperatorMemory {
 
  private:
   OperatorState present() const noexcept;
-  OperatorPlace read(std::uint32_t place) noexcept;
+  OperatorPlace read(std::uint32_t number) noexcept;
   bool store(const OperatorState& state) noexcept;
   bool store_changes(const OperatorState& now) noexcept;
 

@@ -109,19 +109,19 @@ std::string numeric(const std::string& host) {
 }  // namespace
 
 std::unique_ptr<Transport> open_transport(const BoardUrl& url,
-                                          std::optional<std::chrono::milliseconds> given) {
-  if (url.scheme == "serial") return open_serial_transport(url, given.value_or(kSerialReplyDeadline));
-  const std::chrono::milliseconds wait = given.value_or(kReplyDeadline);
-  if (url.scheme == "can") return std::make_unique<IsotpTransport>(url, wait);
+                                          std::optional<std::chrono::milliseconds> wait) {
+  if (url.scheme == "serial") return open_serial_transport(url, wait.value_or(kSerialReplyDeadline));
+  const std::chrono::milliseconds deadline = wait.value_or(kReplyDeadline);
+  if (url.scheme == "can") return std::make_unique<IsotpTransport>(url, deadline);
   if (url.scheme == "tcp")
     return std::make_unique<ModbusTransport>(modbus_new_tcp(numeric(url.place).c_str(), url.port),
-                                             "tcp://" + url.place + ":" + std::to_string(url.port), wait);
+                                             "tcp://" + url.place + ":" + std::to_string(url.port), deadline);
   const auto parity = url.options.find("parity");
   modbus_t* const context =
       modbus_new_rtu(url.place.c_str(), static_cast<int>(url.number("baud", 115200)),
                      parity == url.options.end() || parity->second.empty() ? 'E' : parity->second[0], 8, 1);
   if (context != nullptr) modbus_set_slave(context, static_cast<int>(url.number("unit", 1)));
-  return std::make_unique<ModbusTransport>(context, "rtu://" + url.place, wait);
+  return std::make_unique<ModbusTransport>(context, "rtu://" + url.place, deadline);
 }
 
 }  // namespace vernier::upload
