@@ -603,9 +603,10 @@ double Finder::chance_of(std::size_t item, const Eigen::MatrixXd& columns, const
 }
 
 std::vector<std::size_t> Alternatives::within(double distance) const {
+  constexpr double kRounding = 1e-3;  // of two fits; a rare form of the same columns is at the limit itself
   std::vector<std::size_t> items;
   for (const Alternative& one : other)
-    if (one.distance < distance) items.push_back(one.item);
+    if (one.distance < distance - kRounding) items.push_back(one.item);
   return items;
 }
 

@@ -33,9 +33,9 @@ class Causes {
     std::vector<Cause> causes = {entry(first_, pool_[first_].scored.scanned, own)};
     for (const double alias : aliases)
       causes.push_back(entry(first_, {alias}, found_.finder.evidence_for(first_, {alias})));
-    const double limit = found_.options.thresholds.acceptance.distance;
+    const std::vector<std::size_t> close = found_.close();
     for (const Alternative& other : found_.alternatives.other)
-      if (other.distance < limit)
+      if (std::find(close.begin(), close.end(), other.item) != close.end())
         causes.push_back(entry(other.item, pool_[other.item].scored.scanned, own - other.distance / 2));
     return causes;
   }
