@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "tools/exchange/controller/controller_files.h"
+#include "tools/exchange/controller/placing.h"
 #include "tools/exchange/controller/tables.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
@@ -41,11 +42,11 @@ struct Case {
 };
 
 Case export_of(Controller controller, const char* xml = kMill, double step_mm = 0,
-               const ControllerSetting& setting = {}) {
+               const ControllerSetting& setting = {}, const std::array<double, 3>& reference = {0, 0, 0}) {
   Case result{parse_machine(xml, "mill.xml"), {}, {}, {}, {}};
   result.axes = printer_axes(result.machine);
   result.at = make_states(1, result.machine);
-  const ControllerWishes wishes{1, step_mm, {0, 0, 0}};
+  const ControllerWishes wishes{1, step_mm, reference};
   result.tables =
       controller_tables(result.machine, result.axes, rules_of(controller, setting), result.at, wishes);
   for (const FirmwareFile& file : controller_files(controller, setting, result.machine.name, result.tables))
@@ -266,6 +267,26 @@ TEST(FanucFiles, RemovePositioningAndBacklashAndLeaveSquareness) {
   EXPECT_EQ(file.parameter.at({1851, 1}), 12);
 }
 
+TEST(FanucFiles, CountFromAReferenceInsideTheRange) {
+  const std::array<double, 3> reference = {250, -100, -80};
+  const ControllerSetting half{{1, 2, 3}, 0.5};
+  const Case one = export_of(Controller::kFanuc, kMill, 7, half, reference);
+  const FanucFile file(one.files.at("PITCH.TXT"));
+  // The number of the reference, and one section for each 7 mm on both sides.
+  EXPECT_EQ(file.parameter.at({3620, 1}) - file.parameter.at({3621, 1}) + 1, std::ceil(250 / 7.0));
+  EXPECT_EQ(file.parameter.at({3622, 1}) - file.parameter.at({3620, 1}), std::ceil(350 / 7.0));
+  EXPECT_EQ(file.correction_mm(1, 250, 250, 5e-4), 0);
+  const auto moved = [&](const Point& p, const Point& d) {
+    Point q = p;
+    for (int i = 0; i < 3; ++i) {
+      q[i] += file.correction_mm(i + 1, p[i], reference[static_cast<std::size_t>(i)], 5e-4);
+      q[i] += file.parameter.at({1851, i + 1}) * 5e-4 / 2 * d[i];
+    }
+    return q;
+  };
+  EXPECT_LT(largest_um(one, moved)[2], 1);  // half a stair of 7 mm (0.35 um), half a unit, the mean
+}
+
 TEST(FanucFiles, KeepTheRangesOfNumbersAndValues) {
   // Coarse intervals of a large scale: the magnification grows.
   std::string steep = kMill;
@@ -292,6 +313,24 @@ TEST(ControllerTables, RefuseMorePointsThanTheControllerKeeps) {
   EXPECT_THROW(export_of(Controller::kHeidenhain, kMill, 1), text::InputError);
   EXPECT_THROW(export_of(Controller::kFanuc, kMill, 4), text::InputError);
   EXPECT_THROW(export_of(Controller::kSiemens, kMill, 0.5), text::InputError);
+}
+
+/// 257 points of 2000 mm are too few for a period of 10 mm.
+TEST(ControllerTables, DoNotIncreaseAnErrorThatTheyCannotHold) {
+  const char* const cyclic = R"xml(<machine name="cyclic"><variables><static>
+    <c value="0.003" nominal="0" unit="mm"/></static>
+    <machineaxes><X min="0" max="2000"/><Y min="0" max="100"/><Z min="-100" max="0"/></machineaxes></variables>
+    <transforms branch="workpiece"><sixdof n="1" X="-(X+c*sin(360*X/10))"/></transforms>
+    <transforms branch="tool"><sixdof n="1" Y="Y"/><sixdof n="2" Z="Z"/></transforms></machine>)xml";
+  for (const Controller controller : {Controller::kHeidenhain, Controller::kFanuc}) {
+    const Case one = export_of(controller, cyclic);
+    const ControllerErrors errors = controller_errors(one.machine, one.axes, one.tables, one.at);
+    EXPECT_LT(errors.after_um[0], errors.before_um[0] + 1);  // rounding of the detection unit
+    EXPECT_GT(one.tables.between_um[0], 1);
+  }
+  // The axis carries the workpiece: 801 points 2.5 mm apart hold a sine of 3 um to 0.9 um.
+  const Case fine = export_of(Controller::kSiemens, cyclic);
+  EXPECT_LT(controller_errors(fine.machine, fine.axes, fine.tables, fine.at).after_um[0], 1);
 }
 
 TEST(ControllerTables, AreZeroAtTheReference) {

@@ -9,6 +9,7 @@
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/out/exporting.h"
 #include "tools/exchange/controller/controller_files.h"
+#include "tools/exchange/controller/placing.h"
 #include "tools/exchange/controller/tables.h"
 #include "tools/kinematics/at.h"
 #include "tools/text/error.h"
@@ -97,7 +98,8 @@ Json result_json(const exchange::ControllerErrors& errors, const exchange::Contr
             {"rms_after_um", errors.rms_after_um}}}};
 }
 
-void print_tables(const ExchangeArguments& common, const exchange::ControllerTables& tables) {
+void print_tables(const ExchangeArguments& common, const exchange::ControllerTables& tables,
+                  const exchange::ControllerErrors& errors) {
   std::FILE* out = human_stream(common.json);
   for (const exchange::ControllerTable& table : tables.tables)
     fmt::print(out, "{} by the position of {}: {} points, {} mm apart\n", kAxisNames[table.output],
@@ -106,6 +108,10 @@ void print_tables(const ExchangeArguments& common, const exchange::ControllerTab
     if (tables.between_um[i] > common.tolerance_um)
       fmt::print(out, "note: the error between the points of {} is {:.3g} um, the tolerance is {} um\n",
                  kAxisNames[i], tables.between_um[i], common.tolerance_um);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (errors.after_um[i] > errors.before_um[i] + exchange::kNothing_um)
+      fmt::print(out, "note: the files increase the largest error along {} from {:.3g} to {:.3g} um\n",
+                 kAxisNames[i], errors.before_um[i], errors.after_um[i]);
 }
 
 void export_controller(const ControllerArguments& arguments, Controller controller, const char* name) {
@@ -127,7 +133,7 @@ void export_controller(const ControllerArguments& arguments, Controller controll
     files.push_back(common.output + "/" + file.name);
     text::write_file(files.back().get<std::string>(), file.text);
   }
-  print_tables(common, tables);
+  print_tables(common, tables, errors);
   fmt::print(human_stream(common.json),
              "error of the tool point at {} positions, rms: {:.4g} um before, {:.4g} um with the files\n",
              errors.positions, errors.rms_before_um, errors.rms_after_um);

@@ -226,8 +226,9 @@ std::vector<FirmwareFile> fanuc(const ControllerSetting& setting, const std::str
       "positive value of the data moves the axis in its positive direction. The value of a section acts in "
       "its\n"
       "middle. Check that no other axis uses these numbers, and the smallest interval that the manual "
-      "allows. Switch the power off and on after loading, then return to the\n"
-      "reference position. The file was not tried on a control: compare the screens with PITCH.TXT.\n\n",
+      "allows.\n"
+      "Switch the power off and on after loading, then return to the reference position. The file was not\n"
+      "tried on a control: compare the screens with PITCH.TXT.\n\n",
       setting.unit_um);
   int first = 0;
   for (ControllerTable& table : tables.tables) {

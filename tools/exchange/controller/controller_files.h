@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/exchange/controller/placing.h"
 #include "tools/exchange/controller/tables.h"
 #include "tools/exchange/printer/firmware_files.h"
 
