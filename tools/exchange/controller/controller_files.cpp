@@ -111,8 +111,8 @@ std::vector<FirmwareFile> siemens(const ControllerSetting& setting, const std::s
       "; Enable each table with SD41300 $SN_CEC_TABLE_ENABLE and each output axis with MD32710\n"
       "; $MA_CEC_ENABLE; both must be off while this file is loaded. A change of MD18342 clears memory: "
       "save\n"
-      "; the data first. The sign is that of the other compensation tables; do every test move, since the\n"
-      "; manual does not state the sign of these tables.\n"
+      "; the data first. The sign is that of the other compensation tables; no sentence of the\n"
+      "; manual about the sign of these tables was found: do every test move.\n"
       "CHANDATA(1)\n";
   files.push_back({"NC_CEC.INI", text + cec + "M17\n"});
   return files;
