@@ -63,16 +63,20 @@ std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t 
                                      const model::States& at) {
   Sampler sampler(machine, axis, at);
   std::vector<LeftOut> result;
-  const auto look = [&](const std::string& what, const std::function<void(model::States&)>& vary) {
+  const auto look = [&](const std::string& what, const std::function<void(model::States&)>& vary,
+                        bool other_axis = false) {
     const double um = sampler.change_um(vary);
     if (um > kNothing_um)
-      result.push_back({"the error of " + machine.axes[axis].name + " depends on " + what, um});
+      result.push_back({"the error of " + machine.axes[axis].name + " depends on " + what, um, other_axis});
   };
   for (std::size_t other = 0; other < machine.axes.size(); ++other) {
     if (other == axis) continue;
     const std::string& name = machine.axes[other].name;
-    look("the position of " + name, [&](model::States& s) { sampler.fill_axis(s, other); });
-    look("the direction of motion of " + name, [&](model::States& s) { sampler.signs(s.direction[other]); });
+    look(
+        "the position of " + name, [&](model::States& s) { sampler.fill_axis(s, other); }, true);
+    look(
+        "the direction of motion of " + name, [&](model::States& s) { sampler.signs(s.direction[other]); },
+        true);
   }
   for (std::size_t k = 0; k < machine.inputs.size(); ++k) {
     const model::Input& input = machine.inputs[k];

@@ -11,6 +11,7 @@ namespace vernier::exchange {
 struct LeftOut {
   std::string what;
   double um = 0;
+  bool other_axis = false;  // depends on the position or direction of another axis
 };
 
 /// Limit above which an error counts, um: a tenth of the finest digit in the tables of controllers.

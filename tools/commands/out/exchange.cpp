@@ -194,8 +194,9 @@ void register_export(CLI::App& vernier) {
   parent->require_subcommand(1);
   parent->footer(
       "What a table cannot express is refused with the reason; --leave-out writes the rest. The formats of\n"
-      "printers and robots are written, with the error that remains. Exit status 0 done, 1 bad input, 2 the "
-      "sheet \"safe to run?\" fails or the tolerance takes more lines than the\n"
+      "siemens, heidenhain, fanuc, printers and robots are written, with the error that remains. Exit "
+      "status\n"
+      "0 done, 1 bad input, 2 the sheet \"safe to run?\" fails or the tolerance takes more lines than the\n"
       "controller keeps: nothing written.");
   auto screw = std::make_shared<ExchangeArguments>();
   CLI::App* linuxcnc = add_export(
@@ -219,6 +220,7 @@ void register_export(CLI::App& vernier) {
              "file", isg)
       ->callback([isg] { export_tables(*isg, true); });
   add_printer_exports(parent);
+  add_controller_exports(parent);
   add_robot_exports(parent);
 }
 

@@ -47,6 +47,9 @@ CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const
 /// Adds the subcommands of the firmwares of printers and small machines.
 void add_printer_exports(CLI::App* parent);
 
+/// Adds the subcommands of the controllers of machine tools.
+void add_controller_exports(CLI::App* parent);
+
 /// Adds the subcommand `urdf`.
 void add_robot_exports(CLI::App* parent);
 

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `vernier export siemens|heidenhain|fanuc`.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/commands/command.h"
+#include "tools/commands/fit_findings.h"
+#include "tools/commands/out/exporting.h"
+#include "tools/exchange/controller/controller_files.h"
+#include "tools/exchange/controller/placing.h"
+#include "tools/exchange/controller/tables.h"
+#include "tools/kinematics/at.h"
+#include "tools/text/error.h"
+
+namespace vernier::commands::exchange_cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using exchange::Controller;
+
+constexpr std::array<const char*, 3> kAxisNames = {"X", "Y", "Z"};
+
+struct ControllerArguments {
+  ExchangeArguments common;
+  std::string reference, numbers;
+  double step_mm = 0, unit_um = 1;
+};
+
+exchange::ControllerSetting setting_of(const ControllerArguments& arguments) {
+  exchange::ControllerSetting setting;
+  setting.unit_um = arguments.unit_um;
+  if (arguments.numbers.empty()) return setting;
+  const std::vector<double> numbers = kinematics::number_list(arguments.numbers, {3}, "--numbers");
+  for (std::size_t i = 0; i < 3; ++i) {
+    constexpr double kMost = 99;
+    if (numbers[i] != std::floor(numbers[i]) || numbers[i] < 1 || numbers[i] > kMost)
+      throw text::InputError("--numbers: '" + arguments.numbers + "' must be three numbers from 1 to 99");
+    setting.number[i] = static_cast<int>(numbers[i]);
+  }
+  return setting;
+}
+
+/// Position of the reference: stated, else 0, else the end of the range nearest to 0.
+exchange::ControllerWishes wishes_of(const ControllerArguments& arguments,
+                                     const exchange::PrinterAxes& axes) {
+  exchange::ControllerWishes wishes{arguments.common.tolerance_um, arguments.step_mm, {}};
+  for (std::size_t i = 0; i < 3; ++i) wishes.reference[i] = std::clamp(0.0, axes.low[i], axes.high[i]);
+  if (arguments.reference.empty()) return wishes;
+  const std::vector<double> stated = kinematics::number_list(arguments.reference, {3}, "--reference");
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (stated[i] < axes.low[i] || stated[i] > axes.high[i])
+      throw text::InputError(fmt::format("--reference: {} of {} is outside its range from {} to {} mm",
+                                         stated[i], kAxisNames[i], axes.low[i], axes.high[i]));
+    wishes.reference[i] = stated[i];
+  }
+  return wishes;
+}
+
+/// What remains in the state of the export, and the inputs, speeds and times that no table holds.
+std::vector<exchange::LeftOut> left_out_of(const model::Machine& machine, const exchange::PrinterAxes& axes,
+                                           const model::States& at,
+                                           const exchange::ControllerErrors& errors) {
+  std::vector<exchange::LeftOut> left;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (errors.after_um[i] > exchange::kNothing_um)
+      left.push_back({fmt::format("error along {} that remains with the files, between the points as well",
+                                  kAxisNames[i]),
+                      errors.after_um[i]});
+  for (const std::size_t axis : axes.axis)
+    for (exchange::LeftOut& one : exchange::beyond_own_axis(machine, axis, at))
+      if (!one.other_axis) left.push_back(std::move(one));
+  return left;
+}
+
+Json result_json(const exchange::ControllerErrors& errors, const exchange::ControllerTables& tables) {
+  const auto three = [](const std::array<double, 3>& um) {
+    return Json{{"x", um[0]}, {"y", um[1]}, {"z", um[2]}};
+  };
+  Json written = Json::array();
+  for (const exchange::ControllerTable& table : tables.tables)
+    written.push_back({{"input", kAxisNames[table.input]},
+                       {"output", kAxisNames[table.output]},
+                       {"points", table.forward.size()},
+                       {"step_mm", table.step}});
+  return {{"tables", written},
+          {"between_um", three(tables.between_um)},
+          {"reversal_um",
+           three({1000 * tables.reversal[0], 1000 * tables.reversal[1], 1000 * tables.reversal[2]})},
+          {"errors",
+           {{"positions", errors.positions},
+            {"before_um", three(errors.before_um)},
+            {"after_um", three(errors.after_um)},
+            {"after_positive_um", three(errors.after_positive_um)},
+            {"after_negative_um", three(errors.after_negative_um)},
+            {"rms_before_um", errors.rms_before_um},
+            {"rms_after_um", errors.rms_after_um}}}};
+}
+
+void print_tables(const ExchangeArguments& common, const exchange::ControllerTables& tables,
+                  const exchange::ControllerErrors& errors) {
+  std::FILE* out = human_stream(common.json);
+  for (const exchange::ControllerTable& table : tables.tables)
+    fmt::print(out, "{} by the position of {}: {} points, {} mm apart\n", kAxisNames[table.output],
+               kAxisNames[table.input], table.forward.size(), table.step);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (tables.between_um[i] > common.tolerance_um)
+      fmt::print(out, "note: the error between the points of {} is {:.3g} um, the tolerance is {} um\n",
+                 kAxisNames[i], tables.between_um[i], common.tolerance_um);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (errors.after_um[i] > errors.before_um[i] + exchange::kNothing_um)
+      fmt::print(out, "note: the files increase the largest error along {} from {:.3g} to {:.3g} um\n",
+                 kAxisNames[i], errors.before_um[i], errors.after_um[i]);
+}
+
+void export_controller(const ControllerArguments& arguments, Controller controller, const char* name) {
+  const ExchangeArguments& common = arguments.common;
+  const model::Machine machine = read_model(common.machine);
+  const exchange::ControllerSetting setting = setting_of(arguments);
+  const exchange::PrinterAxes axes = exchange::printer_axes(machine);
+  const exchange::ControllerWishes wishes = wishes_of(arguments, axes);
+  const model::States at = state_of(machine, common);
+  require_safe(machine, common);
+  exchange::ControllerTables tables =
+      exchange::controller_tables(machine, axes, exchange::rules_of(controller, setting), at, wishes);
+  const std::vector<exchange::FirmwareFile> texts =
+      exchange::controller_files(controller, setting, machine.name, tables);
+  const exchange::ControllerErrors errors = exchange::controller_errors(machine, axes, tables, at);
+  text::make_folder(common.output);
+  Json files = Json::array();
+  for (const exchange::FirmwareFile& file : texts) {
+    files.push_back(common.output + "/" + file.name);
+    text::write_file(files.back().get<std::string>(), file.text);
+  }
+  print_tables(common, tables, errors);
+  fmt::print(human_stream(common.json),
+             "error of the tool point at {} positions, rms: {:.4g} um before, {:.4g} um with the files\n",
+             errors.positions, errors.rms_before_um, errors.rms_after_um);
+  finish(machine, common, name, left_out_of(machine, axes, at, errors), files, {}, true,
+         result_json(errors, tables));
+}
+
+void add_controller(CLI::App* parent, const char* name, const char* what, Controller controller) {
+  auto arguments = std::make_shared<ControllerArguments>();
+  arguments->common.tolerance_um = 1;
+  CLI::App* command = add_export(parent, name, what, "directory",
+                                 std::shared_ptr<ExchangeArguments>(arguments, &arguments->common));
+  command->add_option("--step", arguments->step_mm, "distance of the points, mm; default: by --tolerance")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--tolerance", arguments->common.tolerance_um, "largest error between two points, um")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--reference", arguments->reference,
+          "machine positions at which the corrections are zero (reference points), mm; default: 0, or "
+          "the end of the range nearest to 0")
+      ->type_name("X,Y,Z");
+  if (controller != Controller::kHeidenhain)
+    command
+        ->add_option("--numbers", arguments->numbers, "numbers of the machine axes X, Y and Z; default 1,2,3")
+        ->type_name("X,Y,Z");
+  if (controller == Controller::kFanuc)
+    command->add_option("--unit", arguments->unit_um, "detection unit, um")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+  command->footer(
+      "Writes what the tables of the controller hold, and prints the error that remains, evaluated on the\n"
+      "chain between the points in both directions. Offsets of the axes do not count. The files were not\n"
+      "tried on a controller: do the test moves that they describe before you cut with the tables.");
+  command->callback([arguments, controller, name] { export_controller(*arguments, controller, name); });
+}
+
+}  // namespace
+
+void add_controller_exports(CLI::App* parent) {
+  add_controller(parent, "siemens", "SINUMERIK 840D, ONE: ENC_COMP, CEC and backlash", Controller::kSiemens);
+  add_controller(parent, "heidenhain", "HEIDENHAIN: nonlinear axis error compensation (.COM, .CMA)",
+                 Controller::kHeidenhain);
+  add_controller(parent, "fanuc", "FANUC: stored pitch error compensation and backlash", Controller::kFanuc);
+}
+
+}  // namespace vernier::commands::exchange_cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/exchange/controller/placing.h"
+#include "tools/exchange/controller/tables.h"
+#include "tools/exchange/printer/firmware_files.h"
+
+namespace vernier::exchange {
+
+/// A controller of machine tools: SINUMERIK 840D and ONE, HEIDENHAIN (TNC 640 and others with AXISPOS),
+/// FANUC (30i and others with Q1 in their parameter files).
+enum class Controller : std::uint8_t { kSiemens, kHeidenhain, kFanuc };
+
+/// What the user states about a controller.
+struct ControllerSetting {
+  std::array<int, 3> number{1, 2, 3};  // machine axis of X, Y and Z: AX1, A1
+  double unit_um = 1;                  // FANUC: detection unit
+};
+
+/// Returns the limits of a controller. Sources: tools/docs/exchange.md.
+ControllerRules rules_of(Controller controller, const ControllerSetting& setting);
+
+/// Returns the files of a controller. The tables receive the rounding of the files. Throws LimitNotMet: a
+/// value of FANUC is beyond its range. machine_name: for comments. tool.
+std::vector<FirmwareFile> controller_files(Controller controller, const ControllerSetting& setting,
+                                           const std::string& machine_name, ControllerTables& tables);
+
+}  // namespace vernier::exchange
