@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/diagnose/causes.h"
 #include "tools/diagnose/copies.h"
-#include "tools/diagnose/decide/causes.h"
-#include "tools/diagnose/decide/refit.h"
 #include "tools/diagnose/finder.h"
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/proof.h"
+#include "tools/diagnose/refit.h"
 #include "tools/diagnose/verdict.h"
 #include "tools/effects/add_string.h"
 #include "tools/effects/fitted_effect.h"

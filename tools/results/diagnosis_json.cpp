@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tools/diagnose/decide/causes.h"
+#include "tools/diagnose/causes.h"
 #include "tools/diagnose/sentences.h"
 #include "tools/effects/candidate.h"
 #include "tools/fit/least_squares/statistics.h"

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <random>
 
-#include "tools/diagnose/decide/causes.h"
-#include "tools/diagnose/decide/refit.h"
+#include "tools/diagnose/causes.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/refit.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::causes_test {

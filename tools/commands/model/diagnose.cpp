@@ -7,7 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/report_header.h"
 #include "tools/commands/survey.h"
-#include "tools/diagnose/decide/causes.h"
+#include "tools/diagnose/causes.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/sentences.h"
 #include "tools/fit/fit.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/diagnose/decide/causes.h"
+#include "tools/diagnose/causes.h"
 
 #include <fmt/format.h>
 

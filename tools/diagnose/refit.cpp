@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/diagnose/decide/refit.h"
+#include "tools/diagnose/refit.h"
 
 #include <algorithm>
 
