@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/chain/evaluate.h"
@@ -140,7 +141,7 @@ class Arm {
     const Vector3d across =
         motion.translation() - joint.direction.dot(motion.translation()) * joint.direction;
     const Eigen::Matrix3d less = Eigen::Matrix3d::Identity() - motion.rotation();
-    joint.point = less.completeOrthogonalDecomposition().solve(across);
+    joint.point = maths::least_norm(Eigen::MatrixXd(less), Eigen::VectorXd(across));
     return joint;
   }
 
