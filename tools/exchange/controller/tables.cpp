@@ -61,8 +61,8 @@ Matrix3Xd ControllerTables::corrected(const Matrix3Xd& commands, const Matrix3Xd
 ControllerErrors controller_errors(const model::Machine& machine, const PrinterAxes& axes,
                                    const ControllerTables& tables, const model::States& at) {
   constexpr Index kPositions = 4096;
-  constexpr unsigned long kSeed = 1;
-  std::mt19937_64 random(kSeed);
+  constexpr unsigned long kPositionsSeed = 1;
+  std::mt19937_64 random(kPositionsSeed);
   Matrix3Xd points(3, kPositions), directions(3, kPositions);
   for (std::size_t i = 0; i < 3; ++i) {
     std::uniform_real_distribution<double> position(axes.low[i], axes.high[i]);
