@@ -17,7 +17,6 @@
 namespace vernier::commands::exchange_cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using exchange::Controller;
 
 constexpr std::array<const char*, 3> kAxisNames = {"X", "Y", "Z"};

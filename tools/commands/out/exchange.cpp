@@ -20,8 +20,6 @@
 namespace vernier::commands::exchange_cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::size_t axis_named(const model::Machine& machine, const std::string& name) {
   const auto axis = machine.find_axis(name);
   if (!axis) throw text::InputError({machine.file, 0}, name, "the machine has no axis of this name");

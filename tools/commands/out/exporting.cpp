@@ -14,8 +14,6 @@
 
 namespace vernier::commands::exchange_cli {
 
-using Json = nlohmann::ordered_json;
-
 namespace {
 
 /// Assurance of an export: the machine may run with the correction, all of its errors are in the files, and

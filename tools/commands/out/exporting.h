@@ -13,6 +13,8 @@
 
 namespace vernier::commands::exchange_cli {
 
+using Json = nlohmann::ordered_json;
+
 struct ExchangeArguments {
   std::string machine, file, output, json, axis, at, reversal;
   std::vector<std::string> accept;
@@ -36,9 +38,8 @@ model::States state_of(const model::Machine& machine, const ExchangeArguments& a
 
 /// Prints and writes the result of an export (exported) or of an import of tables. extra: more keys.
 void finish(const model::Machine& machine, const ExchangeArguments& arguments, const char* format,
-            const std::vector<exchange::LeftOut>& left_out, const nlohmann::ordered_json& files,
-            const std::vector<AxisLines>& axes = {}, bool exported = true,
-            const nlohmann::ordered_json& extra = {});
+            const std::vector<exchange::LeftOut>& left_out, const Json& files,
+            const std::vector<AxisLines>& axes = {}, bool exported = true, const Json& extra = {});
 
 /// Adds the subcommand of a format with the options of every export.
 CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,

@@ -13,7 +13,6 @@
 namespace vernier::commands::exchange_cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using exchange::Firmware;
 
 struct PrinterArguments {

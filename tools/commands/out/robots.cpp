@@ -10,8 +10,6 @@
 namespace vernier::commands::exchange_cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 void export_urdf(const ExchangeArguments& arguments) {
   const model::Machine machine = read_model(arguments.machine);
   const model::States at = state_of(machine, arguments);

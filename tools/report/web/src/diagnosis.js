@@ -93,7 +93,11 @@ export function causes(result) {
       list.map((one) => [printed(one.description), number(one.evidence, 3)]),
       { whole: true },
     ),
-    el('p', { class: 'note' }, `Level ${result.level}: the true cause is rejected at most one time in ${number(1 / (1 - result.level), 3)}.`),
+    el(
+      'p',
+      { class: 'note' },
+      `Level ${result.level}: the true cause is rejected at most one time in ${number(1 / (1 - result.level), 3)}.`,
+    ),
   ];
 }
 
