@@ -48,8 +48,7 @@ class Causes {
     cause.add = effects::add_string(found_.finder.evidence().machine(),
                                     effects::choice_at(*cause.candidate, scanned));
     cause.description = cause.candidate->spoken;
-    cause.axis = choice.axis;
-    if (!cause.axis && choice.place) cause.axis = axes_.axis_of(*choice.place);
+    cause.axis = effects::axis_of(axes_, choice);
     std::size_t at = 0;
     for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(*cause.candidate)) {
       if (unknown.kind == effects::UnknownKind::kPeriod && at < scanned.size()) {

@@ -307,9 +307,7 @@ class Diagnoser {
       const effects::FittedEffects fitted = fit_with({item});
       finding.candidate = fitted.effects[0];
       finding.add = add_string_of(item);
-      const effects::Choice& choice = finding.candidate.choice;
-      finding.axis = choice.axis;
-      if (!finding.axis && choice.place) finding.axis = axes.axis_of(*choice.place);
+      finding.axis = effects::axis_of(axes, finding.candidate.choice);
       for (const effects::CandidateUnknown& unknown : finding.candidate.unknowns)
         for (const fit::ParameterEstimate& estimate : fitted.fit.estimates)
           if (estimate.name == unknown.name) finding.parameters.push_back(estimate);

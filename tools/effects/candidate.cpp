@@ -400,6 +400,11 @@ class Maker {
 
 }  // namespace
 
+std::optional<std::size_t> axis_of(const AxisPlaces& axes, const Choice& choice) {
+  if (choice.axis || !choice.place) return choice.axis;
+  return axes.axis_of(*choice.place);
+}
+
 const Effect& custom_effect() {
   static const Effect effect = [] {
     Effect e;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "tools/effects/types.h"
@@ -23,6 +24,9 @@ std::vector<std::size_t> add_unknowns(model::Machine& machine, const Candidate& 
 /// lacks an axis, input or location that the form needs. tool.
 Candidate make_candidate(const model::Machine& machine, const AxisPlaces& axes, const Choice& choice);
 Candidate make_candidate(const model::Machine& machine, const Choice& choice);
+
+/// Returns the axis that drives a choice, else the axis of the transform on which it acts. tool.
+std::optional<std::size_t> axis_of(const AxisPlaces& axes, const Choice& choice);
 
 /// Returns the effect of a term that a search found. custom_effect() has no named physical cause.
 const Effect& custom_effect();

@@ -3,14 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "tools/exchange/configuration_file.h"
 #include "tools/model/machine.h"
 
 namespace vernier::exchange {
-
-/// A text file of a configuration folder.
-struct ConfigurationFile {
-  std::string name, text;
-};
 
 /// Returns the files that add the compensation to a working LinuxCNC configuration, in addition to the image.
 /// Files: INI lines (vernier.ini), a HAL file that is loaded last (vernier.hal), and instructions to install

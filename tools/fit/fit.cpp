@@ -21,6 +21,7 @@
 #include "tools/fit/set_up.h"
 #include "tools/fit/settle.h"
 #include "tools/fit/solve.h"
+#include "tools/fit/unseen_turns.h"
 #include "tools/format/readings.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/evaluate.h"
@@ -30,19 +31,14 @@
 namespace vernier::fit {
 namespace {
 
-/// Returns the rows that the fit needs: the fit rows, or all rows if lag makes a row depend on
+/// Returns the indices of the rows that the fit needs: the fit rows, or all rows if lag makes a row depend on
 /// those before it.
-/// Indices of the rows that a fit reads, in the measurement.
 std::vector<std::size_t> kept_for_fit(const model::Machine& machine, const model::Measurement& all) {
   const bool whole = model::uses_lag(machine);
   std::vector<std::size_t> keep;
   for (std::size_t row = 0; row < all.rows(); ++row)
     if (whole || all.check[row] == 0) keep.push_back(row);
   return keep;
-}
-model::Measurement rows_for_fit(const model::Machine& machine, const model::Measurement& all) {
-  const std::vector<std::size_t> keep = kept_for_fit(machine, all);
-  return keep.size() == all.rows() ? all : model::select_rows(all, keep);
 }
 
 /// An estimate comes from data if the convention may move it by less than this share of its
@@ -103,13 +99,12 @@ StatedPriors stated_priors(FitResult& result, const FitOptions& options, const C
 /// rotates errors of the machine into another direction. Returns true if a rotation is held now.
 bool hold_turned_away(const Settled& end, Convention& convention) {
   constexpr double kAligned_deg = 5;  // an instrument that is aligned to a machine by eye
-  constexpr double kHeld_deg = 1e-6;  // 0.02 um at a metre
   bool held = false;
   for (std::size_t i = 0; i < convention.unseen_turn.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     if (!convention.unseen_turn[i] || std::abs(end.point[at] - convention.centre[at]) < kAligned_deg)
       continue;
-    convention.scale[at] = kHeld_deg;
+    convention.scale[at] = kHeldTurn_deg;
     held = true;
   }
   return held;
@@ -421,7 +416,9 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
     throw text::InputError(
         "the measurement has no reading with role fit; give at least some rows the role fit");
   result.noise_um = noise_um(measurement);
-  const model::Measurement rows = rows_for_fit(machine, measurement);
+  const std::vector<std::size_t> kept = kept_for_fit(machine, measurement);
+  const model::Measurement rows =
+      kept.size() == measurement.rows() ? measurement : model::select_rows(measurement, kept);
   Convention convention = convention_of(machine, rows, result.parameters);
   result.misfit_mm = convention.misfit_mm;
   result.reach_mm = convention.reach_mm;
@@ -444,9 +441,8 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
     solved();
     if (hold_turned_away(end, convention)) solved();
     // Steps were found among the rows of the fit, and are stated by the rows of the files.
-    const std::vector<std::size_t> keep = kept_for_fit(machine, measurement);
     for (NoiseStep& step : end.noise.steps)
-      if (!options.noise && step.row < keep.size()) step.row = keep[step.row];
+      if (!options.noise && step.row < kept.size()) step.row = kept[step.row];
   }
   result.parameters.set(result.machine, end.point);
   result.residual = residuals(result.machine, measurement);

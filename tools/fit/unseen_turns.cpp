@@ -46,13 +46,12 @@ std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measu
 }
 
 void hold_at(FitProblem& problem, const std::vector<bool>& held, const Eigen::VectorXd& at) {
-  constexpr double kHeld_deg = 1e-6;  // stiffness of the hold: 0.02 um at a metre, far below any reading
   if (std::find(held.begin(), held.end(), true) == held.end()) return;
   Eigen::SparseMatrix<double> precision(at.size(), at.size());
   for (std::size_t i = 0; i < held.size(); ++i)
     if (held[i])
       precision.insert(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) =
-          1 / (kHeld_deg * kHeld_deg);
+          1 / (kHeldTurn_deg * kHeldTurn_deg);
   problem.set_priors(precision, at);
 }
 

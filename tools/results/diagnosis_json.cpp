@@ -31,6 +31,20 @@ std::string term_text(const effects::Candidate& candidate) {
   return text;
 }
 
+/// Name of the axis; null for a term of two axes.
+Json axis_json(const effects::Candidate& candidate, std::optional<std::size_t> axis,
+               const model::Machine& machine) {
+  return axis && !candidate.choice.axis2 ? Json(machine.axes[*axis].name) : Json(nullptr);
+}
+
+/// Transform and degree of freedom; null for a term at several locations.
+void add_place(Json& json, const effects::Candidate& candidate, const model::Machine& machine) {
+  const bool one = candidate.terms.size() == 1;
+  const effects::DofPlace& place = candidate.terms[0].place;
+  json["transform"] = one ? Json(effects::transform_at(machine, place).n) : Json(nullptr);
+  json["dof"] = one ? Json(effects::dof_name(machine, place)) : Json(nullptr);
+}
+
 Json candidate_json(const diagnose::CandidateFinding& finding, const model::Machine& machine) {
   const effects::Choice& choice = finding.candidate.choice;
   Json json;
@@ -39,14 +53,11 @@ Json candidate_json(const diagnose::CandidateFinding& finding, const model::Mach
   json["add"] = finding.add;
   json["said"] = diagnose::said_of(finding);
   json["label"] = finding.candidate.label;
-  json["axis"] = finding.axis && !choice.axis2 ? Json(machine.axes[*finding.axis].name) : Json(nullptr);
+  json["axis"] = axis_json(finding.candidate, finding.axis, machine);
   json["input"] = choice.inputs.empty() ? Json(nullptr) : Json(choice.inputs[0]);
   json["inputs"] = choice.inputs;
-  const bool one = finding.candidate.terms.size() == 1;
-  const effects::DofPlace& place = finding.candidate.terms[0].place;
-  json["branch"] = place.workpiece ? "workpiece" : "tool";
-  json["transform"] = one ? Json(effects::transform_at(machine, place).n) : Json(nullptr);
-  json["dof"] = one ? Json(effects::dof_name(machine, place)) : Json(nullptr);
+  json["branch"] = finding.candidate.terms[0].place.workpiece ? "workpiece" : "tool";
+  add_place(json, finding.candidate, machine);
   json["term"] = term_text(finding.candidate);
   json["parameters"] = Json::array();
   for (const fit::ParameterEstimate& item : finding.parameters)
@@ -73,15 +84,12 @@ Json cause_json(const diagnose::Cause& cause, const model::Machine& machine) {
   if (!cause.candidate)
     return {{"effect", "instrument"}, {"kind", cause.kind}, {"description", cause.description}};
   const effects::Candidate& candidate = *cause.candidate;
-  const bool one = candidate.terms.size() == 1;
-  const effects::DofPlace& place = candidate.terms[0].place;
   Json json;
   json["effect"] = candidate.choice.effect->id;
   json["label"] = candidate.label;
   json["description"] = cause.description;
-  json["axis"] = cause.axis && !candidate.choice.axis2 ? Json(machine.axes[*cause.axis].name) : Json(nullptr);
-  json["transform"] = one ? Json(effects::transform_at(machine, place).n) : Json(nullptr);
-  json["dof"] = one ? Json(effects::dof_name(machine, place)) : Json(nullptr);
+  json["axis"] = axis_json(candidate, cause.axis, machine);
+  add_place(json, candidate, machine);
   if (cause.period) {
     const bool rotary = candidate.choice.axis && machine.axes[*candidate.choice.axis].rotary;
     json["period"] = {{"value", *cause.period}, {"unit", rotary ? "deg" : "mm"}};

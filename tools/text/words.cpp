@@ -37,13 +37,13 @@ bool is_control(std::uint32_t point) {
          point == 0x200f || (point >= 0x2028 && point <= 0x202e) || (point >= 0x2066 && point <= 0x2069);
 }
 
-}  // namespace
-
-std::string printable(std::string_view text) {
+/// Returns the text with "?" in place of each byte that is not UTF-8; without_controls: and of each control
+/// character.
+std::string with_question_marks(std::string_view text, bool without_controls) {
   std::string shown;
   while (!text.empty()) {
     const CodePoint point = first_of(text);
-    if (point.bytes == 0 || is_control(point.value))
+    if (point.bytes == 0 || (without_controls && is_control(point.value)))
       shown += '?';
     else
       shown += text.substr(0, point.bytes);
@@ -51,6 +51,12 @@ std::string printable(std::string_view text) {
   }
   return shown;
 }
+
+}  // namespace
+
+std::string printable(std::string_view text) { return with_question_marks(text, true); }
+
+std::string utf8_only(std::string_view text) { return with_question_marks(text, false); }
 
 namespace {
 
@@ -76,16 +82,6 @@ std::string shown_message(std::string_view message) {
     if (more) shown += '\n', message.remove_prefix(end + 1);
   }
   return shown;
-}
-
-std::string utf8_only(std::string_view text) {
-  std::string valid;
-  while (!text.empty()) {
-    const std::size_t bytes = first_of(text).bytes;
-    valid += bytes == 0 ? std::string_view("?") : text.substr(0, bytes);
-    text.remove_prefix(std::max<std::size_t>(bytes, 1));
-  }
-  return valid;
 }
 
 std::string trimmed(std::string_view text) {

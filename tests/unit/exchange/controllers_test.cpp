@@ -35,7 +35,7 @@ const char* const kMill = R"xml(<machine name="mill"><variables><static>
 
 struct Case {
   Machine machine;
-  PrinterAxes axes;
+  ThreeAxes axes;
   States at;
   ControllerTables tables;
   std::map<std::string, std::string> files;
@@ -44,12 +44,13 @@ struct Case {
 Case export_of(Controller controller, const char* xml = kMill, double step_mm = 0,
                const ControllerSetting& setting = {}, const std::array<double, 3>& reference = {0, 0, 0}) {
   Case result{parse_machine(xml, "mill.xml"), {}, {}, {}, {}};
-  result.axes = printer_axes(result.machine);
+  result.axes = three_axes(result.machine);
   result.at = make_states(1, result.machine);
   const ControllerWishes wishes{1, step_mm, reference};
   result.tables =
       controller_tables(result.machine, result.axes, rules_of(controller, setting), result.at, wishes);
-  for (const FirmwareFile& file : controller_files(controller, setting, result.machine.name, result.tables))
+  for (const ConfigurationFile& file :
+       controller_files(controller, setting, result.machine.name, result.tables))
     result.files[file.name] = file.text;
   return result;
 }

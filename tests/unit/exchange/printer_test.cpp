@@ -87,7 +87,7 @@ struct KlipperFile {
 TEST(PrinterFiles, OfKlipperRemoveSkewAndHeightsByItsOwnFormulas) {
   Machine machine = printer();
   machine.statics[*machine.find_static("s")].value = 0;
-  const PrinterAxes axes = printer_axes(machine);
+  const ThreeAxes axes = three_axes(machine);
   PrinterCorrection correction =
       printer_correction(machine, axes, features_of(Firmware::kKlipper, {}), at_rest(machine), 1);
   const KlipperFile file(firmware_files(Firmware::kKlipper, {}, "printer", correction).at(0).text);
@@ -110,7 +110,7 @@ TEST(PrinterFiles, OfKlipperRemoveSkewAndHeightsByItsOwnFormulas) {
 
 TEST(PrinterErrors, AreThoseOfTheChainWithTheFiles) {
   const Machine machine = printer();
-  const PrinterAxes axes = printer_axes(machine);
+  const ThreeAxes axes = three_axes(machine);
   for (const Firmware firmware : {Firmware::kKlipper, Firmware::kRepRap, Firmware::kMarlin}) {
     const PresentSetting present{std::array<double, 3>{80, 80, 400}};
     PrinterCorrection correction =
@@ -124,7 +124,7 @@ TEST(PrinterErrors, AreThoseOfTheChainWithTheFiles) {
 
 TEST(PrinterErrors, ScaleStaysWithoutThePresentSteps) {
   const Machine machine = printer();
-  const PrinterAxes axes = printer_axes(machine);
+  const ThreeAxes axes = three_axes(machine);
   PrinterCorrection correction =
       printer_correction(machine, axes, features_of(Firmware::kMarlin, {}), at_rest(machine), 1);
   const std::string text = firmware_files(Firmware::kMarlin, {}, "printer", correction).at(0).text;
@@ -137,7 +137,7 @@ TEST(PrinterFiles, OfGrblHaveTheStepsOfEachAxis) {
   const Machine machine = printer();
   const PresentSetting present{std::array<double, 3>{80, 80, 400}};
   PrinterCorrection correction = printer_correction(
-      machine, printer_axes(machine), features_of(Firmware::kGrbl, present), at_rest(machine), 1);
+      machine, three_axes(machine), features_of(Firmware::kGrbl, present), at_rest(machine), 1);
   const std::string text = firmware_files(Firmware::kGrbl, present, "printer", correction).at(0).text;
   const std::size_t at = text.find("$100=");
   ASSERT_NE(at, std::string::npos) << text;
@@ -149,7 +149,7 @@ TEST(PrinterFiles, OfGrblHaveTheStepsOfEachAxis) {
 TEST(PrinterFiles, AreOfThreeLinearAxesWithRanges) {
   const auto refused = [](std::string text, const std::string& from, const std::string& to) {
     text.replace(text.find(from), from.size(), to);
-    EXPECT_THROW(printer_axes(parse_machine(text, "printer.xml")), text::InputError) << to;
+    EXPECT_THROW(three_axes(parse_machine(text, "printer.xml")), text::InputError) << to;
   };
   refused(kPrinter, "<Z min=\"0\" max=\"150\"/>", "<Z/>");
   refused(kPrinter, "<Z min=\"0\" max=\"150\"/>",

@@ -19,8 +19,6 @@ namespace {
 
 using exchange::Controller;
 
-constexpr std::array<const char*, 3> kAxisNames = {"X", "Y", "Z"};
-
 struct ControllerArguments {
   ExchangeArguments common;
   std::string reference, numbers;
@@ -42,8 +40,7 @@ exchange::ControllerSetting setting_of(const ControllerArguments& arguments) {
 }
 
 /// Position of the reference: stated, else 0, else the end of the range nearest to 0.
-exchange::ControllerWishes wishes_of(const ControllerArguments& arguments,
-                                     const exchange::PrinterAxes& axes) {
+exchange::ControllerWishes wishes_of(const ControllerArguments& arguments, const exchange::ThreeAxes& axes) {
   exchange::ControllerWishes wishes{arguments.common.tolerance_um, arguments.step_mm, {}};
   for (std::size_t i = 0; i < 3; ++i) wishes.reference[i] = std::clamp(0.0, axes.low[i], axes.high[i]);
   if (arguments.reference.empty()) return wishes;
@@ -51,22 +48,17 @@ exchange::ControllerWishes wishes_of(const ControllerArguments& arguments,
   for (std::size_t i = 0; i < 3; ++i) {
     if (stated[i] < axes.low[i] || stated[i] > axes.high[i])
       throw text::InputError(fmt::format("--reference: {} of {} is outside its range from {} to {} mm",
-                                         stated[i], kAxisNames[i], axes.low[i], axes.high[i]));
+                                         stated[i], exchange::kLetters[i], axes.low[i], axes.high[i]));
     wishes.reference[i] = stated[i];
   }
   return wishes;
 }
 
 /// What remains in the state of the export, and the inputs, speeds and times that no table holds.
-std::vector<exchange::LeftOut> left_out_of(const model::Machine& machine, const exchange::PrinterAxes& axes,
+std::vector<exchange::LeftOut> left_out_of(const model::Machine& machine, const exchange::ThreeAxes& axes,
                                            const model::States& at,
                                            const exchange::ControllerErrors& errors) {
-  std::vector<exchange::LeftOut> left;
-  for (std::size_t i = 0; i < 3; ++i)
-    if (errors.after_um[i] > exchange::kNothing_um)
-      left.push_back({fmt::format("error along {} that remains with the files, between the points as well",
-                                  kAxisNames[i]),
-                      errors.after_um[i]});
+  std::vector<exchange::LeftOut> left = remaining(errors.after_um);
   for (const std::size_t axis : axes.axis)
     for (exchange::LeftOut& one : exchange::beyond_own_axis(machine, axis, at))
       if (!one.other_axis) left.push_back(std::move(one));
@@ -74,25 +66,22 @@ std::vector<exchange::LeftOut> left_out_of(const model::Machine& machine, const 
 }
 
 Json result_json(const exchange::ControllerErrors& errors, const exchange::ControllerTables& tables) {
-  const auto three = [](const std::array<double, 3>& um) {
-    return Json{{"x", um[0]}, {"y", um[1]}, {"z", um[2]}};
-  };
   Json written = Json::array();
   for (const exchange::ControllerTable& table : tables.tables)
-    written.push_back({{"input", kAxisNames[table.input]},
-                       {"output", kAxisNames[table.output]},
+    written.push_back({{"input", exchange::kLetters[table.input]},
+                       {"output", exchange::kLetters[table.output]},
                        {"points", table.forward.size()},
                        {"step_mm", table.step}});
   return {{"tables", written},
-          {"between_um", three(tables.between_um)},
+          {"between_um", three_json(tables.between_um)},
           {"reversal_um",
-           three({1000 * tables.reversal[0], 1000 * tables.reversal[1], 1000 * tables.reversal[2]})},
+           three_json({1000 * tables.reversal[0], 1000 * tables.reversal[1], 1000 * tables.reversal[2]})},
           {"errors",
            {{"positions", errors.positions},
-            {"before_um", three(errors.before_um)},
-            {"after_um", three(errors.after_um)},
-            {"after_positive_um", three(errors.after_positive_um)},
-            {"after_negative_um", three(errors.after_negative_um)},
+            {"before_um", three_json(errors.before_um)},
+            {"after_um", three_json(errors.after_um)},
+            {"after_positive_um", three_json(errors.after_positive_um)},
+            {"after_negative_um", three_json(errors.after_negative_um)},
             {"rms_before_um", errors.rms_before_um},
             {"rms_after_um", errors.rms_after_um}}}};
 }
@@ -101,41 +90,34 @@ void print_tables(const ExchangeArguments& common, const exchange::ControllerTab
                   const exchange::ControllerErrors& errors) {
   std::FILE* out = human_stream(common.json);
   for (const exchange::ControllerTable& table : tables.tables)
-    fmt::print(out, "{} by the position of {}: {} points, {} mm apart\n", kAxisNames[table.output],
-               kAxisNames[table.input], table.forward.size(), table.step);
+    fmt::print(out, "{} by the position of {}: {} points, {} mm apart\n", exchange::kLetters[table.output],
+               exchange::kLetters[table.input], table.forward.size(), table.step);
   for (std::size_t i = 0; i < 3; ++i)
     if (tables.between_um[i] > common.tolerance_um)
       fmt::print(out, "note: the error between the points of {} is {:.3g} um, the tolerance is {} um\n",
-                 kAxisNames[i], tables.between_um[i], common.tolerance_um);
+                 exchange::kLetters[i], tables.between_um[i], common.tolerance_um);
   for (std::size_t i = 0; i < 3; ++i)
     if (errors.after_um[i] > errors.before_um[i] + exchange::kNothing_um)
       fmt::print(out, "note: the files increase the largest error along {} from {:.3g} to {:.3g} um\n",
-                 kAxisNames[i], errors.before_um[i], errors.after_um[i]);
+                 exchange::kLetters[i], errors.before_um[i], errors.after_um[i]);
 }
 
 void export_controller(const ControllerArguments& arguments, Controller controller, const char* name) {
   const ExchangeArguments& common = arguments.common;
   const model::Machine machine = read_model(common.machine);
   const exchange::ControllerSetting setting = setting_of(arguments);
-  const exchange::PrinterAxes axes = exchange::printer_axes(machine);
+  const exchange::ThreeAxes axes = exchange::three_axes(machine);
   const exchange::ControllerWishes wishes = wishes_of(arguments, axes);
   const model::States at = state_of(machine, common);
   require_safe(machine, common);
   exchange::ControllerTables tables =
       exchange::controller_tables(machine, axes, exchange::rules_of(controller, setting), at, wishes);
-  const std::vector<exchange::FirmwareFile> texts =
+  const std::vector<exchange::ConfigurationFile> texts =
       exchange::controller_files(controller, setting, machine.name, tables);
   const exchange::ControllerErrors errors = exchange::controller_errors(machine, axes, tables, at);
-  text::make_folder(common.output);
-  Json files = Json::array();
-  for (const exchange::FirmwareFile& file : texts) {
-    files.push_back(common.output + "/" + file.name);
-    text::write_file(files.back().get<std::string>(), file.text);
-  }
+  const Json files = write_folder(common, texts);
   print_tables(common, tables, errors);
-  fmt::print(human_stream(common.json),
-             "error of the tool point at {} positions, rms: {:.4g} um before, {:.4g} um with the files\n",
-             errors.positions, errors.rms_before_um, errors.rms_after_um);
+  print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
   finish(machine, common, name, left_out_of(machine, axes, at, errors), files, {}, true,
          result_json(errors, tables));
 }

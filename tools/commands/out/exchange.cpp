@@ -26,14 +26,9 @@ std::size_t axis_named(const model::Machine& machine, const std::string& name) {
   return *axis;
 }
 
-/// A file and its text, not written yet.
-struct Output {
-  std::string path;
-  std::string text;
-};
-
 /// The folder that brings the component into a configuration: HAL file, INI lines, README, image.
-std::vector<Output> configuration(const model::Machine& machine, const ExchangeArguments& arguments) {
+std::vector<exchange::ConfigurationFile> configuration(const model::Machine& machine,
+                                                       const ExchangeArguments& arguments) {
   const std::string text = text::read_file(arguments.machine);
   compile::CompileOptions options;
   options.accepted_rules =
@@ -41,32 +36,18 @@ std::vector<Output> configuration(const model::Machine& machine, const ExchangeA
   const compile::CompiledMachine compiled = compile::compile_machine(machine, text, options);
   const std::string folder =
       std::filesystem::absolute(arguments.output).lexically_normal().filename().string();
-  std::vector<Output> outputs;
-  for (const exchange::ConfigurationFile& file :
-       exchange::linuxcnc_folder(machine, folder.empty() ? "vernier" : folder))
-    outputs.push_back({arguments.output + "/" + file.name, file.text});
-  outputs.push_back(
-      {arguments.output + "/image/machine.vimg", {compiled.image.begin(), compiled.image.end()}});
-  outputs.push_back({arguments.output + "/image/machine.xml", text});
+  std::vector<exchange::ConfigurationFile> outputs =
+      exchange::linuxcnc_folder(machine, folder.empty() ? "vernier" : folder);
+  outputs.push_back({"image/machine.vimg", {compiled.image.begin(), compiled.image.end()}});
+  outputs.push_back({"image/machine.xml", text});
   return outputs;
-}
-
-void write_configuration(const std::vector<Output>& outputs, const ExchangeArguments& arguments,
-                         Json& files) {
-  text::make_folder(arguments.output + "/image");
-  for (const Output& output : outputs) {
-    text::write_file(output.path, output.text);
-    files.push_back(output.path);
-  }
 }
 
 void export_component(const ExchangeArguments& arguments) {
   const model::Machine machine = read_model(arguments.machine);
   require_safe(machine, arguments);
-  const std::vector<Output> outputs = configuration(machine, arguments);
-  Json files = Json::array();
-  write_configuration(outputs, arguments, files);
-  finish(machine, arguments, "linuxcnc", {}, files);
+  const std::vector<exchange::ConfigurationFile> outputs = configuration(machine, arguments);
+  finish(machine, arguments, "linuxcnc", {}, write_folder(arguments, outputs));
 }
 
 void export_screw(const ExchangeArguments& arguments) {
@@ -100,7 +81,7 @@ void export_screw(const ExchangeArguments& arguments) {
     for (const std::size_t axis : axes)
       files.push_back(arguments.output + "/" + machine.axes[axis].name + ".comp");
   }
-  std::vector<Output> outputs;
+  std::vector<exchange::ConfigurationFile> outputs;
   std::string without;
   try {
     if (arguments.axis.empty()) outputs = configuration(machine, arguments);
@@ -108,7 +89,7 @@ void export_screw(const ExchangeArguments& arguments) {
     without = error.what();  // the tables can do with less than an image
   }
   for (std::size_t i = 0; i < axes.size(); ++i) text::write_file(files[i].get<std::string>(), texts[i]);
-  if (!outputs.empty()) write_configuration(outputs, arguments, files);
+  for (const Json& file : write_folder(arguments, outputs)) files.push_back(file);
   if (!without.empty()) fmt::print(stderr, "note: no configuration of the component: {}\n", without);
   finish(machine, arguments, "linuxcnc", left_out, files, lines);
 }

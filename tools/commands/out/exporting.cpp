@@ -7,6 +7,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
+#include "tools/exchange/three_axes.h"
 #include "tools/kinematics/at.h"
 #include "tools/results/fit_findings.h"
 #include "tools/safety/safety_sheet.h"
@@ -71,6 +72,37 @@ model::States state_of(const model::Machine& machine, const ExchangeArguments& a
   words += arguments.at;
   if (!words.empty() && words.back() == ',') words.pop_back();
   return kinematics::state_at(machine, words);
+}
+
+Json write_folder(const ExchangeArguments& arguments, const std::vector<exchange::ConfigurationFile>& files) {
+  Json paths = Json::array();
+  for (const exchange::ConfigurationFile& file : files) {
+    const std::string path = arguments.output + "/" + file.name;
+    text::make_folder(path.substr(0, path.rfind('/')));
+    text::write_file(path, file.text);
+    paths.push_back(path);
+  }
+  return paths;
+}
+
+Json three_json(const std::array<double, 3>& values) {
+  return {{"x", values[0]}, {"y", values[1]}, {"z", values[2]}};
+}
+
+std::vector<exchange::LeftOut> remaining(const std::array<double, 3>& after_um) {
+  std::vector<exchange::LeftOut> left;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (after_um[i] > exchange::kNothing_um)
+      left.push_back({fmt::format("error along {} that remains with the files, between the points as well",
+                                  exchange::kLetters[i]),
+                      after_um[i]});
+  return left;
+}
+
+void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um) {
+  fmt::print(human_stream(arguments.json),
+             "error of the tool point at {} positions, rms: {:.4g} um before, {:.4g} um with the files\n",
+             positions, before_um, after_um);
 }
 
 CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,

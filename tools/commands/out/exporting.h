@@ -2,11 +2,13 @@
 // What all exports share: arguments, the sheet "safe to run?", the result.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tools/exchange/configuration_file.h"
 #include "tools/exchange/left_out.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
@@ -40,6 +42,18 @@ model::States state_of(const model::Machine& machine, const ExchangeArguments& a
 void finish(const model::Machine& machine, const ExchangeArguments& arguments, const char* format,
             const std::vector<exchange::LeftOut>& left_out, const Json& files,
             const std::vector<AxisLines>& axes = {}, bool exported = true, const Json& extra = {});
+
+/// Writes the files into the folder of the output and returns their paths.
+Json write_folder(const ExchangeArguments& arguments, const std::vector<exchange::ConfigurationFile>& files);
+
+/// Returns {"x": ..., "y": ..., "z": ...}.
+Json three_json(const std::array<double, 3>& values);
+
+/// Returns an entry for each of X, Y and Z along which an error remains with the files.
+std::vector<exchange::LeftOut> remaining(const std::array<double, 3>& after_um);
+
+/// Prints the rms of the tool point's error at so many positions, without and with the files.
+void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um);
 
 /// Adds the subcommand of a format with the options of every export.
 CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,

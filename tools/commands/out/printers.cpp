@@ -31,26 +31,11 @@ exchange::PresentSetting present_of(const PrinterArguments& arguments) {
   return present;
 }
 
-/// What the files do not hold: the largest error of each direction, and steps that the user did not state.
-std::vector<exchange::LeftOut> left_out_of(const exchange::PrinterErrors& errors) {
-  std::vector<exchange::LeftOut> left;
-  constexpr std::array<const char*, 3> kNames = {"X", "Y", "Z"};
-  for (std::size_t i = 0; i < 3; ++i)
-    if (errors.after_um[i] > exchange::kNothing_um)
-      left.push_back(
-          {fmt::format("error along {} that remains with the files, between the points as well", kNames[i]),
-           errors.after_um[i]});
-  return left;
-}
-
 Json errors_json(const exchange::PrinterErrors& errors) {
-  const auto three = [](const std::array<double, 3>& um) {
-    return Json{{"x", um[0]}, {"y", um[1]}, {"z", um[2]}};
-  };
   return {{"errors",
            {{"positions", errors.positions},
-            {"before_um", three(errors.before_um)},
-            {"after_um", three(errors.after_um)},
+            {"before_um", three_json(errors.before_um)},
+            {"after_um", three_json(errors.after_um)},
             {"rms_before_um", errors.rms_before_um},
             {"rms_after_um", errors.rms_after_um}}}};
 }
@@ -61,24 +46,17 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   const exchange::PresentSetting present = present_of(arguments);
   if (firmware == Firmware::kGrbl && !present.steps)
     throw text::InputError("grbl holds steps per mm only: state the present ones with --steps X,Y,Z");
-  const exchange::PrinterAxes axes = exchange::printer_axes(machine);
+  const exchange::ThreeAxes axes = exchange::three_axes(machine);
   const model::States at = state_of(machine, common);
   require_safe(machine, common);
   exchange::PrinterCorrection correction = exchange::printer_correction(
       machine, axes, exchange::features_of(firmware, present), at, common.tolerance_um);
-  const std::vector<exchange::FirmwareFile> texts =
+  const std::vector<exchange::ConfigurationFile> texts =
       exchange::firmware_files(firmware, present, machine.name, correction);
   const exchange::PrinterErrors errors = exchange::printer_errors(machine, axes, correction, at);
-  text::make_folder(common.output);
-  Json files = Json::array();
-  for (const exchange::FirmwareFile& file : texts) {
-    files.push_back(common.output + "/" + file.name);
-    text::write_file(files.back().get<std::string>(), file.text);
-  }
-  fmt::print(human_stream(common.json),
-             "error of the tool point at {} positions, rms: {:.4g} um before, {:.4g} um with the files\n",
-             errors.positions, errors.rms_before_um, errors.rms_after_um);
-  finish(machine, common, name, left_out_of(errors), files, {}, true, errors_json(errors));
+  const Json files = write_folder(common, texts);
+  print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
+  finish(machine, common, name, remaining(errors.after_um), files, {}, true, errors_json(errors));
 }
 
 void add_printer(CLI::App* parent, const char* name, const char* what, const char* steps, Firmware firmware) {

@@ -15,9 +15,7 @@ void export_urdf(const ExchangeArguments& arguments) {
   const model::States at = state_of(machine, arguments);
   require_safe(machine, arguments);
   const exchange::UrdfFile file = exchange::urdf_arm(machine, at);
-  text::make_folder(arguments.output);
-  const std::string path = arguments.output + "/robot.urdf";
-  text::write_file(path, file.text);
+  const Json files = write_folder(arguments, {{"robot.urdf", file.text}});
   std::vector<exchange::LeftOut> left;
   if (file.worst_um > exchange::kNothing_um)
     left.push_back({"errors that change with the joints, in the tool point", file.worst_um});
@@ -25,7 +23,7 @@ void export_urdf(const ExchangeArguments& arguments) {
              "difference from the machine file at {} poses: tool point up to {:.3g} um, tool direction up to "
              "{:.3g} urad\n",
              file.positions, file.worst_um, file.worst_urad);
-  finish(machine, arguments, "urdf", left, Json::array({path}), {}, true,
+  finish(machine, arguments, "urdf", left, files, {}, true,
          {{"errors",
            {{"positions", file.positions}, {"after_um", file.worst_um}, {"after_urad", file.worst_urad}}}});
 }

@@ -93,9 +93,9 @@ std::string cec_table(const ControllerTable& table, std::size_t t, const std::ar
          fmt::format("$AN_CEC_DIRECTION[{0}]=0\n$AN_CEC_MULT_BY_TABLE[{0}]=0\n$AN_CEC_IS_MODULO[{0}]=0\n", t);
 }
 
-std::vector<FirmwareFile> siemens(const ControllerSetting& setting, const std::string& name,
-                                  const ControllerTables& tables) {
-  std::vector<FirmwareFile> files;
+std::vector<ConfigurationFile> siemens(const ControllerSetting& setting, const std::string& name,
+                                       const ControllerTables& tables) {
+  std::vector<ConfigurationFile> files;
   std::string cec;
   std::size_t count = 0;
   for (const ControllerTable& table : tables.tables)
@@ -140,8 +140,8 @@ std::string com_table(const ControllerTables& tables, std::size_t input) {
   return text + "[END]\n";
 }
 
-std::vector<FirmwareFile> heidenhain(const std::string& name, const ControllerTables& tables) {
-  std::vector<FirmwareFile> files;
+std::vector<ConfigurationFile> heidenhain(const std::string& name, const ControllerTables& tables) {
+  std::vector<ConfigurationFile> files;
   for (std::size_t input = 0; input < 3; ++input)
     files.push_back({fmt::format("{}.COM", kLetters[input]), com_table(tables, input)});
   files.push_back({"CONFIG.CMA",
@@ -211,8 +211,8 @@ Increments increments_of(ControllerTable& table, double unit_mm, double referenc
                   kLetters[table.input], kMostIncrement * kMostMagnification * unit_mm * 1000, table.step));
 }
 
-std::vector<FirmwareFile> fanuc(const ControllerSetting& setting, const std::string& name,
-                                ControllerTables& tables) {
+std::vector<ConfigurationFile> fanuc(const ControllerSetting& setting, const std::string& name,
+                                     ControllerTables& tables) {
   std::string text = "%\n", data;
   std::string notes = fmt::format("{}: stored pitch error compensation and backlash\n\n", name);
   notes += std::string(kMeasured) + "\n\n";
@@ -281,8 +281,8 @@ ControllerRules rules_of(Controller controller, const ControllerSetting& setting
   return rules;
 }
 
-std::vector<FirmwareFile> controller_files(Controller controller, const ControllerSetting& setting,
-                                           const std::string& machine_name, ControllerTables& tables) {
+std::vector<ConfigurationFile> controller_files(Controller controller, const ControllerSetting& setting,
+                                                const std::string& machine_name, ControllerTables& tables) {
   switch (controller) {
     case Controller::kSiemens:
       return siemens(setting, machine_name, tables);

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "tools/exchange/configuration_file.h"
 #include "tools/exchange/controller/placing.h"
 #include "tools/exchange/controller/tables.h"
-#include "tools/exchange/printer/firmware_files.h"
 
 namespace vernier::exchange {
 
@@ -26,7 +26,7 @@ ControllerRules rules_of(Controller controller, const ControllerSetting& setting
 
 /// Returns the files of a controller. The tables receive the rounding of the files. Throws LimitNotMet: a
 /// value of FANUC is beyond its range. machine_name: for comments. tool.
-std::vector<FirmwareFile> controller_files(Controller controller, const ControllerSetting& setting,
-                                           const std::string& machine_name, ControllerTables& tables);
+std::vector<ConfigurationFile> controller_files(Controller controller, const ControllerSetting& setting,
+                                                const std::string& machine_name, ControllerTables& tables);
 
 }  // namespace vernier::exchange

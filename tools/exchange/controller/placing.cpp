@@ -25,7 +25,7 @@ double to_step(double value, double unit) {
 class Along {
  public:
   /// others: positions of each other axis; 1 is the middle of the range.
-  Along(const model::Machine& machine, const PrinterAxes& axes, const model::States& at, std::size_t input,
+  Along(const model::Machine& machine, const ThreeAxes& axes, const model::States& at, std::size_t input,
         std::size_t others)
       : machine_(machine), axes_(axes), at_(at), input_(input), others_(others) {}
 
@@ -73,7 +73,7 @@ class Along {
   }
 
   const model::Machine& machine_;
-  const PrinterAxes& axes_;
+  const ThreeAxes& axes_;
   const model::States& at_;
   std::size_t input_, others_;
 };
@@ -124,7 +124,7 @@ Matrix3Xd nearest_values(const Along& along, const Points& points, double low, d
 /// Tables of one input axis with all outputs, before the choice of those that are written.
 class InputAxis {
  public:
-  InputAxis(const model::Machine& machine, const PrinterAxes& axes, const ControllerRules& rules,
+  InputAxis(const model::Machine& machine, const ThreeAxes& axes, const ControllerRules& rules,
             const model::States& at, const ControllerWishes& wishes, std::size_t input)
       : rules_(rules),
         wishes_(wishes),
@@ -181,7 +181,7 @@ class InputAxis {
   }
 
   /// One position in each of many equal parts, at a different position in each part (golden section).
-  std::vector<double> uneven(const model::Machine& machine, const PrinterAxes& axes,
+  std::vector<double> uneven(const model::Machine& machine, const ThreeAxes& axes,
                              const model::States& at) const {
     constexpr double kFewest = 1024, kMost = 16384, kPerPeriod = 32, kPerStation = 8;
     constexpr double kGolden = 0.6180339887498949;
@@ -285,7 +285,7 @@ class InputAxis {
 
 }  // namespace
 
-ControllerTables controller_tables(const model::Machine& machine, const PrinterAxes& axes,
+ControllerTables controller_tables(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerRules& rules, const model::States& at,
                                    const ControllerWishes& wishes) {
   ControllerTables result;

@@ -8,25 +8,15 @@
 #include "tools/model/chain/chain.h"
 
 namespace vernier::exchange {
-namespace {
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
 
-double rms_of_um(const Matrix3Xd& error) {
-  return 1000 * std::sqrt(error.squaredNorm() / static_cast<double>(error.cols()));
-}
-
-}  // namespace
-
-model::States controller_states(const PrinterAxes& axes, const Matrix3Xd& commands,
-                                const Matrix3Xd& directions, const model::States& at) {
-  model::States states =
-      model::select_states(at, std::vector<std::size_t>(static_cast<std::size_t>(commands.cols()), 0));
-  for (std::size_t i = 0; i < 3; ++i) {
-    states.axis[axes.axis[i]] = commands.row(static_cast<Index>(i)).transpose().array();
+model::States controller_states(const ThreeAxes& axes, const Matrix3Xd& commands, const Matrix3Xd& directions,
+                                const model::States& at) {
+  model::States states = states_at(axes, commands, at);
+  for (std::size_t i = 0; i < 3; ++i)
     states.direction[axes.axis[i]] = directions.row(static_cast<Index>(i)).transpose().array();
-  }
   return states;
 }
 
@@ -58,7 +48,7 @@ Matrix3Xd ControllerTables::corrected(const Matrix3Xd& commands, const Matrix3Xd
   return result;
 }
 
-ControllerErrors controller_errors(const model::Machine& machine, const PrinterAxes& axes,
+ControllerErrors controller_errors(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerTables& tables, const model::States& at) {
   constexpr Index kPositions = 4096;
   constexpr unsigned long kPositionsSeed = 1;
@@ -93,8 +83,8 @@ ControllerErrors controller_errors(const model::Machine& machine, const PrinterA
       largest = std::max(largest, 1000 * std::abs(after(row, k)));
     }
   }
-  errors.rms_before_um = rms_of_um(before);
-  errors.rms_after_um = rms_of_um(after);
+  errors.rms_before_um = rms_um(before);
+  errors.rms_after_um = rms_um(after);
   return errors;
 }
 

@@ -5,14 +5,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "tools/exchange/printer/correction.h"
+#include "tools/exchange/three_axes.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
 namespace vernier::exchange {
-
-/// Names of the axes of a table.
-inline constexpr std::array<const char*, 3> kLetters = {"X", "Y", "Z"};
 
 /// Correction of one axis by the position of one axis: values at equal distances, mm, added to the command.
 struct ControllerTable {
@@ -42,7 +39,7 @@ struct ControllerTables {
 };
 
 /// Returns the states at commands of X, Y and Z, a column each, mm, and directions from -1 to +1 of each.
-model::States controller_states(const PrinterAxes& axes, const Eigen::Matrix3Xd& commands,
+model::States controller_states(const ThreeAxes& axes, const Eigen::Matrix3Xd& commands,
                                 const Eigen::Matrix3Xd& directions, const model::States& at);
 
 /// Errors of the tool point at positions of the whole volume, without the mean offset, um.
@@ -56,7 +53,7 @@ struct ControllerErrors {
 
 /// Evaluates the chain with the corrected commands at positions between the points (4096, fixed seed), each
 /// axis in a random direction. tool.
-ControllerErrors controller_errors(const model::Machine& machine, const PrinterAxes& axes,
+ControllerErrors controller_errors(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerTables& tables, const model::States& at);
 
 }  // namespace vernier::exchange

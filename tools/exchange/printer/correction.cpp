@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/exchange/printer/correction.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -10,7 +8,6 @@
 #include "tools/kinematics/correction.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain/chain.h"
-#include "tools/text/error.h"
 
 namespace vernier::exchange {
 namespace {
@@ -19,17 +16,8 @@ using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::VectorXd;
 
-/// States at commands of X, Y and Z, a column each.
-model::States states_at(const PrinterAxes& axes, const Matrix3Xd& commands, const model::States& at) {
-  model::States states =
-      model::select_states(at, std::vector<std::size_t>(static_cast<std::size_t>(commands.cols()), 0));
-  for (std::size_t i = 0; i < 3; ++i)
-    states.axis[axes.axis[i]] = commands.row(static_cast<Index>(i)).transpose().array();
-  return states;
-}
-
 /// What has to be added to each command, mm.
-Matrix3Xd needed(const model::Machine& machine, const PrinterAxes& axes, const Matrix3Xd& commands,
+Matrix3Xd needed(const model::Machine& machine, const ThreeAxes& axes, const Matrix3Xd& commands,
                  const model::States& at) {
   const kinematics::CorrectionResult result = kinematics::correct(machine, states_at(axes, commands, at));
   Matrix3Xd offset(3, commands.cols());
@@ -43,7 +31,7 @@ VectorXd evenly(double low, double high, std::size_t count) {
 }
 
 /// All points of a grid: count positions of each axis.
-Matrix3Xd grid(const PrinterAxes& axes, std::array<std::size_t, 3> count) {
+Matrix3Xd grid(const ThreeAxes& axes, std::array<std::size_t, 3> count) {
   Matrix3Xd points(3, static_cast<Index>(count[0] * count[1] * count[2]));
   const VectorXd x = evenly(axes.low[0], axes.high[0], count[0]),
                  y = evenly(axes.low[1], axes.high[1], count[1]);
@@ -56,20 +44,15 @@ Matrix3Xd grid(const PrinterAxes& axes, std::array<std::size_t, 3> count) {
   return points;
 }
 
-/// Least squares of a column on columns: the coefficients.
-VectorXd least_squares(const Eigen::MatrixXd& columns, const VectorXd& values) {
-  return maths::least_squares(columns, values);
-}
-
 /// Skew and steps. A part of Y that depends on X and the opposite part of X are one turn about Z: the skew is
 /// their sum.
 void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& features,
                         const Matrix3Xd& points, const Matrix3Xd& offset) {
   Eigen::MatrixXd columns(points.cols(), 4);
   columns << points.transpose(), VectorXd::Ones(points.cols());
-  const VectorXd x = least_squares(columns, offset.row(0).transpose()),
-                 y = least_squares(columns, offset.row(1).transpose()),
-                 z = least_squares(columns, offset.row(2).transpose());
+  const VectorXd x = maths::least_squares(columns, offset.row(0).transpose()),
+                 y = maths::least_squares(columns, offset.row(1).transpose()),
+                 z = maths::least_squares(columns, offset.row(2).transpose());
   if (features.skew) {
     correction.xy = x[1] + y[0];
     correction.xz = x[2];
@@ -79,7 +62,7 @@ void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& fe
 }
 
 /// Heights at the lowest Z, beside the skew. Z is 0 in the middle: homing sets the offset.
-HeightMesh mesh_of(const model::Machine& machine, const PrinterAxes& axes, std::size_t count,
+HeightMesh mesh_of(const model::Machine& machine, const ThreeAxes& axes, std::size_t count,
                    const model::States& at) {
   const Matrix3Xd points = grid(axes, {count, count, 1});
   const Matrix3Xd offset = needed(machine, axes, points, at);
@@ -93,10 +76,10 @@ HeightMesh mesh_of(const model::Machine& machine, const PrinterAxes& axes, std::
 }
 
 /// Largest error of the mesh in the middle of its cells, um.
-double between_um(const model::Machine& machine, const PrinterAxes& axes, const HeightMesh& mesh,
+double between_um(const model::Machine& machine, const ThreeAxes& axes, const HeightMesh& mesh,
                   const model::States& at) {
   const auto cells = static_cast<std::size_t>(mesh.z.cols() - 1);
-  PrinterAxes middle = axes;
+  ThreeAxes middle = axes;
   for (std::size_t i = 0; i < 2; ++i) {
     const double half = (axes.high[i] - axes.low[i]) / static_cast<double>(2 * cells);
     middle.low[i] += half;
@@ -120,34 +103,7 @@ void remove_rigid_part(Matrix3Xd& error, const Matrix3Xd& points) {
   error.row(1) -= turn * arm.row(0);
 }
 
-double rms_um(const Matrix3Xd& error) {
-  return 1000 * std::sqrt(error.squaredNorm() / static_cast<double>(error.cols()));
-}
-
 }  // namespace
-
-PrinterAxes printer_axes(const model::Machine& machine) {
-  PrinterAxes axes;
-  constexpr std::array<const char*, 3> kNames = {"X", "Y", "Z"};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto found = machine.find_axis(kNames[i]);
-    if (!found || machine.axes[*found].rotary)
-      throw text::InputError({machine.file, 0}, kNames[i],
-                             "this format is for machines with three linear axes X, Y and Z");
-    const auto range = model::work_range(machine, *found);
-    if (!range)
-      throw text::InputError({machine.file, machine.axes[*found].line}, kNames[i],
-                             "this axis needs min and max: the file is written for its range");
-    axes.axis[i] = *found;
-    axes.low[i] = (*range)[0];
-    axes.high[i] = (*range)[1];
-  }
-  for (const model::Axis& axis : machine.axes)
-    if (axis.rotary)
-      throw text::InputError({machine.file, axis.line}, axis.name,
-                             "this format has no rotary axis: it holds X, Y and Z only");
-  return axes;
-}
 
 double HeightMesh::at(double x, double y) const {
   if (z.size() == 0) return 0;
@@ -173,7 +129,7 @@ Matrix3Xd PrinterCorrection::corrected(const Matrix3Xd& commands) const {
   return result;
 }
 
-PrinterCorrection printer_correction(const model::Machine& machine, const PrinterAxes& axes,
+PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
                                      const PrinterFeatures& features, const model::States& at,
                                      double tolerance_um) {
   constexpr std::size_t kPositions = 7;  // of each axis, for skew and steps
@@ -188,7 +144,7 @@ PrinterCorrection printer_correction(const model::Machine& machine, const Printe
   return correction;
 }
 
-PrinterErrors printer_errors(const model::Machine& machine, const PrinterAxes& axes,
+PrinterErrors printer_errors(const model::Machine& machine, const ThreeAxes& axes,
                              const PrinterCorrection& correction, const model::States& at) {
   constexpr Index kPositions = 4096;
   constexpr unsigned long kPositionsSeed = 1;

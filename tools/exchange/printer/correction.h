@@ -6,20 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "tools/exchange/three_axes.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
 namespace vernier::exchange {
-
-/// The axes X, Y and Z of a three-axis machine, and their working ranges, mm.
-struct PrinterAxes {
-  std::array<std::size_t, 3> axis{};
-  std::array<double, 3> low{}, high{};
-};
-
-/// Throws InputError if the machine lacks one of the three linear axes, has another axis that moves, or does
-/// not state their ranges.
-PrinterAxes printer_axes(const model::Machine& machine);
 
 /// A grid of heights over X and Y, bilinear between the points; the end values are used outside.
 struct HeightMesh {
@@ -54,7 +45,7 @@ struct PrinterFeatures {
 /// between them are within tolerance_um, or the largest one. `at` (count 1): inputs, motion. Offsets of the
 /// axes are not corrected: homing sets them. A turn about Z is not corrected: it turns the part as a whole.
 /// tool.
-PrinterCorrection printer_correction(const model::Machine& machine, const PrinterAxes& axes,
+PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
                                      const PrinterFeatures& features, const model::States& at,
                                      double tolerance_um);
 
@@ -68,7 +59,7 @@ struct PrinterErrors {
 
 /// Evaluates the chain with the corrected commands at positions between the points of the mesh (4096, fixed
 /// seed). tool.
-PrinterErrors printer_errors(const model::Machine& machine, const PrinterAxes& axes,
+PrinterErrors printer_errors(const model::Machine& machine, const ThreeAxes& axes,
                              const PrinterCorrection& correction, const model::States& at);
 
 }  // namespace vernier::exchange

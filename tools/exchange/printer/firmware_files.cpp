@@ -5,57 +5,66 @@
 
 #include <cmath>
 
+#include "tools/maths/rounding.h"
+
 namespace vernier::exchange {
 namespace {
 
 using Eigen::Index;
 
-double rounded(double value, int decimals) {
-  const double unit = std::pow(10.0, decimals);
-  const double result = std::round(value * unit) / unit;
-  return result == 0 ? 0 : result;  // no -0
-}
+/// Without -0.
+double rounded(double value, double digit) { return maths::rounded_to(value, digit) + 0.0; }
 
-void round_to(PrinterCorrection& correction, int tangent_decimals, int height_decimals) {
+/// Rounds as the file has it.
+void round_to(PrinterCorrection& correction, double tangent_digit, double height_digit) {
   for (double* tangent : {&correction.xy, &correction.xz, &correction.yz})
-    *tangent = rounded(*tangent, tangent_decimals);
-  correction.mesh.z = correction.mesh.z.unaryExpr([&](double z) { return rounded(z, height_decimals); });
+    *tangent = rounded(*tangent, tangent_digit);
+  correction.mesh.z = correction.mesh.z.unaryExpr([&](double z) { return rounded(z, height_digit); });
 }
 
-constexpr std::array<const char*, 3> kAxis = {"X", "Y", "Z"};
+/// The three numbers of Klipper and Marlin, which compute x - y*XY - z*(XZ - XY*YZ) and y - z*YZ.
+struct Skew {
+  double xy, xz, yz;
+};
+
+/// Also rounds the correction as the file has it.
+Skew skew_of(PrinterCorrection& correction, double digit) {
+  Skew skew{-correction.xy, 0, -correction.yz};
+  skew.xz = rounded(-correction.xz + skew.xy * skew.yz, digit);
+  correction.xz = -(skew.xz - skew.xy * skew.yz);
+  return skew;
+}
 
 /// Lines "Y: 80.123" of the new steps per mm, or why there are none.
 template <class Line>
 std::string steps_lines(const PresentSetting& present, PrinterCorrection& correction,
                         const std::string& comment, bool per_turn, const Line& line) {
   std::string text;
-  constexpr int kDecimals = 6;
+  constexpr double kDigit = 1e-6;
   if (!present.steps) return text;
   for (std::size_t i = 0; i < 3; ++i) {
     const double now = (*present.steps)[i];
     const double factor = correction.steps[i];
-    const double next = rounded(per_turn ? now / factor : now * factor, kDecimals);
+    const double next = rounded(per_turn ? now / factor : now * factor, kDigit);
     correction.steps[i] = per_turn ? now / next : next / now;
     text += line(i, next);
   }
   return comment + text;
 }
 
-std::vector<FirmwareFile> klipper(const PresentSetting& present, const std::string& name,
-                                  PrinterCorrection& correction) {
-  round_to(correction, 9, 6);
+std::vector<ConfigurationFile> klipper(const PresentSetting& present, const std::string& name,
+                                       PrinterCorrection& correction) {
+  round_to(correction, 1e-9, 1e-6);
   const HeightMesh& mesh = correction.mesh;
-  // The firmware computes x - y*XY - z*(XZ - XY*YZ) and y - z*YZ.
-  const double xy = -correction.xy, yz = -correction.yz, xz = rounded(-correction.xz + xy * yz, 9);
-  correction.xz = -(xz - xy * yz);
+  const Skew skew = skew_of(correction, 1e-9);
   std::string text = fmt::format(
       "# {}: squareness and bed heights. Append to printer.cfg, in its SAVE_CONFIG block.\n"
       "# Then load both at the end of the start code: SKEW_PROFILE LOAD=vernier and\n"
       "# BED_MESH_PROFILE LOAD=vernier. The sections [skew_correction] and [bed_mesh] must be present.\n",
       name);
   text += fmt::format(
-      "#*# [skew_correction vernier]\n#*# xy_skew = {:.9f}\n#*# xz_skew = {:.9f}\n#*# yz_skew = {:.9f}\n", xy,
-      xz, yz);
+      "#*# [skew_correction vernier]\n#*# xy_skew = {:.9f}\n#*# xz_skew = {:.9f}\n#*# yz_skew = {:.9f}\n",
+      skew.xy, skew.xz, skew.yz);
   text += "#*#\n#*# [bed_mesh vernier]\n#*# version = 1\n#*# points =\n";
   for (Index row = 0; row < mesh.z.rows(); ++row) {
     text += "#*# \t  ";
@@ -73,21 +82,21 @@ std::vector<FirmwareFile> klipper(const PresentSetting& present, const std::stri
                     return fmt::format("[stepper_{}]\nrotation_distance: {:.6f}\n",
                                        static_cast<char>('x' + static_cast<int>(i)), next);
                   });
-  std::vector<FirmwareFile> files = {{"vernier_saved.cfg", text}};
+  std::vector<ConfigurationFile> files = {{"vernier_saved.cfg", text}};
   if (!steps.empty()) files.push_back({"vernier_steppers.cfg", steps});
   return files;
 }
 
-std::vector<FirmwareFile> reprap(const PresentSetting& present, const std::string& name,
-                                 PrinterCorrection& correction) {
-  round_to(correction, 8, 3);
+std::vector<ConfigurationFile> reprap(const PresentSetting& present, const std::string& name,
+                                      PrinterCorrection& correction) {
+  round_to(correction, 1e-8, 1e-3);
   const HeightMesh& mesh = correction.mesh;
   std::string code = fmt::format(
       "; {}: run in config.g; the heights after homing (G29 S1 P\"vernier_heightmap.csv\")\n"
       "M556 S1000 X{:.5f} Y{:.5f} Z{:.5f} ; squareness: mm in 1000 mm of XY, YZ, XZ\n",
       name, 1000 * correction.xy, 1000 * correction.yz, 1000 * correction.xz);
   code += steps_lines(present, correction, "", false, [](std::size_t i, double next) {
-    return fmt::format("M92 {}{:.6f}\n", kAxis[i], next);
+    return fmt::format("M92 {}{:.6f}\n", kLetters[i], next);
   });
   const double count = static_cast<double>(mesh.z.size());
   const double mean = mesh.z.sum() / count;
@@ -106,30 +115,30 @@ std::vector<FirmwareFile> reprap(const PresentSetting& present, const std::strin
   return {{"vernier.g", code}, {"vernier_heightmap.csv", map}};
 }
 
-std::vector<FirmwareFile> marlin(const PresentSetting& present, const std::string& name,
-                                 PrinterCorrection& correction) {
-  round_to(correction, 8, 4);
+std::vector<ConfigurationFile> marlin(const PresentSetting& present, const std::string& name,
+                                      PrinterCorrection& correction) {
+  round_to(correction, 1e-8, 1e-4);
   const HeightMesh& mesh = correction.mesh;
-  const double xy = -correction.xy, yz = -correction.yz, xz = rounded(-correction.xz + xy * yz, 8);
-  correction.xz = -(xz - xy * yz);
+  const Skew skew = skew_of(correction, 1e-8);
   std::string code = fmt::format(
       "; {}: send once, then M500 stores it. Marlin needs SKEW_CORRECTION_GCODE, SKEW_CORRECTION_FOR_Z\n"
       "; and a mesh of {} x {} points from ({:.3f}, {:.3f}) to ({:.3f}, {:.3f}) mm\n"
       "; (GRID_MAX_POINTS_X, MESH_MIN_X, MESH_MAX_X ... in its configuration).\n"
       "M852 I{:.8f} J{:.8f} K{:.8f} ; squareness XY, XZ, YZ\n",
-      name, mesh.z.cols(), mesh.z.rows(), mesh.x_low, mesh.y_low, mesh.x_high, mesh.y_high, xy, xz, yz);
+      name, mesh.z.cols(), mesh.z.rows(), mesh.x_low, mesh.y_low, mesh.x_high, mesh.y_high, skew.xy, skew.xz,
+      skew.yz);
   for (Index row = 0; row < mesh.z.rows(); ++row)
     for (Index column = 0; column < mesh.z.cols(); ++column)
       code += fmt::format("M421 I{} J{} Z{:.4f}\n", column, row, mesh.z(row, column));
   code += "M420 S1 Z0 ; heights on, at every height of Z\n";
   code += steps_lines(present, correction, "", false, [](std::size_t i, double next) {
-    return fmt::format("M92 {}{:.6f}\n", kAxis[i], next);
+    return fmt::format("M92 {}{:.6f}\n", kLetters[i], next);
   });
   return {{"vernier.gcode", code + "M500\n"}};
 }
 
-std::vector<FirmwareFile> grbl(const PresentSetting& present, const std::string& name,
-                               PrinterCorrection& correction) {
+std::vector<ConfigurationFile> grbl(const PresentSetting& present, const std::string& name,
+                                    PrinterCorrection& correction) {
   std::string text = fmt::format("({}: steps per mm; grbl holds no other correction)\n", name);
   text += steps_lines(present, correction, "", false,
                       [](std::size_t i, double next) { return fmt::format("${}={:.6f}\n", 100 + i, next); });
@@ -158,8 +167,9 @@ PrinterFeatures features_of(Firmware firmware, const PresentSetting& present) {
   return features;
 }
 
-std::vector<FirmwareFile> firmware_files(Firmware firmware, const PresentSetting& present,
-                                         const std::string& machine_name, PrinterCorrection& correction) {
+std::vector<ConfigurationFile> firmware_files(Firmware firmware, const PresentSetting& present,
+                                              const std::string& machine_name,
+                                              PrinterCorrection& correction) {
   switch (firmware) {
     case Firmware::kKlipper:
       return klipper(present, machine_name, correction);

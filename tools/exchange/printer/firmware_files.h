@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/exchange/configuration_file.h"
 #include "tools/exchange/printer/correction.h"
 
 namespace vernier::exchange {
@@ -21,15 +22,11 @@ struct PresentSetting {
 /// Returns the parts of a correction that a firmware holds.
 PrinterFeatures features_of(Firmware firmware, const PresentSetting& present);
 
-struct FirmwareFile {
-  std::string name, text;
-};
-
 /// Returns the files of a firmware, and the correction with the rounding of these files. Sources, all in
 /// tools/docs/exchange.md: Klipper klippy/extras/skew_correction.py and bed_mesh.py; RepRapFirmware M556, M92
 /// and the height map file; Marlin M852, M420, M421, M92; grbl $100 to $102. machine_name: for comments.
 /// tool.
-std::vector<FirmwareFile> firmware_files(Firmware firmware, const PresentSetting& present,
-                                         const std::string& machine_name, PrinterCorrection& correction);
+std::vector<ConfigurationFile> firmware_files(Firmware firmware, const PresentSetting& present,
+                                              const std::string& machine_name, PrinterCorrection& correction);
 
 }  // namespace vernier::exchange

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "tools/model/machine.h"
+#include "tools/model/states.h"
+
+namespace vernier::exchange {
+
+/// Names of the axes of a machine with three axes.
+inline constexpr std::array<const char*, 3> kLetters = {"X", "Y", "Z"};
+
+/// The axes X, Y and Z of a three-axis machine, and their working ranges, mm.
+struct ThreeAxes {
+  std::array<std::size_t, 3> axis{};
+  std::array<double, 3> low{}, high{};
+};
+
+/// Throws InputError if the machine lacks one of the three linear axes, has another axis that moves, or does
+/// not state their ranges.
+ThreeAxes three_axes(const model::Machine& machine);
+
+/// Returns the states at commands of X, Y and Z, a column each, mm. `at` (count 1): everything else.
+model::States states_at(const ThreeAxes& axes, const Eigen::Matrix3Xd& commands, const model::States& at);
+
+/// Returns the rms length of errors, a column each in mm, um.
+double rms_um(const Eigen::Matrix3Xd& error);
+
+}  // namespace vernier::exchange
