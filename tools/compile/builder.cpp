@@ -314,6 +314,7 @@ ProgramBuilder::Id ProgramBuilder::dot(double constant_part, std::vector<Product
     const int sum_bits = std::min(finest, bits + static_cast<int>(kMaxShift));
     Register meta;
     meta.name = name;
+    meta.addend = constant_part;
     meta.range = exact;
     meta.fraction_bits = bits;
     meta.own_error = sum_bits > bits ? std::ldexp(0.5, -bits) : 0;

@@ -133,6 +133,7 @@ struct Register {
   double own_error = 0;  // the part that this register adds
   ErrorSource source = ErrorSource::kRounding;
   bool given = false;  // its users refer to its actual value, so its error is not propagated
+  double addend = 0;   // of a sum of products: its constant, exact
   struct Use {
     std::uint32_t from;
     double gain;  // |d this / d from| at most

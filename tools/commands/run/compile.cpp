@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "tools/commands/fit_findings.h"
+#include "tools/compile/certificate.h"
 #include "tools/compile/compile.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/chain/work_poses.h"
@@ -20,6 +21,7 @@ namespace {
 
 struct Arguments {
   std::string machine, directory, json, budget;
+  bool certificate = false;
   std::vector<std::string> accept;
 };
 
@@ -184,12 +186,14 @@ void run_compile(const Arguments& arguments) {
   text::write_file(arguments.directory + "/equation.cpp", compiled.source);
   text::write_file(arguments.directory + "/bound.json", result.dump(2) + "\n");
   text::write_file(arguments.directory + "/machine.vimg", {compiled.image.begin(), compiled.image.end()});
+  if (arguments.certificate)
+    text::write_file(arguments.directory + "/bound.g", compile::print_certificate(machine, compiled));
   write_json(arguments.json, result);
   std::FILE* const out = human_stream(arguments.json);
   print_for_people(out, compiled, machine);
   results::print_safety(out, sheet);
-  fmt::print(out, "written to {}: machine.vimg, machine.xml, equation.h, equation.cpp, bound.json\n",
-             arguments.directory);
+  fmt::print(out, "written to {}: machine.vimg, machine.xml, equation.h, equation.cpp, bound.json{}\n",
+             arguments.directory, arguments.certificate ? ", bound.g" : "");
 }
 
 }  // namespace
@@ -208,6 +212,9 @@ void register_compile(CLI::App& vernier) {
   command->add_option("--budget", arguments->budget,
                       "largest proved bound allowed on an axis (nm, um, mm; a plain number is um); exceeded: "
                       "exit status 2, nothing written");
+  command->add_flag(
+      "--certificate", arguments->certificate,
+      "write bound.g too: the program as a script that Gappa (gappa DIR/bound.g) proves without Vernier");
   command->add_option(
       "--accept", arguments->accept,
       "a rule of the sheet \"safe to run?\" to override, recorded in the image; may be repeated");

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+
+#include "tools/compile/types.h"
+#include "tools/model/machine.h"
+
+namespace vernier::compile {
+
+/// Writes the fixed-point program as a script for Gappa (https://gappa.gitlabpages.inria.fr), which then
+/// proves the error of each output without this compiler: every sum and product with its exact rounding, one
+/// statement per output. Assumptions of the script (its hypotheses): the declared ranges; the error of a
+/// channel's format; the error and the slope of each table and function. Not in the script: the neglected
+/// terms of the error equation, the second order of the correction, the conversion of an output to counts.
+/// tool.
+std::string print_certificate(const model::Machine& machine, const CompiledMachine& compiled);
+
+}  // namespace vernier::compile
