@@ -272,6 +272,93 @@ TEST_F(Check, WrongSettingsOfRegistersAreNamed) {
       << gone.text;
 }
 
+/// The same board in the spelling of one table for each axis and each output.
+constexpr const char* kTables = R"([board]
+store = "store"
+[[axis]]
+name = "X"
+kind = "sim"
+max_speed = 100
+max_correction = 0.2
+max_step = 0.001
+[[axis]]
+name = "C"
+kind = "sim"
+rotary = true
+rollover = true
+max_speed = 100
+max_correction = 0.2
+max_step = 0.001
+[[output]]
+axis = "C"
+kind = "iio-dac"
+root = "ROOT"
+device = "mcp4922"
+channel = 1
+codes = 255
+span = 0.25
+[[output]]
+axis = "X"
+kind = "modbus"
+address = "127.0.0.1"
+port = 1
+unit = 3
+register = 104
+sequence = 100
+valid = 101
+echo = 50
+scale = 0.01
+)";
+
+TEST_F(Check, TablesOfAxesAndOutputsAreRead) {
+  write(kTables);
+  const Said said = run("--check");
+  EXPECT_EQ(said.status, 2) << said.text;
+  for (const char* line :
+       {"ok       axis.X.position  sim\n", "ok       axis.C.position  sim\n",
+        "missing  axis.X.output  modbus-out: the controller does not answer",
+        "ok       axis.C.output  iio-dac", "budget   axis.C.output: -124.51 to 125.49 mdeg"})
+    EXPECT_NE(said.text.find(line), std::string::npos) << line << said.text;
+  // An [[output]] belongs to an [axis.NAME] as well.
+  write(std::string(kPublished) +
+        "[axis.C]\nkind = \"rotary\"\nmax_speed = 100\nmax_correction = 0.2\nmax_step = 0.001\n"
+        "position = { kind = \"sim\" }\n[[output]]\naxis = \"C\"\nkind = \"pwm\"\npath = \"ROOT/pwm0\"\n"
+        "period_ns = 50000\nspan = 0.25\n");
+  const Said both = run("--check");
+  EXPECT_EQ(both.status, 0) << both.text;
+  EXPECT_NE(both.text.find("ok       axis.C.output  pwm\n"), std::string::npos) << both.text;
+}
+
+TEST_F(Check, WrongTablesOfAxesAndOutputsAreNamedWithTheLineOfTheSetting) {
+  const std::tuple<const char*, const char*, const char*> kWrong[] = {
+      {"name = \"C\"", "name = \"X\"", "board.toml:10: axis: name: 'X' is there twice"},
+      {"name = \"C\"", "", "board.toml:9: axis: name is missing"},
+      {"kind = \"sim\"\nrotary", "rotary", "board.toml:9: axis C: kind is missing"},
+      {"rotary = true", "rotary = \"yes\"", "board.toml:12: axis C: rotary must be true or false"},
+      {"rotary = true", "rotate = 1", "board.toml:12: axis C: unknown setting rotate of kind sim"},
+      {"max_step = 0.001\n[[output]]", "[[output]]", "board.toml:9: axis C: max_step or max_acceleration"},
+      {"axis = \"C\"", "axis = \"B\"", "board.toml:18: output: axis: the board file has no axis 'B'"},
+      {"axis = \"C\"", "axis = \"X\"", "board.toml:26: output: axis: 'X' has an output already"},
+      {"axis = \"C\"", "", "board.toml:17: output: axis is missing"},
+      {"span = 0.25", "spun = 0.25", "board.toml:24: output of C: unknown setting spun of kind iio-dac"},
+      {"unit = 3", "unit = 300", "board.toml:30: output of X: unit must be a whole number from 1 to 247"},
+      {"register = 104", "register = 103",
+       "board.toml:31: output of X: register must be sequence + 2 + 2 * n"},
+      {"register = 104", "register = 134",
+       "board.toml:31: output of X: register must be sequence + 2 + 2 * n"},
+      {"valid = 101", "valid = 102",
+       "board.toml:33: output of X: valid must be the register after sequence (101)"},
+      {"echo = 50\n", "", "board.toml:25: output of X: echo is missing"},
+      {"scale = 0.01", "scale = 0", "board.toml:35: output of X: scale must be above 0"},
+      {"scale = 0.01", "resolution = 1", "unknown setting resolution of kind modbus"}};
+  for (const auto& [setting, wrong, said_of_it] : kWrong) {
+    write(replaced(kTables, setting, wrong));
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << said.text;
+    EXPECT_NE(said.text.find(said_of_it), std::string::npos) << said_of_it << "\n" << said.text;
+  }
+}
+
 /// Two axes with blocks of registers at one controller, and an input.
 std::string board_with_registers(const std::string& x, const std::string& y, const std::string& more = "") {
   const auto axis = [](const char* name, const std::string& settings) {
