@@ -18,9 +18,11 @@
 #include "firmware/daemon/device_trials.h"
 #include "firmware/daemon/modbus_registers.h"
 #include "firmware/daemon/open_devices.h"
+#include "firmware/daemon/open_drives.h"
 #include "firmware/daemon/routing.h"
 #include "firmware/daemon/settings/feature_settings.h"
 #include "hal/linux/can/can_axes.h"
+#include "hal/linux/can/canopen_axes.h"
 #include "hal/linux/file_lock.h"
 #include "hal/linux/hardware_watchdog.h"
 #include "hal/linux/iio/iio_buffer.h"
@@ -56,6 +58,7 @@ struct Devices::Parts {
   std::unique_ptr<Roaming> motion;
   std::unique_ptr<SimPlant> plant;
   std::map<std::string, std::unique_ptr<CanAxes>> buses;  // by interface
+  std::map<std::string, std::unique_ptr<CanopenAxes>> drives;
   std::vector<std::unique_ptr<OutputDevice>> output_devices;
   std::vector<RealOutput> real_outputs;
   ModbusLines lines;
@@ -84,6 +87,7 @@ struct Devices::Parts {
   }
   void make_plant(unsigned long seed);
   void make_bus(const std::string& interface, std::vector<Route<AxisReader>>& routes);
+  void make_drives(const std::string& interface, std::vector<Route<AxisReader>>& routes);
   std::vector<Route<AxisReader>> make_positions();
   std::vector<Route<CorrectionWriter>> make_outputs();
   void make_output(std::uint32_t first, std::vector<Route<CorrectionWriter>>& routes,
@@ -141,6 +145,30 @@ void Devices::Parts::make_bus(const std::string& interface, std::vector<Route<Ax
   buses[interface] = std::move(bus);
 }
 
+/// The drives of one CANopen bus; routes of their axes are filled in.
+void Devices::Parts::make_drives(const std::string& interface, std::vector<Route<AxisReader>>& routes) {
+  std::vector<PositionAxis> named;
+  std::vector<std::size_t> served;
+  for (std::size_t i = 0; i < file.axes.size(); ++i) {
+    const SignalSource& source = file.axes[i].position;
+    if (source.kind != "canopen" || source.text("interface") != interface) continue;
+    named.push_back({&source, file.axes[i].wiring.rotary});
+    served.push_back(i);
+  }
+  std::string error;
+  auto bus = open_canopen_axes(named, error);
+  for (std::uint32_t k = 0; k < served.size(); ++k) {
+    routes[served[k]] = {bus.get(), k};
+    note(std::string("axis.") + file.axes[served[k]].wiring.name.c_str() + ".position  canopen " + interface +
+             " node " + std::to_string(named[k].source->whole("node", 1, 127)),
+         error, [this, bus = bus.get(), k] {
+           return hear_position(clock, *bus, k) ? ""
+                                                : "no TPDO with statusword and position has come within 1 s";
+         });
+  }
+  drives[interface] = std::move(bus);
+}
+
 std::vector<Route<AxisReader>> Devices::Parts::make_positions() {
   std::vector<Route<AxisReader>> routes(file.axes.size());
   for (std::uint32_t i = 0; i < file.axes.size(); ++i) {
@@ -152,8 +180,11 @@ std::vector<Route<AxisReader>> Devices::Parts::make_positions() {
     } else if (source.kind == "can") {
       const std::string interface = source.text("interface");
       if (!buses.contains(interface)) make_bus(interface, routes);
+    } else if (source.kind == "canopen") {
+      const std::string interface = source.text("interface");
+      if (!drives.contains(interface)) make_drives(interface, routes);
     } else {
-      source.fail("no position of kind " + source.kind);
+      source.fail("no position of kind " + source.kind + "; drivers: sim, can, canopen");
     }
   }
   return routes;
@@ -358,6 +389,7 @@ void Devices::Parts::look_at_files() {
 
 Devices::Devices(const BoardFile& file, unsigned long seed) : parts_(std::make_unique<Parts>(file)) {
   refuse_shared_registers(file);
+  require_sync_of_drives(file);
   parts_->make_store();
   parts_->make_plant(seed);
   parts_->axes = std::make_unique<RoutedAxes>(parts_->make_positions());

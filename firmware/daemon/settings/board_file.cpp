@@ -516,7 +516,8 @@ void refuse_duplicates(const BoardFile& board) {
     used.push_back(&source);
   };
   for (const AxisEntry& axis : board.axes)
-    claim(axis.output, {"path", "device", "root", "channel", "address", "port", "unit", "register", "place"});
+    claim(axis.output, {"path", "device", "root", "channel", "address", "port", "unit", "register", "place",
+                        "interface", "node", "object"});
   for (const SignalSource* const line : {&board.probe, &board.enable, &board.healthy})
     claim(*line, {"chip", "line"});
   for (const LinkEntry& link : board.links)

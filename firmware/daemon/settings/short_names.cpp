@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/daemon/settings/short_names.h"
 
+#include "firmware/daemon/settings/units.h"
 #include "hal/support/register_block.h"
 
 namespace vernier {
 namespace {
 
-constexpr double kMmPerUm = 1e-3;
 constexpr std::int64_t kLastRegister = 65535;
 
 }  // namespace
 
 void use_short_names(SignalSource& output, double max_correction) {
+  if ((output.kind == "modbus" || output.kind == "canopen") && !output.numbers.contains("range") &&
+      !output.texts.contains("range"))
+    output.numbers["range"] = max_correction;
   if (output.kind != "modbus") return;
   output.only({"address", "port", "device", "baud", "parity", "unit", "register", "scale", "sequence",
                "valid", "echo", "range", "polarity", "period_ms", "timeout_ms", "delay_ms"});
@@ -34,7 +37,6 @@ void use_short_names(SignalSource& output, double max_correction) {
   output.numbers["register"] = static_cast<double>(sequence);
   output.numbers["place"] = static_cast<double>(after / 2);
   output.numbers["resolution"] = scale * kMmPerUm;
-  if (!output.numbers.contains("range")) output.numbers["range"] = max_correction;
 }
 
 }  // namespace vernier

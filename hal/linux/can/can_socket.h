@@ -16,7 +16,9 @@ canid_t can_identifier(std::uint32_t id) noexcept;
 bool bind_can(int socket, const std::string& interface, sockaddr_can address, std::string& error);
 
 /// Opens a non-blocking socket for frames with these identifiers. bus_errors: the kernel also reports the
-/// bus-off state. -1 with `error` set if the kernel refuses. setup.
+/// bus-off state. An interface with a '/' is the path of a local socket (SOCK_SEQPACKET) of a program in the
+/// place of a bus: the first message has the filters (can_filter), the others are frames (can_frame). -1 with
+/// `error` set if the kernel refuses. setup.
 int open_can(const std::string& interface, const std::vector<std::uint32_t>& ids, bool bus_errors,
              std::string& error);
 
