@@ -36,11 +36,24 @@ can_frame status_frame(std::uint16_t status, std::int32_t position) {
                {status & 0xff, status >> 8, static_cast<int>(p & 0xff), static_cast<int>(p >> 8 & 0xff),
                 static_cast<int>(p >> 16 & 0xff), static_cast<int>(p >> 24)});
 }
+can_frame offset_frame(std::int32_t offset) {
+  const auto o = static_cast<std::uint32_t>(offset);
+  return frame(0x501, {static_cast<int>(o & 0xff), static_cast<int>(o >> 8 & 0xff),
+                       static_cast<int>(o >> 16 & 0xff), static_cast<int>(o >> 24)});
+}
 can_frame emergency_frame(int code) { return frame(0x81, {code & 0xff, code >> 8, 1, 0, 0, 0, 0, 0}); }
 
 CanopenSettings settings() {
   CanopenSettings made;
   made.most_per_sync = kMost;
+  return made;
+}
+
+/// 0.1 um in a count, 1 mm at most.
+AnalogueScale scale() {
+  AnalogueScale made;
+  made.codes = 1'000'000, made.span = 100'000'000;
+  made.zero = 1 << 30, made.low = made.zero - 10'000, made.high = made.zero + 10'000;
   return made;
 }
 
@@ -54,6 +67,7 @@ bool has_torque(int status) {
 class Rig {
  public:
   bool sync = true, tpdo = true, heartbeat = true, bus = true;
+  bool overtaken = false;  // the next SYNC comes before the offset
   std::uint16_t status = kEnabled;
   int nmt = 5;
   std::int64_t target = 0;
@@ -70,6 +84,8 @@ class Rig {
       }
       torque_before_ = torque;
       drive.take(frame(0x80, {}), now_);
+      if (late_is_there_) arrive(late_);
+      late_is_there_ = false;
       if (tpdo && nmt == 5) drive.take(status_frame(status, 1000), now_);
     }
     if (heartbeat && bus && ticks_ % 100 == 1) drive.take(frame(0x701, {nmt}), now_);
@@ -104,6 +120,8 @@ class Rig {
     return -1;
   }
   void restart_drive() {
+    if (late_is_there_) arrive(late_);  // a start takes longer than a frame waits
+    late_is_there_ = false;
     applied_ = buffer_ = 0;
     drive.take(frame(0x701, {0}), now_);
   }
@@ -121,14 +139,23 @@ class Rig {
   CanopenDrive drive{settings()};
 
  private:
+  void arrive(std::int32_t offset) {
+    if (nmt == 5) buffer_ = offset;
+    drive.take(offset_frame(offset), now_);
+  }
   HalFault write() {
     const std::int64_t wanted = latched_ ? 0 : target;
     const std::int64_t next = repeat_ ? pending_ : std::clamp(wanted, written_ - kMost, written_ + kMost);
     const CanopenDrive::Step step = drive.step(next, now_);
     if (step.send && !bus) drive.not_sent();
     if (step.send && bus) {
-      drive.sent(step.offset);
-      if (nmt == 5) buffer_ = step.offset;
+      drive.sent(step.offset, now_);
+      if (overtaken) {
+        late_ = step.offset;
+        late_is_there_ = true;
+      } else {
+        arrive(step.offset);
+      }
     }
     repeat_ = step.fault != HalFault::kNone || (step.send && !bus);
     latched_ = latched_ || repeat_;
@@ -141,6 +168,8 @@ class Rig {
   int ticks_ = 0;
   std::int32_t buffer_ = 0, applied_ = 0;  // of the drive: newest RPDO, offset in use
   std::int64_t written_ = 0, pending_ = 0, largest_ = 0;
+  std::int32_t late_ = 0;
+  bool late_is_there_ = false;  // an offset that waits for the bus
   bool repeat_ = false, latched_ = false, torque_before_ = false;
 };
 
@@ -300,6 +329,34 @@ TEST(CanopenLoss, AnotherSenderOfTheOffsetIsDetected) {
   EXPECT_EQ(rig.drive.counts().foreign, 1u);
 }
 
+TEST(Canopen, SyncThatOvertakesAnOffsetMakesNoStep) {
+  Rig rig;
+  rig.run(120);
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 100'000; ++i) {
+    rig.overtaken = random() % 3 == 0;
+    rig.target = random() % 50 == 0 ? static_cast<std::int64_t>(random() % 2001) - 1000 : rig.target;
+    ASSERT_EQ(rig.tick(), HalFault::kNone) << i;
+    ASSERT_LE(rig.largest(), kMost) << i;
+  }
+}
+
+TEST(CanopenLoss, FramesThatTheBusDoesNotTakeAreDetected) {
+  JoinedSockets cable;
+  CanopenOutput output(cable.near(), {"test", 1, {}, false}, settings(), scale());
+  // GIVEN a drive that is heard, and a bus that does not take the frames of the board
+  int refused = -1;
+  for (int i = 0; i < 60 && refused < 0; ++i) {
+    ASSERT_TRUE(cable.send(frame(0x80, {})) && cable.send(status_frame(kEnabled, 0)) &&
+                cable.send(frame(0x701, {5})));
+    if (output.write_correction(0, AxisTravel(100 * i)) != HalFault::kNone) refused = i;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_GT(refused, 1);
+  EXPECT_LE(refused, 30);
+  EXPECT_EQ(output.drive().counts().offsets, 1u) << "one frame waits at a time";
+}
+
 TEST(CanopenLoss, TicksThatStandStillBelieveNoOldFrame) {
   Rig rig;
   rig.correct();
@@ -359,8 +416,13 @@ TEST(CanopenState, NoHistoryMakesAStepOrAnOffsetWithoutTorque) {
     if (one_in(600)) rig.tpdo = !rig.tpdo;
     if (one_in(900)) rig.heartbeat = !rig.heartbeat;
     if (one_in(500)) rig.bus = !rig.bus;
-    if (one_in(300)) rig.status = kStates[random() % 7];
+    if (const std::uint16_t next = kStates[random() % 7]; one_in(300)) {
+      // A drive is switched on by its master, over the bus.
+      const bool may = rig.nmt == 5 && rig.sync && rig.bus;
+      if (may || !has_torque(next) || has_torque(rig.status)) rig.status = next;
+    }
     if (one_in(700)) rig.nmt = random() % 3 == 0 ? 0x7f : 5;
+    rig.overtaken = random() % 64 == 0;
     if (one_in(2000)) rig.restart_drive();
     if (one_in(800)) rig.drive.take(emergency_frame(random() % 2 == 0 ? 0x2310 : 0), rig.now());
     if (one_in(20)) {
@@ -387,14 +449,6 @@ TEST(CanopenState, NoHistoryMakesAStepOrAnOffsetWithoutTorque) {
               static_cast<long long>(rig.largest()), static_cast<long long>(kMost));
 }
 
-/// 0.1 um in a count, 1 mm at most.
-AnalogueScale scale() {
-  AnalogueScale made;
-  made.codes = 1'000'000, made.span = 100'000'000;
-  made.zero = 1 << 30, made.low = made.zero - 10'000, made.high = made.zero + 10'000;
-  return made;
-}
-
 class CanopenBus : public testing::Test {
  protected:
   void drive_speaks() {
@@ -409,6 +463,7 @@ TEST_F(CanopenBus, OffsetIsFourBytesLittleEndian) {
   drive_speaks();
   EXPECT_EQ(output_.write_correction(0, AxisTravel(0)), HalFault::kNone);
   can_frame got = cable_.receive();
+  ASSERT_TRUE(cable_.send(got)) << "it comes back";
   EXPECT_EQ(got.can_id, 0x501u);
   EXPECT_EQ(got.can_dlc, 4);
   drive_speaks();
@@ -435,6 +490,7 @@ TEST_F(CanopenBus, SilentDriveIsNamedAndGetsNothing) {
 TEST_F(CanopenBus, BusThatTakesNothingRefusesTheTick) {
   drive_speaks();
   EXPECT_EQ(output_.write_correction(0, AxisTravel(0)), HalFault::kNone);
+  ASSERT_TRUE(cable_.send(cable_.receive()));
   cable_.cut();
   EXPECT_EQ(output_.write_correction(0, AxisTravel(100)), HalFault::kRefused);
   EXPECT_NE(output_.account().find("1 not taken by the bus"), std::string::npos) << output_.account();
@@ -442,7 +498,7 @@ TEST_F(CanopenBus, BusThatTakesNothingRefusesTheTick) {
 
 TEST_F(CanopenBus, SecondBoardIsFound) {
   EXPECT_TRUE(output_.lock());
-  ASSERT_TRUE(cable_.send(frame(0x501, {0, 0, 0, 0})));
+  ASSERT_TRUE(cable_.send(frame(0x501, {1, 0, 0, 0})));
   EXPECT_FALSE(output_.lock());
 }
 
@@ -479,7 +535,7 @@ class Dictionary {
  public:
   Dictionary() {
     set(0x1403, 1, 0x501), set(0x1403, 2, 1), set(0x1603, 0, 1), set(0x1603, 1, 0x60b00020);
-    set(0x1400, 1, 0x201), set(0x1401, 1, 0x80000501), set(0x1800, 1, 0x181);
+    set(0x1401, 1, 0x80000501);  // off; the other numbers are left out
     set(0x1802, 1, 0x40000381), set(0x1802, 2, 1), set(0x1a02, 0, 2), set(0x1a02, 1, 0x60410010),
         set(0x1a02, 2, 0x60640020);
     set(0x60b0, 0, static_cast<std::uint32_t>(-77));

@@ -21,6 +21,8 @@ std::vector<can_filter> filters_of(const std::vector<std::uint32_t>& ids) {
   return filters;
 }
 
+bool is_local(const std::string& interface) { return interface.find('/') != std::string::npos; }
+
 /// A program in the place of a bus: it gets the filters first, then keeps frames apart as the kernel does.
 int open_local(const std::string& path, const std::vector<std::uint32_t>& ids, std::string& error) {
   const int fd = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -66,9 +68,16 @@ bool bind_can(int socket, const std::string& interface, sockaddr_can address, st
   return can_failed(interface, "cannot be used", socket, error) >= 0;
 }
 
+bool hear_own_frames(int socket, const std::string& interface, std::string& error) {
+  const int on = 1;
+  if (is_local(interface) || ::setsockopt(socket, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &on, sizeof(on)) == 0)
+    return true;
+  return can_failed(interface, "own frames are not returned", socket, error) >= 0;
+}
+
 int open_can(const std::string& interface, const std::vector<std::uint32_t>& ids, bool bus_errors,
              std::string& error) {
-  if (interface.find('/') != std::string::npos) return open_local(interface, ids, error);
+  if (is_local(interface)) return open_local(interface, ids, error);
   const int fd = ::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
   if (fd < 0) return can_failed(interface, "no CAN in this kernel", fd, error);
   if (!subscribe(fd, ids, bus_errors)) return can_failed(interface, "filters are refused", fd, error);

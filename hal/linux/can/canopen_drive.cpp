@@ -26,7 +26,7 @@ std::uint32_t little_endian(const std::uint8_t* bytes, int count) noexcept {
 void CanopenDrive::take(const can_frame& frame, InstantNs now) noexcept {
   if ((frame.can_id & CAN_ERR_FLAG) != 0) {
     if ((frame.can_id & CAN_ERR_BUSOFF) != 0) bus_off_ = true, ++counts_.bus_errors;
-    if ((frame.can_id & CAN_ERR_RESTARTED) != 0) bus_off_ = false;
+    if ((frame.can_id & CAN_ERR_RESTARTED) != 0) bus_off_ = pending_ = false;
     return;
   }
   const auto is = [&](std::uint32_t id, int least, int most) {
@@ -38,7 +38,8 @@ void CanopenDrive::take(const can_frame& frame, InstantNs now) noexcept {
     // A drive that has sent no TPDO since the SYNC before may have taken no offset either.
     synced_ = true;
     confirmed_ = answered_;
-    if (confirmed_) applied_ = sent_;
+    if (confirmed_) applied_ = on_bus_;
+    if (confirmed_ && doubt_ == Doubt::kInDrive) doubt_ = Doubt::kNone;
     answered_ = false;
   } else if (is(settings_.tpdo, kTpdoBytes, kTpdoBytes)) {
     take_status(frame, now);
@@ -47,11 +48,22 @@ void CanopenDrive::take(const can_frame& frame, InstantNs now) noexcept {
   } else if (is(settings_.emergency, kEmergencyBytes, kEmergencyBytes)) {
     take_emergency(frame);
   } else if (frame.can_id == settings_.rpdo) {
-    ++counts_.foreign;
-    foreign_.now(now);
+    take_own(frame, now);
   } else {
     ++counts_.malformed;
   }
+}
+
+void CanopenDrive::take_own(const can_frame& frame, InstantNs now) noexcept {
+  if (frame.can_dlc == kOffsetBytes &&
+      little_endian(frame.data, kOffsetBytes) == static_cast<std::uint32_t>(sent_)) {
+    on_bus_ = sent_;
+    if (doubt_ == Doubt::kOnItsWay) doubt_ = Doubt::kInDrive;
+    pending_ = false;
+    return;
+  }
+  ++counts_.foreign;
+  foreign_.now(now);
 }
 
 void CanopenDrive::take_status(const can_frame& frame, InstantNs now) noexcept {
@@ -66,7 +78,7 @@ void CanopenDrive::take_status(const can_frame& frame, InstantNs now) noexcept {
 void CanopenDrive::take_heartbeat(const can_frame& frame, InstantNs now) noexcept {
   heartbeat_.now(now);
   nmt_ = frame.data[0] & kNmtMask;
-  if (nmt_ == kBootUp) sent_ = applied_ = 0, emergency_ = false;
+  if (nmt_ == kBootUp) sent_ = on_bus_ = applied_ = 0, emergency_ = false;
 }
 
 void CanopenDrive::take_emergency(const can_frame& frame) noexcept {
@@ -79,7 +91,12 @@ void CanopenDrive::take_emergency(const can_frame& frame) noexcept {
 
 bool CanopenDrive::takes_offsets(InstantNs now) const noexcept {
   return sync_.within(now, settings_.sync_timeout) && tpdo_.within(now, settings_.sync_timeout) &&
-         nmt_ == kOperational && !bus_off_;
+         nmt_ == kOperational && !bus_off_ && !is_stuck(now);
+}
+
+/// The bus does not take a frame: nobody acknowledges, or frames of others come first.
+bool CanopenDrive::is_stuck(InstantNs now) const noexcept {
+  return pending_ && now - pending_since_ > settings_.sync_timeout;
 }
 
 bool CanopenDrive::is_well(InstantNs now) const noexcept {
@@ -89,6 +106,7 @@ bool CanopenDrive::is_well(InstantNs now) const noexcept {
 
 const char* CanopenDrive::missing(InstantNs now) const noexcept {
   if (bus_off_) return "the bus is off";
+  if (is_stuck(now)) return "the bus does not take the frames of the board";
   if (!sync_.within(now, settings_.sync_timeout)) return "no SYNC comes";
   if (!heartbeat_.within(now, settings_.heartbeat_time)) return "no heartbeat of the drive comes";
   if (nmt_ != kOperational) return "the drive is not in the NMT state Operational";
@@ -99,7 +117,7 @@ const char* CanopenDrive::missing(InstantNs now) const noexcept {
 }
 
 void CanopenDrive::forget() noexcept {
-  sync_.known = tpdo_.known = heartbeat_.known = false;
+  sync_.known = tpdo_.known = heartbeat_.known = pending_ = false;
   status_ = 0;
 }
 
@@ -117,6 +135,8 @@ CanopenDrive::Step CanopenDrive::step(std::int64_t wanted, InstantNs now) noexce
   if (step_.known && !step_.within(now, kLongestPause)) forget();
   step_.now(now);
   const bool takes = takes_offsets(now), well = is_well(now);
+  // A frame that did not come back may be lost: the same offset is sent once more.
+  if (is_stuck(now)) pending_ = false;
   if (well_ && !well) {
     ++counts_.losses;
     refuse_ = refuse_ || wanted != 0 || sent_ != 0;
@@ -125,8 +145,8 @@ CanopenDrive::Step CanopenDrive::step(std::int64_t wanted, InstantNs now) noexce
   follows_ = false;
   // A drive that takes nothing keeps its offset: with the first SYNC it goes on from there. The newest offset
   // may be one that it has not taken, and is sent once more. Without a new SYNC the newest offset stays.
-  const bool again = again_ || !confirmed_ || !synced_;
-  again_ = !takes;
+  const bool again = doubt_ != Doubt::kNone || !confirmed_ || !synced_;
+  if (!takes) doubt_ = Doubt::kRepeat;
   synced_ = false;
   if (refuse_ || (!takes && sent_ != 0)) {
     refuse_ = false;
@@ -136,6 +156,7 @@ CanopenDrive::Step CanopenDrive::step(std::int64_t wanted, InstantNs now) noexce
     follows_ = wanted == 0;
     return {};
   }
+  if (pending_) return {};  // one frame waits for the bus at a time
   const bool has_torque = enabled() || (status_ & kStateMask) == kQuickStopActive ||
                           (status_ & kReactionMask) == kFaultReactionActive;
   std::int64_t next = goal(wanted, well);

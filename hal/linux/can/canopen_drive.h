@@ -38,7 +38,8 @@ struct CanopenCounts {
 
 /// State of one CiA 402 drive, and the offset that it gets: a state machine without a device.
 ///
-/// The drive takes an offset with the next SYNC (RPDO transmission type 0 to 240).
+/// The drive takes an offset with the next SYNC (RPDO transmission type 0 to 240). A frame that the board
+/// sends comes back to it, in its order on the bus: a SYNC may overtake an offset that waits for the bus.
 ///   Operation enabled                    the offset follows, within most_per_sync; it stays while
 ///                                        the drive leaves out a TPDO
 ///   Quick stop, fault reaction           the offset goes to zero within most_per_sync; the drive still moves
@@ -49,7 +50,7 @@ class CanopenDrive {
  public:
   explicit CanopenDrive(const CanopenSettings& settings) noexcept : settings_(settings) {}
 
-  /// Takes a frame of the bus. realtime.
+  /// Takes a frame of the bus, also one that the board has sent. realtime.
   void take(const can_frame& frame, InstantNs now) noexcept;
 
   struct Step {
@@ -60,11 +61,15 @@ class CanopenDrive {
   /// Judges the drive and chooses the offset for this tick. wanted: counts of the object. The caller calls
   /// sent() if the bus took the frame. realtime.
   Step step(std::int64_t wanted, InstantNs now) noexcept;
-  void sent(std::int32_t offset) noexcept { sent_ = offset, ++counts_.offsets; }
+  void sent(std::int32_t offset, InstantNs now) noexcept {
+    sent_ = offset, pending_ = true, pending_since_ = now;
+    if (doubt_ == Doubt::kRepeat) doubt_ = Doubt::kOnItsWay;
+    ++counts_.offsets;
+  }
   /// The bus did not take the frame. realtime.
   void not_sent() noexcept { ++counts_.refused; }
   /// What the drive has from before. setup.
-  void begin_with(std::int32_t offset) noexcept { sent_ = applied_ = offset; }
+  void begin_with(std::int32_t offset) noexcept { sent_ = on_bus_ = applied_ = offset; }
 
   /// The newest position actual value since the last call of begin_tick(). realtime.
   bool position(std::int32_t& value) const noexcept {
@@ -86,6 +91,7 @@ class CanopenDrive {
   /// Statusword, CiA 402: state in bits 0 to 3, 5 and 6.
   static constexpr std::uint16_t kStateMask = 0x6f, kOperationEnabled = 0x27, kQuickStopActive = 0x07;
   static constexpr std::uint16_t kReactionMask = 0x4f, kFaultReactionActive = 0x0f;
+  static constexpr std::uint8_t kOffsetBytes = 4;
   /// NMT state in a heartbeat, CiA 301.
   static constexpr std::uint8_t kBootUp = 0x00, kOperational = 0x05;
 
@@ -98,10 +104,16 @@ class CanopenDrive {
     bool within(InstantNs now, InstantNs time) const noexcept { return known && now - at <= time; }
   };
 
+  /// Whether the drive has the newest offset: an offset for a drive that takes nothing is sent once more,
+  /// comes back, and is used at a SYNC that the drive answers.
+  enum class Doubt : std::uint8_t { kNone, kRepeat, kOnItsWay, kInDrive };
+
   void take_heartbeat(const can_frame& frame, InstantNs now) noexcept;
   void take_emergency(const can_frame& frame) noexcept;
+  void take_own(const can_frame& frame, InstantNs now) noexcept;
   void take_status(const can_frame& frame, InstantNs now) noexcept;
   bool takes_offsets(InstantNs now) const noexcept;
+  bool is_stuck(InstantNs now) const noexcept;
   bool is_well(InstantNs now) const noexcept;
   std::int64_t goal(std::int64_t wanted, bool well) noexcept;
   void forget() noexcept;
@@ -114,13 +126,16 @@ class CanopenDrive {
   bool synced_ = false;     // a SYNC has come since the last step
   bool answered_ = false;   // a TPDO has come since the last SYNC
   bool confirmed_ = false;  // and one came between the last two
-  bool again_ = false;      // the drive took nothing at the last step
-  bool well_ = false;       // at the last step
-  bool refuse_ = false;     // the tick has not yet learned of a loss
+  Doubt doubt_ = Doubt::kRepeat;
+  bool well_ = false;    // at the last step
+  bool refuse_ = false;  // the tick has not yet learned of a loss
   bool follows_ = true, fresh_ = false;
   std::int32_t position_ = 0;
   std::int32_t applied_ = 0;  // offset of the last SYNC
+  std::int32_t on_bus_ = 0;   // newest offset that has come back
   std::int32_t sent_ = 0;     // newest offset
+  bool pending_ = false;      // it has not come back
+  InstantNs pending_since_;
   CanopenCounts counts_;
 };
 

@@ -17,7 +17,6 @@ namespace {
 constexpr TimeUs kListen(100'000);      // for another sender of the RPDO
 constexpr TimeUs kPatience(1'500'000);  // until SYNC, heartbeat and TPDO have come
 constexpr InstantNs kBetween(2'000'000);
-constexpr std::uint8_t kOffsetBytes = 4;
 
 }  // namespace
 
@@ -27,6 +26,7 @@ std::unique_ptr<CanopenOutput> CanopenOutput::open(const CanopenPlace& place, co
       place.interface, {settings.sync, settings.emergency, settings.heartbeat, settings.tpdo, settings.rpdo},
       true, error);
   if (fd < 0) return nullptr;
+  if (!hear_own_frames(fd, place.interface, error)) return nullptr;
   auto output = std::make_unique<CanopenOutput>(fd, place, settings, scale);
   if (!place.test_pdos) return output;
   CanopenSdo sdo(place.interface, place.node, error);
@@ -61,8 +61,8 @@ void CanopenOutput::drain(InstantNs now) noexcept {
 bool CanopenOutput::send(std::int32_t offset) noexcept {
   can_frame frame{};
   frame.can_id = settings_.rpdo;
-  frame.can_dlc = kOffsetBytes;
-  for (int i = 0; i < kOffsetBytes; ++i)
+  frame.can_dlc = CanopenDrive::kOffsetBytes;
+  for (int i = 0; i < CanopenDrive::kOffsetBytes; ++i)
     frame.data[i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(offset) >> (8 * i));
   return ::send(socket_, &frame, sizeof frame, MSG_DONTWAIT | MSG_NOSIGNAL) ==
          static_cast<ssize_t>(sizeof frame);
@@ -83,7 +83,7 @@ HalFault CanopenOutput::write_correction(std::uint32_t axis, AxisTravel correcti
     drive_.not_sent();
     return HalFault::kRefused;
   }
-  drive_.sent(step.offset);
+  drive_.sent(step.offset, now);
   return step.fault;
 }
 

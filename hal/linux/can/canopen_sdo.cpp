@@ -49,6 +49,7 @@ std::string CanopenSdo::read(CanopenObject object, std::uint32_t& value) {
   frame.data[1] = static_cast<std::uint8_t>(object.index),
   frame.data[2] = static_cast<std::uint8_t>(object.index >> 8);
   frame.data[3] = object.subindex;
+  silent_ = true;
   if (::send(socket_, &frame, sizeof frame, MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof frame))
     return "the bus takes no frame";
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kWaitMs);
@@ -62,6 +63,7 @@ std::string CanopenSdo::read(CanopenObject object, std::uint32_t& value) {
     if (answer.can_id != kAnswer + node_ || answer.can_dlc != kBytes) continue;
     if (answer.data[1] != frame.data[1] || answer.data[2] != frame.data[2] || answer.data[3] != frame.data[3])
       continue;
+    silent_ = false;
     std::uint32_t content = 0;
     for (int i = 0; i < 4; ++i) content |= static_cast<std::uint32_t>(answer.data[4 + i]) << (8 * i);
     if (answer.data[0] == kAbort) return name_of(object) + " cannot be read (abort " + hex(content, 8) + ")";
@@ -80,7 +82,7 @@ std::string CanopenSdo::check_mapping(const char* name, std::uint16_t communicat
     const auto at = static_cast<std::uint16_t>(communication + pdo);
     std::uint32_t value = 0;
     if (const std::string error = read({at, 1}, value); !error.empty()) {
-      if (pdo == 0) return error;
+      if (silent_) return error;
       continue;  // a drive may leave numbers out
     }
     if ((value & kIdMask) != id || (value & kPdoOff) != 0) continue;

@@ -41,6 +41,7 @@ class CanopenSdo {
 
   int socket_;
   std::uint32_t node_;
+  bool silent_ = false;  // the last request had no answer
 };
 
 }  // namespace vernier
