@@ -148,12 +148,7 @@ std::unique_ptr<OutputDevice> open_modbus_out(const std::vector<OutputAxis>& axe
   if (settings.echo >= settings.address &&
       settings.echo < settings.address + ModbusOutputSettings::kValues + 2 * places)
     first.fail("echo is among the registers that the board writes");
-  const bool rtu = !first.text("device", "").empty();
-  const TimeUs wait(settings.timeout.count / 2);
-  const auto line =
-      rtu ? ModbusLine::rtu(first.text("device"), baud(first, 19200), parity(first), wait, error)
-          : ModbusLine::tcp(modbus_address(first), static_cast<int>(first.whole("port", 502, 1, 65535)), wait,
-                            error);
+  const auto line = open_modbus_line(first, TimeUs(settings.timeout.count / 2), error);
   return line ? ModbusOutput::open(line, settings, error) : nullptr;
 }
 
@@ -230,6 +225,13 @@ const std::vector<DeviceKind<OpenLinkKind>> kLinks = {
 };
 
 }  // namespace
+
+std::shared_ptr<ModbusLine> open_modbus_line(const SignalSource& source, TimeUs wait, std::string& error) {
+  if (!source.text("device", "").empty())
+    return ModbusLine::rtu(source.text("device"), baud(source, 19200), parity(source), wait, error);
+  return ModbusLine::tcp(modbus_address(source), static_cast<int>(source.whole("port", 502, 1, 65535)), wait,
+                         error);
+}
 
 std::string device_of_output(const SignalSource& source) {
   const auto& kind = kind_of(kOutputs, "output", source);

@@ -37,9 +37,10 @@ void CanopenDrive::take(const can_frame& frame, InstantNs now) noexcept {
     sync_.now(now);
     // A drive that has sent no TPDO since the SYNC before may have taken no offset either.
     synced_ = true;
-    confirmed_ = answered_;
-    if (confirmed_) applied_ = on_bus_;
-    if (confirmed_ && doubt_ == Doubt::kInDrive) doubt_ = Doubt::kNone;
+    const bool confirmed = answered_;
+    if (confirmed) applied_ = on_bus_;
+    if (!confirmed) doubt_ = Doubt::kRepeat;
+    if (doubt_ == Doubt::kInDrive) doubt_ = Doubt::kNone;
     answered_ = false;
   } else if (is(settings_.tpdo, kTpdoBytes, kTpdoBytes)) {
     take_status(frame, now);
@@ -145,7 +146,7 @@ CanopenDrive::Step CanopenDrive::step(std::int64_t wanted, InstantNs now) noexce
   follows_ = false;
   // A drive that takes nothing keeps its offset: with the first SYNC it goes on from there. The newest offset
   // may be one that it has not taken, and is sent once more. Without a new SYNC the newest offset stays.
-  const bool again = doubt_ != Doubt::kNone || !confirmed_ || !synced_;
+  const bool again = doubt_ != Doubt::kNone || !synced_;
   if (!takes) doubt_ = Doubt::kRepeat;
   synced_ = false;
   if (refuse_ || (!takes && sent_ != 0)) {

@@ -123,9 +123,8 @@ class CanopenDrive {
   std::uint8_t nmt_ = kBootUp;
   std::uint16_t status_ = 0;
   bool emergency_ = false, bus_off_ = false;
-  bool synced_ = false;     // a SYNC has come since the last step
-  bool answered_ = false;   // a TPDO has come since the last SYNC
-  bool confirmed_ = false;  // and one came between the last two
+  bool synced_ = false;    // a SYNC has come since the last step
+  bool answered_ = false;  // a TPDO has come since the last SYNC
   Doubt doubt_ = Doubt::kRepeat;
   bool well_ = false;    // at the last step
   bool refuse_ = false;  // the tick has not yet learned of a loss
