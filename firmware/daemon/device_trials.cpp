@@ -11,12 +11,17 @@ constexpr TimeUs kTrialWait(5'000);
 
 }  // namespace
 
-std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis) {
+bool hear_position(Clock& clock, AxisReader& axes, std::uint32_t axis) {
   const InstantNs end = clock.now() + instant_ns(kPatience);
   for (AxisReading reading; clock.now() < end; clock.sleep_until(clock.now() + instant_ns(kTrialWait))) {
-    bus.begin_tick();
-    if (bus.read_axis(axis, reading) == HalFault::kNone) return {};
+    axes.begin_tick();
+    if (axes.read_axis(axis, reading) == HalFault::kNone) return true;
   }
+  return false;
+}
+
+std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis) {
+  if (hear_position(clock, bus, axis)) return {};
   return bus.counts().frames + bus.counts().invalid + bus.counts().stalled == 0
              ? "no CAN frame of this axis has come within 1 s"
              : "no valid frame within 1 s";

@@ -7,6 +7,7 @@
 
 namespace vernier {
 
+class AxisReader;
 class CanAxes;
 class IioBuffer;
 
@@ -17,6 +18,8 @@ inline constexpr TimeUs kPatience(1'000'000);
 
 /// Waits for one frame of an axis and describes it.
 std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis);
+/// Waits for one reading of any axis; false: no reading came.
+bool hear_position(Clock& clock, AxisReader& axes, std::uint32_t axis);
 /// Waits for one scan of a sensor and describes it.
 std::string hear_scan(Clock& clock, IioBuffer& buffer, std::uint32_t channel);
 

@@ -18,12 +18,17 @@
 #include "firmware/daemon/device_trials.h"
 #include "firmware/daemon/modbus_registers.h"
 #include "firmware/daemon/open_devices.h"
+#include "firmware/daemon/open_drives.h"
+#include "firmware/daemon/open_positions.h"
 #include "firmware/daemon/routing.h"
 #include "firmware/daemon/settings/feature_settings.h"
 #include "hal/linux/can/can_axes.h"
+#include "hal/linux/can/canopen_axes.h"
+#include "hal/linux/counter_axis.h"
 #include "hal/linux/file_lock.h"
 #include "hal/linux/hardware_watchdog.h"
 #include "hal/linux/iio/iio_buffer.h"
+#include "hal/linux/modbus/modbus_axes.h"
 #include "hal/linux/modbus/modbus_input.h"
 #include "hal/linux/monotonic_clock.h"
 #include "hal/linux/output_device.h"
@@ -56,6 +61,9 @@ struct Devices::Parts {
   std::unique_ptr<Roaming> motion;
   std::unique_ptr<SimPlant> plant;
   std::map<std::string, std::unique_ptr<CanAxes>> buses;  // by interface
+  std::map<std::string, std::unique_ptr<CanopenAxes>> drives;
+  std::map<std::string, std::unique_ptr<ModbusAxes>> register_axes;  // by block
+  std::vector<std::unique_ptr<CounterAxis>> counters;
   std::vector<std::unique_ptr<OutputDevice>> output_devices;
   std::vector<RealOutput> real_outputs;
   ModbusLines lines;
@@ -84,6 +92,9 @@ struct Devices::Parts {
   }
   void make_plant(unsigned long seed);
   void make_bus(const std::string& interface, std::vector<Route<AxisReader>>& routes);
+  void make_drives(const std::string& interface, std::vector<Route<AxisReader>>& routes);
+  void make_register_axes(const std::string& block, std::vector<Route<AxisReader>>& routes);
+  void make_counter(std::uint32_t axis, std::vector<Route<AxisReader>>& routes);
   std::vector<Route<AxisReader>> make_positions();
   std::vector<Route<CorrectionWriter>> make_outputs();
   void make_output(std::uint32_t first, std::vector<Route<CorrectionWriter>>& routes,
@@ -141,6 +152,67 @@ void Devices::Parts::make_bus(const std::string& interface, std::vector<Route<Ax
   buses[interface] = std::move(bus);
 }
 
+/// The drives of one CANopen bus; routes of their axes are filled in.
+void Devices::Parts::make_drives(const std::string& interface, std::vector<Route<AxisReader>>& routes) {
+  std::vector<PositionAxis> named;
+  std::vector<std::size_t> served;
+  for (std::size_t i = 0; i < file.axes.size(); ++i) {
+    const SignalSource& source = file.axes[i].position;
+    if (source.kind != "canopen" || source.text("interface") != interface) continue;
+    named.push_back({&source, file.axes[i].wiring.rotary});
+    served.push_back(i);
+  }
+  std::string error;
+  auto bus = open_canopen_axes(named, error);
+  for (std::uint32_t k = 0; k < served.size(); ++k) {
+    routes[served[k]] = {bus.get(), k};
+    note(std::string("axis.") + file.axes[served[k]].wiring.name.c_str() + ".position  canopen " + interface +
+             " node " + std::to_string(named[k].source->whole("node", 1, 127)),
+         error, [this, bus = bus.get(), k] {
+           return hear_position(clock, *bus, k) ? ""
+                                                : "no TPDO with statusword and position has come within 1 s";
+         });
+  }
+  drives[interface] = std::move(bus);
+}
+
+/// The axes whose positions one request to a controller reads; their routes are filled in.
+void Devices::Parts::make_register_axes(const std::string& block, std::vector<Route<AxisReader>>& routes) {
+  std::vector<PositionAxis> named;
+  std::vector<TimeUs> missing;
+  std::vector<std::size_t> served;
+  for (std::size_t i = 0; i < file.axes.size(); ++i) {
+    const SignalSource& source = file.axes[i].position;
+    if (source.kind != "modbus" || modbus_axes_block(source) != block) continue;
+    named.push_back({&source, file.axes[i].wiring.rotary});
+    missing.emplace_back(file.service.limits.axis[i].limits.missing_ticks * file.service.upload.tick.count);
+    served.push_back(i);
+  }
+  std::string error;
+  auto axes_of_block = open_modbus_axes(named, missing, error);
+  for (std::uint32_t k = 0; k < served.size(); ++k) {
+    routes[served[k]] = {axes_of_block.get(), k};
+    note(std::string("axis.") + file.axes[served[k]].wiring.name.c_str() + ".position  modbus", error,
+         [this, device = axes_of_block.get(), k] {
+           return hear_position(clock, *device, k)
+                      ? ""
+                      : "the controller does not answer, or its sequence number stands still";
+         });
+  }
+  register_axes[block] = std::move(axes_of_block);
+}
+
+void Devices::Parts::make_counter(std::uint32_t axis, std::vector<Route<AxisReader>>& routes) {
+  std::string error;
+  auto counter = open_counter_axis({&file.axes[axis].position, file.axes[axis].wiring.rotary}, error);
+  routes[axis] = {counter.get(), 0};
+  note(std::string("axis.") + file.axes[axis].wiring.name.c_str() + ".position  counter", error,
+       [this, counter = counter.get()] {
+         return hear_position(clock, *counter, 0) ? "" : "the counter gives no count in its range";
+       });
+  if (counter) counters.push_back(std::move(counter));
+}
+
 std::vector<Route<AxisReader>> Devices::Parts::make_positions() {
   std::vector<Route<AxisReader>> routes(file.axes.size());
   for (std::uint32_t i = 0; i < file.axes.size(); ++i) {
@@ -152,8 +224,16 @@ std::vector<Route<AxisReader>> Devices::Parts::make_positions() {
     } else if (source.kind == "can") {
       const std::string interface = source.text("interface");
       if (!buses.contains(interface)) make_bus(interface, routes);
+    } else if (source.kind == "canopen") {
+      const std::string interface = source.text("interface");
+      if (!drives.contains(interface)) make_drives(interface, routes);
+    } else if (source.kind == "modbus") {
+      const std::string block = modbus_axes_block(source);
+      if (!register_axes.contains(block)) make_register_axes(block, routes);
+    } else if (source.kind == "counter") {
+      make_counter(i, routes);
     } else {
-      source.fail("no position of kind " + source.kind);
+      source.fail("no position of kind " + source.kind + "; drivers: sim, can, canopen, modbus, counter");
     }
   }
   return routes;
@@ -358,6 +438,7 @@ void Devices::Parts::look_at_files() {
 
 Devices::Devices(const BoardFile& file, unsigned long seed) : parts_(std::make_unique<Parts>(file)) {
   refuse_shared_registers(file);
+  require_sync_of_drives(file);
   parts_->make_store();
   parts_->make_plant(seed);
   parts_->axes = std::make_unique<RoutedAxes>(parts_->make_positions());
@@ -507,6 +588,8 @@ void Devices::say_held() const {
   for (const auto& device : parts_->output_devices)
     if (const std::string account = device->account(); !account.empty())
       std::fprintf(stderr, "vernierd: %s\n", account.c_str());
+  for (const auto& [block, axes] : parts_->register_axes)
+    if (axes) std::fprintf(stderr, "vernierd: %s\n", axes->account().c_str());
   for (const auto& [place, line] : parts_->lines)
     if (line && line->wrong_answers() > 0)
       std::fprintf(stderr, "vernierd: Modbus at %s: %llu answers were damaged or not to the request\n",

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "hal/support/register_block.h"
@@ -24,12 +25,6 @@ Peer tcp_peer(const SignalSource& source) {
   const std::string& address = modbus_address(source);
   return (address.starts_with("127.") ? "127.0.0.1" : address) + ":" +
          std::to_string(source.whole("port", 502, 1, 65535));
-}
-
-Peer output_peer(const SignalSource& source) {
-  const bool serial = source.texts.contains("device"), tcp = source.texts.contains("address");
-  if (serial && tcp) source.fail("give device or address, not both");
-  return serial ? serial_line(source) : tcp_peer(source);
 }
 
 int unit_of(const SignalSource& source) { return static_cast<int>(source.whole("unit", 1, 1, 247)); }
@@ -102,7 +97,7 @@ void add_outputs(const BoardFile& board, RegisterUses& uses) {
         std::find_if(blocks.begin(), blocks.end(), [&](const Registers& one) { return one.block == name; });
     if (known == blocks.end()) {
       blocks.push_back(
-          {&source, output_peer(source), unit_of(source), Registers::Use::kBlock, first, last, name});
+          {&source, modbus_peer(source), unit_of(source), Registers::Use::kBlock, first, last, name});
       continue;
     }
     require_settings_of_first(*known->source, source);
@@ -117,6 +112,14 @@ void add_outputs(const BoardFile& board, RegisterUses& uses) {
 }
 
 void add_inputs(const BoardFile& board, RegisterUses& uses) {
+  for (const AxisEntry& axis : board.axes) {
+    const SignalSource& source = axis.position;
+    if (source.kind != "modbus" || source.text("registers", "holding") != "holding") continue;
+    const std::int64_t first = source.whole("register", 0, 65534),
+                       sequence = source.whole("sequence", 0, 65535);
+    for (const auto& [from, to] : {std::pair(first, first + 1), std::pair(sequence, sequence)})
+      uses.add({&source, modbus_peer(source), unit_of(source), Registers::Use::kReading, from, to, ""});
+  }
   for (const InputEntry& input : board.inputs) {
     const SignalSource& source = input.source;
     if (source.kind != "modbus-tcp" && source.kind != "modbus-rtu") continue;
@@ -147,6 +150,9 @@ void refuse_shared_lines(const BoardFile& board) {
   for (const AxisEntry& axis : board.axes)
     if (axis.output.kind == "modbus-out" && axis.output.texts.contains("device"))
       add(axis.output, modbus_block(axis.output));
+  for (const AxisEntry& axis : board.axes)
+    if (axis.position.kind == "modbus" && axis.position.texts.contains("device"))
+      add(axis.position, "positions " + std::to_string(axis.position.whole("sequence", 0, 65535)));
   for (const InputEntry& input : board.inputs)
     if (input.source.kind == "modbus-rtu") add(input.source, "sensors");
   for (const LinkEntry& link : board.links)
@@ -182,8 +188,14 @@ std::string serial_line(const SignalSource& source) {
   return failed ? device : real.string();
 }
 
+std::string modbus_peer(const SignalSource& source) {
+  const bool serial = source.texts.contains("device"), tcp = source.texts.contains("address");
+  if (serial && tcp) source.fail("give device or address, not both");
+  return serial ? serial_line(source) : tcp_peer(source);
+}
+
 std::string modbus_block(const SignalSource& source) {
-  return output_peer(source) + " unit " + std::to_string(unit_of(source)) + " register " +
+  return modbus_peer(source) + " unit " + std::to_string(unit_of(source)) + " register " +
          std::to_string(source.whole("register", 0, 65535));
 }
 

@@ -18,6 +18,10 @@ std::string listening_address(const SignalSource& source);
 /// BoardError. setup.
 std::string serial_line(const SignalSource& source);
 
+/// Returns a serial line, or a peer over TCP (`device` or `address` and `port`), under one name for all its
+/// spellings. Throws BoardError. setup.
+std::string modbus_peer(const SignalSource& source);
+
 /// Returns a text that is the same for all outputs that share one block of registers: peer, unit and first
 /// register. Throws BoardError. setup.
 std::string modbus_block(const SignalSource& source);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "firmware/daemon/modbus_registers.h"
+#include "firmware/daemon/open_drives.h"
 #include "firmware/daemon/settings/device_settings.h"
 #include "hal/linux/analogue_output.h"
 #include "hal/linux/can/can_sync.h"
@@ -123,25 +124,6 @@ std::unique_ptr<OutputDevice> open_iio_dac(const std::vector<OutputAxis>& axes, 
   return device.empty() ? nullptr : AnalogueOutput::iio_dac(device, channel, scale, error);
 }
 
-/// A register holds correction / resolution, signed: the scale's codes are shifted by its zero.
-AnalogueScale register_scale(const SignalSource& source, bool rotary) {
-  constexpr std::int64_t kZero = 1 << 30, kCodes = 1'000'000;
-  const double unit = rotary ? static_cast<double>(kTurnCounts) / 360 : 1e6;
-  const double resolution = source.number("resolution"), range = source.number("range");
-  AnalogueScale scale;
-  if (!(resolution > 0 && resolution <= 1)) source.fail("resolution must be above 0, and at most 1");
-  if (!(range >= resolution && range / resolution < static_cast<double>(kZero)))
-    source.fail("range must be at least resolution, and below 2^30 times resolution");
-  scale.codes = kCodes;
-  scale.span = std::llround(resolution * unit * static_cast<double>(kCodes));
-  scale.zero = kZero;
-  const auto most = static_cast<std::int64_t>(range / resolution * (1 + 1e-12));
-  scale.low = kZero - most, scale.high = kZero + most;
-  scale.inverted = is_inverted(source);
-  if (!scale.valid()) source.fail("resolution is too small");
-  return scale;
-}
-
 std::unique_ptr<OutputDevice> open_modbus_out(const std::vector<OutputAxis>& axes, std::string& error) {
   const SignalSource& first = *axes.front().source;
   ModbusOutputSettings settings;
@@ -158,7 +140,7 @@ std::unique_ptr<OutputDevice> open_modbus_out(const std::vector<OutputAxis>& axe
     const auto place = static_cast<int>(axis.source->whole("place", 0, 0, ModbusOutputSettings::kPlaces - 1));
     for (const auto& other : settings.axes)
       if (other.place == place) axis.source->fail("another axis uses this place");
-    settings.axes.push_back({register_scale(*axis.source, axis.rotary), place, axis.most_per_tick});
+    settings.axes.push_back({number_scale(*axis.source, axis.rotary), place, axis.most_per_tick});
     places = std::max(places, place + 1);
   }
   settings.address =
@@ -166,12 +148,7 @@ std::unique_ptr<OutputDevice> open_modbus_out(const std::vector<OutputAxis>& axe
   if (settings.echo >= settings.address &&
       settings.echo < settings.address + ModbusOutputSettings::kValues + 2 * places)
     first.fail("echo is among the registers that the board writes");
-  const bool rtu = !first.text("device", "").empty();
-  const TimeUs wait(settings.timeout.count / 2);
-  const auto line =
-      rtu ? ModbusLine::rtu(first.text("device"), baud(first, 19200), parity(first), wait, error)
-          : ModbusLine::tcp(modbus_address(first), static_cast<int>(first.whole("port", 502, 1, 65535)), wait,
-                            error);
+  const auto line = open_modbus_line(first, TimeUs(settings.timeout.count / 2), error);
   return line ? ModbusOutput::open(line, settings, error) : nullptr;
 }
 
@@ -189,6 +166,7 @@ const std::vector<DeviceKind<OpenOutput>> kOutputs = {
       "range", "polarity", "period_ms", "timeout_ms", "delay_ms"},
      open_modbus_out,
      modbus_block},
+    {"canopen", kCanopenOutputSettings, open_canopen_output},
 };
 
 std::unique_ptr<SampledInput> open_modbus(const SignalSource& source, ModbusLines& lines,
@@ -247,6 +225,13 @@ const std::vector<DeviceKind<OpenLinkKind>> kLinks = {
 };
 
 }  // namespace
+
+std::shared_ptr<ModbusLine> open_modbus_line(const SignalSource& source, TimeUs wait, std::string& error) {
+  if (!source.text("device", "").empty())
+    return ModbusLine::rtu(source.text("device"), baud(source, 19200), parity(source), wait, error);
+  return ModbusLine::tcp(modbus_address(source), static_cast<int>(source.whole("port", 502, 1, 65535)), wait,
+                         error);
+}
 
 std::string device_of_output(const SignalSource& source) {
   const auto& kind = kind_of(kOutputs, "output", source);

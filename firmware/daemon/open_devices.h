@@ -32,6 +32,9 @@ struct OutputAxis {
   TimeUs tick;
 };
 
+/// Opens a line for one use: `device`, `baud` and `parity`, or `address` and `port`. wait: longest time for
+/// an answer.
+std::shared_ptr<ModbusLine> open_modbus_line(const SignalSource& source, TimeUs wait, std::string& error);
 /// Returns a text that is the same for all outputs of one device; empty: each output is a separate device.
 std::string device_of_output(const SignalSource& source);
 /// Opens the device of these axes, which is their number k for axes[k]: an output, or several outputs that

@@ -272,6 +272,173 @@ TEST_F(Check, WrongSettingsOfRegistersAreNamed) {
       << gone.text;
 }
 
+/// The same board in the spelling of one table for each axis and each output.
+constexpr const char* kTables = R"([board]
+store = "store"
+[[axis]]
+name = "X"
+kind = "sim"
+max_speed = 100
+max_correction = 0.2
+max_step = 0.001
+[[axis]]
+name = "C"
+kind = "sim"
+rotary = true
+rollover = true
+max_speed = 100
+max_correction = 0.2
+max_step = 0.001
+[[output]]
+axis = "C"
+kind = "iio-dac"
+root = "ROOT"
+device = "mcp4922"
+channel = 1
+codes = 255
+span = 0.25
+[[output]]
+axis = "X"
+kind = "modbus"
+address = "127.0.0.1"
+port = 1
+unit = 3
+register = 104
+sequence = 100
+valid = 101
+echo = 50
+scale = 0.01
+)";
+
+TEST_F(Check, TablesOfAxesAndOutputsAreRead) {
+  write(kTables);
+  const Said said = run("--check");
+  EXPECT_EQ(said.status, 2) << said.text;
+  for (const char* line :
+       {"ok       axis.X.position  sim\n", "ok       axis.C.position  sim\n",
+        "missing  axis.X.output  modbus-out: the controller does not answer",
+        "ok       axis.C.output  iio-dac", "budget   axis.C.output: -124.51 to 125.49 mdeg"})
+    EXPECT_NE(said.text.find(line), std::string::npos) << line << said.text;
+  // An [[output]] belongs to an [axis.NAME] as well.
+  write(std::string(kPublished) +
+        "[axis.C]\nkind = \"rotary\"\nmax_speed = 100\nmax_correction = 0.2\nmax_step = 0.001\n"
+        "position = { kind = \"sim\" }\n[[output]]\naxis = \"C\"\nkind = \"pwm\"\npath = \"ROOT/pwm0\"\n"
+        "period_ns = 50000\nspan = 0.25\n");
+  const Said both = run("--check");
+  EXPECT_EQ(both.status, 0) << both.text;
+  EXPECT_NE(both.text.find("ok       axis.C.output  pwm\n"), std::string::npos) << both.text;
+}
+
+TEST_F(Check, WrongTablesOfAxesAndOutputsAreNamedWithTheLineOfTheSetting) {
+  const std::tuple<const char*, const char*, const char*> kWrong[] = {
+      {"name = \"C\"", "name = \"X\"", "board.toml:10: axis: name: 'X' is there twice"},
+      {"name = \"C\"", "", "board.toml:9: axis: name is missing"},
+      {"kind = \"sim\"\nrotary", "rotary", "board.toml:9: axis C: kind is missing"},
+      {"rotary = true", "rotary = \"yes\"", "board.toml:12: axis C: rotary must be true or false"},
+      {"rotary = true", "rotate = 1", "board.toml:12: axis C: unknown setting rotate of kind sim"},
+      {"max_step = 0.001\n[[output]]", "[[output]]", "board.toml:9: axis C: max_step or max_acceleration"},
+      {"axis = \"C\"", "axis = \"B\"", "board.toml:18: output: axis: the board file has no axis 'B'"},
+      {"axis = \"C\"", "axis = \"X\"", "board.toml:26: output: axis: 'X' has an output already"},
+      {"axis = \"C\"", "", "board.toml:17: output: axis is missing"},
+      {"span = 0.25", "spun = 0.25", "board.toml:24: output of C: unknown setting spun of kind iio-dac"},
+      {"unit = 3", "unit = 300", "board.toml:30: output of X: unit must be a whole number from 1 to 247"},
+      {"register = 104", "register = 103",
+       "board.toml:31: output of X: register must be sequence + 2 + 2 * n"},
+      {"register = 104", "register = 134",
+       "board.toml:31: output of X: register must be sequence + 2 + 2 * n"},
+      {"valid = 101", "valid = 102",
+       "board.toml:33: output of X: valid must be the register after sequence (101)"},
+      {"echo = 50\n", "", "board.toml:25: output of X: echo is missing"},
+      {"scale = 0.01", "scale = 0", "board.toml:35: output of X: scale must be above 0"},
+      {"scale = 0.01", "resolution = 1", "unknown setting resolution of kind modbus"}};
+  for (const auto& [setting, wrong, said_of_it] : kWrong) {
+    write(replaced(kTables, setting, wrong));
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << said.text;
+    EXPECT_NE(said.text.find(said_of_it), std::string::npos) << said_of_it << "\n" << said.text;
+  }
+}
+
+/// One axis whose position and output are in tables, with settings of the board.
+std::string board_of(const std::string& position, const std::string& output,
+                     const std::string& general = "") {
+  return "[board]\nstore = \"store\"\n" + general +
+         "\n[[axis]]\nname = \"X\"\nmax_speed = 100\nmax_correction = 0.2\n" +
+         "max_step = 0.001\nmissing_ticks = 20\n" + position + "\n[[output]]\naxis = \"X\"\n" + output + "\n";
+}
+
+TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
+  const std::string sync = "sync = { kind = \"can\", interface = \"nocan\" }", sim = "kind = \"sim\"";
+  const std::string drive = "kind = \"canopen\"\ninterface = \"nocan\"\nnode = 1\nscale = 0.1\n";
+  const std::string output = drive + "sync_us = 1000\n",
+                    plc =
+                        "kind = \"modbus\"\naddress = \"127.0.0.1\"\nport = 1\n"
+                        "register = 12\nsequence = 10\nscale = 0.1\n";
+  const std::string counter = "kind = \"counter\"\nroot = \"ROOT\"\ndevice = \"eqep\"\nscale = 0.1\n";
+  const std::tuple<std::string, const char*> kWrong[] = {
+      {board_of(sim, output), "board.toml:11: output of X: the ticks do not follow SYNC; add sync = "},
+      {board_of(sim, drive, sync), "board.toml:11: output of X: sync_us is missing"},
+      {board_of(sim, drive + "sync_us = 2000", sync),
+       "board.toml:17: output of X: sync_us must be tick_us (1000)"},
+      {board_of(sim, replaced(output, "node = 1", "node = 128"), sync),
+       "board.toml:15: output of X: node must be a whole number from 1 to 127"},
+      {board_of(sim, output + "object = \"60B0\"", sync),
+       "board.toml:18: output of X: object: '60B0' is no object"},
+      {board_of(sim, output + "object = \"0x60B0:1g\"", sync), "'0x60B0:1g' is no object"},
+      {board_of(sim, output + "pdo_test = \"no\"", sync), "pdo_test: 'no' is neither sdo nor none"},
+      {board_of(sim, output + "rpdo = 0x81", sync), "two frames of the drive have one identifier"},
+      {board_of(sim, output + "span = 1", sync),
+       "board.toml:18: output of X: unknown setting span of kind canopen"},
+      {board_of(sim, replaced(output, "scale = 0.1", "scale = -1"), sync), "scale must be above 0"},
+      {board_of(drive + "heartbeat_ms = 3", output, sync), "unknown setting heartbeat_ms of kind canopen"},
+      {board_of(replaced(drive, "scale = 0.1", "scale = 0"), output, sync), "scale must not be zero"},
+      {board_of(replaced(plc, "sequence = 10", "sequence = 13"), output, sync),
+       "sequence is a register of the position"},
+      {board_of(replaced(plc, "sequence = 10", "sequence = 300"), output, sync),
+       "sequence is too far from the positions"},
+      {board_of(plc + "period_ms = 20", output, sync), "missing_ticks must be at least 2 periods"},
+      {board_of(plc + "registers = \"coil\"", output, sync), "registers must be input or holding"},
+      {board_of(counter + "bits = 1", output, sync), "bits must be 2 to 40"},
+      {board_of(counter + "count = -1", output, sync), "count must be a whole number from 0 to 63"}};
+  for (const auto& [board, said_of_it] : kWrong) {
+    write(board);
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << said.text;
+    EXPECT_NE(said.text.find(said_of_it), std::string::npos) << said_of_it << "\n" << said.text;
+  }
+}
+
+TEST_F(Check, DrivesCountersAndRegistersThatAreMissingAreNamed) {
+  const std::string sync = "sync = { kind = \"can\", interface = \"ROOT/bus\" }";
+  const std::string drive = "kind = \"canopen\"\ninterface = \"ROOT/bus\"\nnode = 1\nscale = 0.1\n";
+  write(board_of(drive, drive + "sync_us = 1000", sync));
+  Said said = run("--check");
+  EXPECT_EQ(said.status, 2) << said.text;
+  EXPECT_NE(said.text.find("missing  axis.X.output  canopen: "), std::string::npos) << said.text;
+  EXPECT_NE(said.text.find("bus: no program answers: No such file"), std::string::npos) << said.text;
+  // A counter is found by the name of its driver, and read.
+  const std::string pwm = "kind = \"pwm\"\npath = \"ROOT/pwm0\"\nperiod_ns = 50000\nspan = 0.25";
+  const std::string counter = "kind = \"counter\"\nroot = \"ROOT\"\ndevice = \"eqep\"\nscale = 0.1\n";
+  write(board_of(counter, pwm));
+  said = run("--check");
+  EXPECT_EQ(said.status, 2) << said.text;
+  EXPECT_NE(said.text.find("missing  axis.X.position  counter: "), std::string::npos) << said.text;
+  files_.put("counter2/name", "eqep"), files_.put("counter2/count0/count", "7"),
+      files_.put("counter2/count0/ceiling", "4294967295");
+  said = run("--check");
+  EXPECT_EQ(said.status, 0) << said.text;
+  EXPECT_NE(said.text.find("ok       axis.X.position  counter\n"), std::string::npos) << said.text;
+  write(board_of(
+      "kind = \"modbus\"\naddress = \"127.0.0.1\"\nport = 1\nregister = 12\nsequence = 10\nscale = 0.1",
+      pwm));
+  said = run("--check");
+  EXPECT_EQ(said.status, 2) << said.text;
+  EXPECT_NE(said.text.find("missing  axis.X.position  modbus: the controller does not answer, or its "
+                           "sequence number stands still"),
+            std::string::npos)
+      << said.text;
+}
+
 /// Two axes with blocks of registers at one controller, and an input.
 std::string board_with_registers(const std::string& x, const std::string& y, const std::string& more = "") {
   const auto axis = [](const char* name, const std::string& settings) {
@@ -400,6 +567,7 @@ TEST_F(Check, EachDriverIsOnThePageOfTheBoard) {
   const std::string link = std::string(kBoard) + "[[link]]\nkind = \"nothing\"\n";
   const std::pair<std::string, std::string> kBoards[] = {
       {"output", replaced(kBoard, "\"pwm\"", "\"nothing\"")},
+      {"position", replaced(kBoard, "\"sim\"", "\"nothing\"")},
       {"input", replaced(kBoard, "\"iio\"", "\"nothing\"")},
       {"link", link}};
   for (const auto& [port, board] : kBoards) {

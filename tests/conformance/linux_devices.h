@@ -64,6 +64,17 @@ class JoinedSockets {
   bool send(const can_frame& frame) const {
     return ::send(far_, &frame, sizeof(frame), 0) == static_cast<ssize_t>(sizeof(frame));
   }
+  /// The next frame of the reader's end; without one, an empty frame.
+  can_frame receive() const {
+    can_frame frame{};
+    if (::recv(far_, &frame, sizeof frame, MSG_DONTWAIT) != static_cast<ssize_t>(sizeof frame)) frame = {};
+    return frame;
+  }
+  /// Nothing can be sent any more, in both directions.
+  void cut() {
+    if (far_ >= 0) ::close(far_);
+    far_ = -1;
+  }
   bool send(std::uint32_t id, const CanAxisFrame& content) const {
     can_frame frame{};
     frame.can_id = id;

@@ -135,16 +135,20 @@ void print(const Counts& c, double hours) {
       "deaths, %llu cut "
       "writes, %llu bits turned, %llu slow media, %llu lost, %llu doubled, %llu changed, %llu late frames, "
       "%llu forged, "
-      "%llu replayed, %llu silent axes, %llu refused writes\n%llu uploads, %llu confirmed, %llu given up, "
+      "%llu replayed, %llu silent axes, %llu refused writes; of the drive: %llu SYNC lost, %llu TPDO lost, "
+      "%llu heartbeats lost, %llu cuts, %llu EMCY, %llu times disabled, %llu restarts, %llu offsets overtaken"
+      "\n%llu uploads, %llu confirmed, %llu given up, "
       "%llu timed out, "
       "%llu images lost and told, %llu faults cleared, %llu signs of life, %llu ticks of axes kept out after "
       "a death\nno invariant broken\n",
       hours, c.ticks + 0ull, c.active + 0ull, c.injected() + 0ull, c.late_ticks + 0ull, c.stops + 0ull,
       c.deaths + 0ull, c.torn_writes + 0ull, c.flips + 0ull, c.slow_media + 0ull, c.lost_frames + 0ull,
       c.doubled_frames + 0ull, c.changed_frames + 0ull, c.late_frames + 0ull, c.forged + 0ull,
-      c.replayed + 0ull, c.silent_axes + 0ull, c.refused_writes + 0ull, c.uploads + 0ull, c.confirmed + 0ull,
-      c.given_up + 0ull, c.timed_out + 0ull, c.images_lost + 0ull, c.faults + 0ull, c.signs + 0ull,
-      c.kept_out + 0ull);
+      c.replayed + 0ull, c.silent_axes + 0ull, c.refused_writes + 0ull, c.drive.syncs_lost + 0ull,
+      c.drive.positions_lost + 0ull, c.drive.heartbeats_lost + 0ull, c.drive.cuts + 0ull,
+      c.drive.emergencies + 0ull, c.drive.disabled + 0ull, c.drive.restarts + 0ull, c.drive.overtaken + 0ull,
+      c.uploads + 0ull, c.confirmed + 0ull, c.given_up + 0ull, c.timed_out + 0ull, c.images_lost + 0ull,
+      c.faults + 0ull, c.signs + 0ull, c.kept_out + 0ull);
 }
 
 }  // namespace

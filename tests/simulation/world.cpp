@@ -58,7 +58,8 @@ World::World(std::uint64_t seed) : random_(seed) {
   motion_ = std::make_unique<Roaming>(std::vector<RoamingAxis>{{0, 600'000'000}, {0, 200'000'000}},
                                       std::vector<InputMicro>{InputMicro(21'000'000)}, kTick, 0.1, seed);
   plant_ = std::make_unique<SimPlant>(*motion_, 2, 1, PlantOptions{.seed = seed, .faults = {}});
-  devices_ = std::make_unique<FlakyDevices>(*plant_);
+  drive_ = std::make_unique<SimulatedDrive>(random_, kTick, kSlew[0]);
+  devices_ = std::make_unique<FlakyDevices>(*plant_, *drive_);
   plant_->release();
   start();
 }
@@ -86,6 +87,7 @@ void World::start() {
     options.limits.axis[i].largest = kBoardLimit;
   }
   // As the daemon does before its first tick, within the limits.
+  drive_->start();
   for (std::uint32_t axis = 0; axis < 2; ++axis) {
     plant_->write_correction(axis, AxisTravel{});
     before_[axis] = AxisTravel{};
@@ -166,8 +168,11 @@ void World::hurt_before_tick() {
 
 void World::check_drives() {
   for (std::uint32_t axis = 0; axis < 2; ++axis) {
-    const AxisTravel now = plant_->written(axis);
-    need(std::abs((now - before_[axis]).count) <= kSlew[axis], "no drive moves faster than its slew limit");
+    // A drive without torque has its offset taken out at once.
+    const bool torque = axis != 0 || (drive_->has_torque() && drive_->had_torque());
+    const AxisTravel now = axis == 0 ? drive_->offset() : plant_->written(axis);
+    need(!torque || std::abs((now - before_[axis]).count) <= kSlew[axis],
+         "no drive moves faster than its slew limit");
     need(std::abs(now.count) <= kBoardLimit, "no drive goes beyond the board's limit");
     const bool out = (out_since_death_ >> axis & 1) != 0;
     need(!out || now == AxisTravel{}, "after a death, what was taken out waits for an operator");
@@ -243,6 +248,8 @@ void World::tick() {
   silent_left_ -= silent_left_ > 0 ? 1 : 0;
   refuse_left_ -= refuse_left_ > 0 ? 1 : 0;
   plant_->advance();
+  drive_->cycle(clock_.now(), calm);
+  counts.drive = drive_->counts;
   const InstantNs late = clock_.late;
   const TickReport report = service_->tick();
   ++counts.ticks;

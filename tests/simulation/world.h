@@ -15,6 +15,7 @@
 #include "hal/sim/plant.h"
 #include "hal/sim/roaming.h"
 #include "hal/sim/sim_slot_store.h"
+#include "tests/simulation/simulated_drive.h"
 #include "tools/upload/signing.h"
 
 namespace vernier::simulation {
@@ -52,16 +53,17 @@ struct Counts {
                 lost_frames = 0, doubled_frames = 0, changed_frames = 0, late_frames = 0, forged = 0,
                 replayed = 0, silent_axes = 0, refused_writes = 0, uploads = 0, confirmed = 0, given_up = 0,
                 timed_out = 0, images_lost = 0, faults = 0, active = 0, signs = 0, kept_out = 0;
+  DriveCounts drive;
   std::uint64_t injected() const {
-    return late_ticks + stops + deaths + torn_writes + flips + slow_media + lost_frames + doubled_frames +
-           changed_frames + late_frames + forged + replayed + silent_axes + refused_writes;
+    return drive.all() + late_ticks + stops + deaths + torn_writes + flips + slow_media + lost_frames +
+           doubled_frames + changed_frames + late_frames + forged + replayed + silent_axes + refused_writes;
   }
 };
 
-/// Devices between plant and board that fall silent or refuse.
+/// Devices between plant and board that fall silent or refuse. The correction of X goes to a drive.
 class FlakyDevices : public AxisReader, public InputReader, public CorrectionWriter {
  public:
-  explicit FlakyDevices(SimPlant& plant) : plant_(plant) {}
+  FlakyDevices(SimPlant& plant, SimulatedDrive& drive) : plant_(plant), drive_(drive) {}
   HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
     return silent ? HalFault::kNoReading : plant_.read_axis(axis, reading);
   }
@@ -72,12 +74,16 @@ class FlakyDevices : public AxisReader, public InputReader, public CorrectionWri
   }
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override {
     if (refuse) return HalFault::kRefused;
-    return plant_.write_correction(axis, correction);
+    return axis == 0 ? drive_.write_correction(axis, correction) : plant_.write_correction(axis, correction);
+  }
+  AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override {
+    return axis == 0 ? drive_.within_range(axis, correction) : plant_.within_range(axis, correction);
   }
   bool silent = false, refuse = false;
 
  private:
   SimPlant& plant_;
+  SimulatedDrive& drive_;
 };
 
 /// The link of the world: one link, over which the operator and a stranger have connections of their own.
@@ -144,6 +150,7 @@ class World {
   WorldClock clock_;
   std::unique_ptr<Roaming> motion_;
   std::unique_ptr<SimPlant> plant_;
+  std::unique_ptr<SimulatedDrive> drive_;
   std::unique_ptr<FlakyDevices> devices_;
   SimSlotStore store_{kStoreBytes};
   std::unique_ptr<Service> service_;

@@ -14,8 +14,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
+#include <string_view>
+#include <utility>
 
+#include "firmware/daemon/settings/short_names.h"
 #include "firmware/daemon/settings/toml_text.h"
 #include "firmware/daemon/settings/units.h"
 
@@ -29,7 +33,15 @@ constexpr double kTicksToLargest = 200;  // of a default max_step without a know
 // travel.
 constexpr double kSteepness = 10;
 
-const std::set<std::string_view> kSections = {"board", "axis", "input", "probe", "digital", "link", "key"};
+const std::set<std::string_view> kSections = {"board", "axis",    "output", "input",
+                                              "probe", "digital", "link",   "key"};
+
+using Words = std::set<std::string, std::less<>>;
+/// Settings of an [[axis]] and an [[output]] that do not belong to the device.
+const Words kOfAxis = {"name",           "rotary",           "rollover",     "low",
+                       "high",           "max_speed",        "max_step",     "max_acceleration",
+                       "max_correction", "correction_share", "missing_ticks"};
+const Words kOfOutput = {"axis"};
 
 toml::table read_toml(const std::string& path) {
   try {
@@ -100,12 +112,19 @@ class Table {
   std::set<std::string> asked_;
 };
 
-SignalSource source_of(const toml::table* table, const std::string& file, const std::string& where) {
+/// others: settings of the table that do not belong to the device.
+SignalSource source_of(const toml::table* table, const std::string& file, const std::string& where,
+                       const Words& others = {}) {
   SignalSource source;
   if (table == nullptr) return source;
   Table settings(*table, file, where);
-  source.where = file + ":" + std::to_string(table->source().begin.line) + ": " + where;
+  const auto place = [&](const toml::node& node) {
+    return file + ":" + std::to_string(node.source().begin.line) + ": " + where;
+  };
+  source.where = place(*table);
   for (const auto& [key, node] : *table) {
+    if (others.contains(key.str())) continue;
+    source.places[std::string(key.str())] = place(node);
     if (const auto text = node.value_exact<std::string>())
       source.texts[std::string(key.str())] = *text;
     else if (node.is_number())
@@ -202,30 +221,61 @@ void require_limits(Table& settings, AxisEntry& axis, TimeUs tick) {
                 ", the most that a correction changes in one tick");
 }
 
-void read_axis(BoardFile& board, const std::string& name, const toml::table& table) {
-  Table settings(table, board.path, "axis." + name);
+/// `name`, motion and limits of an axis. device: its table has the settings of the position's device too.
+AxisEntry read_axis_settings(BoardFile& board, const std::string& name, Table& settings, bool device) {
   if (board.axes.size() == kMaxAxes) settings.fail("the file has more axes than the firmware supports");
   if (name.size() >= kImageNameBytes) settings.fail("the name is too long");
   AxisEntry axis;
   axis.wiring.name = Name(std::string_view(name));
-  const std::string kind = settings.text("kind", "linear");
-  if (kind != "linear" && kind != "rotary")
-    settings.fail("kind: '" + kind + "' is neither linear nor rotary");
-  axis.wiring.rotary = kind == "rotary";
+  if (device) {
+    axis.wiring.rotary = settings.flag("rotary", false);
+  } else {
+    const std::string kind = settings.text("kind", "linear");
+    if (kind != "linear" && kind != "rotary")
+      settings.fail("kind: '" + kind + "' is neither linear nor rotary");
+    axis.wiring.rotary = kind == "rotary";
+  }
   axis.wiring.rollover = settings.flag("rollover", false);
   axis.low = settings.number("low", 0, -1e6, 1e6);
   axis.high = settings.number("high", 0, -1e6, 1e6);
   if (axis.low > axis.high) settings.fail("low is above high");
   board.service.limits.axis[board.axes.size()] =
       setting_of(settings, axis.wiring.rotary, board.service.upload.tick);
+  return axis;
+}
+
+void add_axis(BoardFile& board, Table& settings, AxisEntry axis) {
+  require_limits(settings, axis, board.service.upload.tick);
+  use_short_names(axis.output, settings.number("max_correction", 0, 1e-6, 1e3));
+  apply_calibration(board.path, axis.output);
+  board.service.wiring.axes.push_back(axis.wiring);
+  board.axes.push_back(std::move(axis));
+}
+
+/// [axis.NAME] with `position` and `output`.
+void read_axis(BoardFile& board, const std::string& name, const toml::table& table,
+               const toml::table* output) {
+  Table settings(table, board.path, "axis." + name);
+  AxisEntry axis = read_axis_settings(board, name, settings, false);
   axis.position = source_of(settings.table("position"), board.path, "axis." + name + ".position");
   axis.output = source_of(settings.table("output"), board.path, "axis." + name + ".output");
   if (axis.position.kind.empty()) settings.fail("position is missing");
-  require_limits(settings, axis, board.service.upload.tick);
-  apply_calibration(board.path, axis.output);
+  if (output != nullptr) {
+    if (!axis.output.kind.empty()) settings.fail("the axis has an [[output]] too");
+    axis.output = source_of(output, board.path, "output of " + name, kOfOutput);
+  }
   settings.nothing_else();
-  board.service.wiring.axes.push_back(axis.wiring);
-  board.axes.push_back(axis);
+  add_axis(board, settings, std::move(axis));
+}
+
+/// [[axis]]: `kind` is that of the device which gives the position, and the device's settings are beside it.
+void read_flat_axis(BoardFile& board, const std::string& name, const toml::table& table,
+                    const toml::table* output) {
+  Table settings(table, board.path, "axis " + name);
+  AxisEntry axis = read_axis_settings(board, name, settings, true);
+  axis.position = source_of(&table, board.path, "axis " + name, kOfAxis);
+  axis.output = source_of(output, board.path, "output of " + name, kOfOutput);
+  add_axis(board, settings, std::move(axis));
 }
 
 void read_input(BoardFile& board, const std::string& name, const toml::table& table) {
@@ -373,6 +423,51 @@ void each_table(const BoardFile& board, const char* section, const toml::node& n
   }
 }
 
+/// The [[output]] of each axis, by name.
+std::map<std::string, const toml::table*> outputs_of(const BoardFile& board, const toml::table& file) {
+  std::map<std::string, const toml::table*> outputs;
+  if (const toml::node* const node = file.get("output"))
+    each_table(board, "output", *node, [&](const toml::table& table) {
+      Table settings(table, board.path, "output");
+      const std::string axis = settings.text("axis", "");
+      if (axis.empty()) settings.fail("axis is missing: the name of the axis that the output corrects");
+      if (!outputs.emplace(axis, &table).second)
+        settings.fail("axis: '" + axis + "' has an output already", table.get("axis"));
+    });
+  return outputs;
+}
+
+/// [axis.NAME], or [[axis]] in the order of the file.
+void read_axes(BoardFile& board, Table& settings, const toml::table& file) {
+  const auto outputs = outputs_of(board, file);
+  const auto output_of = [&](const std::string& name) {
+    const auto found = outputs.find(name);
+    return found == outputs.end() ? nullptr : found->second;
+  };
+  const auto known = [&](const std::string& name) {
+    return std::any_of(board.axes.begin(), board.axes.end(),
+                       [&](const AxisEntry& axis) { return axis.wiring.name.c_str() == name; });
+  };
+  const toml::node* const axes = file.get("axis");
+  if (axes != nullptr && axes->is_array()) {
+    each_table(board, "axis", *axes, [&](const toml::table& table) {
+      Table entry(table, board.path, "axis");
+      const std::string name = entry.text("name", "");
+      if (name.empty()) entry.fail("name is missing: the name of the axis in the machine file");
+      if (known(name)) entry.fail("name: '" + name + "' is there twice", table.get("name"));
+      read_flat_axis(board, name, table, output_of(name));
+    });
+  } else if (const toml::table* const tables = settings.table("axis")) {
+    in_order_of_file(*tables, board.path, "axis", [&](const auto& name, const auto& table) {
+      read_axis(board, name, table, output_of(name));
+    });
+  }
+  for (const auto& [name, table] : outputs)
+    if (!known(name))
+      Table(*table, board.path, "output")
+          .fail("axis: the board file has no axis '" + name + "'", table->get("axis"));
+}
+
 /// Rights of a link. A link to another computer shows only the state unless the file allows more.
 LinkRights rights_of(SignalSource& link) {
   LinkRights rights;
@@ -421,7 +516,8 @@ void refuse_duplicates(const BoardFile& board) {
     used.push_back(&source);
   };
   for (const AxisEntry& axis : board.axes)
-    claim(axis.output, {"path", "device", "root", "channel", "address", "port", "unit", "register", "place"});
+    claim(axis.output, {"path", "device", "root", "channel", "address", "port", "unit", "register", "place",
+                        "interface", "node", "object"});
   for (const SignalSource* const line : {&board.probe, &board.enable, &board.healthy})
     claim(*line, {"chip", "line"});
   for (const LinkEntry& link : board.links)
@@ -431,29 +527,36 @@ void refuse_duplicates(const BoardFile& board) {
 }  // namespace
 
 void SignalSource::fail(const std::string& what) const { throw BoardError{where + ": " + what}; }
+void SignalSource::fail_at(const std::string& name, const std::string& what) const {
+  const auto place = places.find(name);
+  throw BoardError{(place == places.end() ? where : place->second) + ": " + what};
+}
 void SignalSource::only(const std::vector<const char*>& names) const {
   const auto check = [&](const std::string& name) {
     if (name != "kind" && std::find(names.begin(), names.end(), name) == names.end())
-      fail("unknown setting " + name + " of kind " + kind);
+      fail_at(name, "unknown setting " + name + " of kind " + kind);
   };
   for (const auto& entry : texts) check(entry.first);
   for (const auto& entry : numbers) check(entry.first);
 }
 const std::string& SignalSource::text(const std::string& name) const {
   const auto found = texts.find(name);
-  if (found == texts.end()) fail(name + (numbers.contains(name) ? " must be a text" : " is missing"));
+  if (found == texts.end())
+    fail_at(name, name + (numbers.contains(name) ? " must be a text" : " is missing"));
   return found->second;
 }
 double SignalSource::number(const std::string& name) const {
   const auto found = numbers.find(name);
-  if (found == numbers.end()) fail(name + (texts.contains(name) ? " must be a number" : " is missing"));
+  if (found == numbers.end())
+    fail_at(name, name + (texts.contains(name) ? " must be a number" : " is missing"));
   return found->second;
 }
 std::int64_t SignalSource::whole(const std::string& name, std::int64_t low, std::int64_t high) const {
   const double value = number(name);
   if (!(value >= static_cast<double>(low) && value <= static_cast<double>(high)) ||
       value != std::floor(value))
-    fail(name + " must be a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    fail_at(name,
+            name + " must be a whole number from " + std::to_string(low) + " to " + std::to_string(high));
   return static_cast<std::int64_t>(value);
 }
 std::int64_t SignalSource::whole(const std::string& name, std::int64_t otherwise, std::int64_t low,
@@ -476,13 +579,11 @@ BoardFile read_board_file(const std::string& path) {
   const toml::table* const general = settings.table("board");
   if (general == nullptr) settings.fail("[board] is missing");
   read_board(board, *general);
-  if (const toml::table* const axes = settings.table("axis"))
-    in_order_of_file(*axes, path, "axis",
-                     [&](const auto& name, const auto& t) { read_axis(board, name, t); });
+  read_axes(board, settings, file);
   if (const toml::table* const inputs = settings.table("input"))
     in_order_of_file(*inputs, path, "input",
                      [&](const auto& name, const auto& t) { read_input(board, name, t); });
-  if (board.axes.empty()) settings.fail("no [axis.NAME]");
+  if (board.axes.empty()) settings.fail("no [[axis]] and no [axis.NAME]");
   if (const toml::table* const probe = settings.table("probe")) read_probe(board, *probe);
   if (const toml::table* const digital = settings.table("digital")) read_digital(board, *digital);
   if (settings.has("link"))

@@ -14,12 +14,15 @@ namespace vernier {
 /// Connection of a signal of the board to a device: a kind that open_devices.cpp knows, and the settings as
 /// written in the board file.
 struct SignalSource {
-  std::string kind;                          // "can", "iio", "pwm", "sim" ...; empty: not wired
-  std::map<std::string, std::string> texts;  // every setting that is a text
-  std::map<std::string, double> numbers;     // every setting that is a number
-  std::string where;                         // "board.toml:12: axis.X.output"
+  std::string kind;                                // "can", "iio", "pwm", "sim" ...; empty: not wired
+  std::map<std::string, std::string> texts;        // every setting that is a text
+  std::map<std::string, double> numbers;           // every setting that is a number
+  std::string where;                               // "board.toml:12: axis.X.output"
+  std::map<std::string, std::string> places = {};  // the same for each setting, with the line of the setting
 
   [[noreturn]] void fail(const std::string& what) const;  // throws BoardError
+  /// As fail(), with the line of the setting `name`.
+  [[noreturn]] void fail_at(const std::string& name, const std::string& what) const;
   /// Throws BoardError if the file has a setting that is not among `names`, apart from kind.
   void only(const std::vector<const char*>& names) const;
   const std::string& text(const std::string& name) const;  // throws BoardError where absent

@@ -2,6 +2,7 @@
 #pragma once
 #include "firmware/daemon/settings/board_file.h"
 #include "hal/support/analogue_scale.h"
+#include "hal/support/wrapped_count.h"
 
 namespace vernier {
 
@@ -12,5 +13,13 @@ bool is_inverted(const SignalSource& source);
 /// ("_ns") if it counts codes. codes: number of codes of the whole span. rotary: span is in degrees, else in
 /// mm. Throws BoardError. setup.
 AnalogueScale analogue_scale(const SignalSource& source, bool rotary, std::int64_t codes, const char* suffix);
+
+/// Reads the settings resolution, range and polarity of an output that is a signed number: correction /
+/// resolution. The scale's codes are shifted by its zero. Throws BoardError. setup.
+AnalogueScale number_scale(const SignalSource& source, bool rotary);
+
+/// Reads the settings scale (um of a count; 0.001 deg of a rotary axis; below 0: the other way) and offset
+/// (mm or deg at the device's zero) of a position. Throws BoardError. setup.
+PositionScale position_scale(const SignalSource& source, bool rotary);
 
 }  // namespace vernier

@@ -7,6 +7,7 @@ namespace vernier {
 
 inline constexpr double kNmPerMm = 1e6;
 inline constexpr double kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
-inline constexpr double kMicro = 1e6;  // inputs count in millionths of their unit
+inline constexpr double kMmPerUm = 1e-3;  // and deg of 0.001 deg
+inline constexpr double kMicro = 1e6;     // inputs count in millionths of their unit
 
 }  // namespace vernier

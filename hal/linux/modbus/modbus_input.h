@@ -27,7 +27,7 @@ class ModbusLine {
   ModbusLine& operator=(const ModbusLine&) = delete;
 
   enum class Registers { kInput, kHolding };
-  /// Reads `count` registers (1 or 2). False: no answer in time, an exception, or an answer of another
+  /// Reads `count` registers (1 to 125). False: no answer in time, an exception, or an answer of another
   /// unit, transaction, function or length. After a missing answer the line is not used for the same time
   /// again: a late answer is then not taken for the answer to the next request. setup.
   bool read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;

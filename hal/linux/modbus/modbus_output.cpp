@@ -10,13 +10,13 @@
 namespace vernier {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Steady = std::chrono::steady_clock;
 using std::chrono::microseconds;
 
 constexpr std::size_t kDelayBins = 10'000;  // of 0.1 ms: one second
 constexpr int kTries = 10;                  // of the first exchange
 
-std::int64_t ns_of(Clock::time_point when) {
+std::int64_t ns_of(Steady::time_point when) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(when.time_since_epoch()).count();
 }
 microseconds span_of(TimeUs time) { return microseconds(time.count); }

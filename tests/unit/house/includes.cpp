@@ -147,12 +147,14 @@ std::string firmware_may_include(std::string_view path, std::string_view target)
   if (!starts_with(path, "firmware/daemon/")) return "a folder of firmware that has no place";
   if (starts_with(target, "firmware/daemon/") || is_hal_support(target)) return {};
   static const std::set<std::string_view> kRoot = {
-      "firmware/daemon/main.cpp",          "firmware/daemon/devices.cpp", "firmware/daemon/open_devices.cpp",
-      "firmware/daemon/device_trials.cpp", "firmware/daemon/duties.h",    "firmware/daemon/duties.cpp"};
+      "firmware/daemon/main.cpp",           "firmware/daemon/devices.cpp",
+      "firmware/daemon/open_devices.cpp",   "firmware/daemon/open_drives.cpp",
+      "firmware/daemon/open_positions.cpp", "firmware/daemon/device_trials.cpp",
+      "firmware/daemon/duties.h",           "firmware/daemon/duties.cpp"};
   if (kRoot.contains(path) && top == "hal") return {};
   return "firmware/daemon may include firmware, comp, tables, hal ports and hal/support; only the "
          "composition "
-         "root (main, devices, open_devices, device_trials, duties) names a backend";
+         "root (main, devices, open_*, device_trials, duties) names a backend";
 }
 
 // Empty: allowed; else the reason.

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "firmware/daemon/open_devices.h"
+#include "firmware/daemon/settings/board_file.h"
+
+namespace vernier {
+
+class AxisReader;
+class CanopenAxes;
+
+/// An axis whose position comes from a device.
+struct PositionAxis {
+  const SignalSource* source = nullptr;
+  bool rotary = false;
+};
+
+/// Opens the drives of one CANopen bus that axes of kind "canopen" name. Axis k of the result is axes[k].
+/// Null with `error` set if the bus is missing; a wrong setting throws BoardError. setup.
+std::unique_ptr<CanopenAxes> open_canopen_axes(const std::vector<PositionAxis>& axes, std::string& error);
+
+/// Opens the drive of an output of kind "canopen": one axis. Errors as for open_canopen_axes(). setup.
+std::unique_ptr<OutputDevice> open_canopen_output(const std::vector<OutputAxis>& axes, std::string& error);
+inline const std::vector<const char*> kCanopenOutputSettings = {
+    "interface", "node", "object", "scale",        "range",      "polarity", "sync_us",
+    "sync",      "tpdo", "rpdo",   "heartbeat_ms", "timeout_ms", "pdo_test", "delay_ms"};
+
+/// A drive takes one offset with each SYNC. Refuses a board file whose ticks do not follow the SYNC of the
+/// drives of its outputs, and one in which two drives have one identifier. Throws BoardError. setup.
+void require_sync_of_drives(const BoardFile& board);
+
+}  // namespace vernier

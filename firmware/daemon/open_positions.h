@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "firmware/daemon/open_drives.h"
+
+namespace vernier {
+
+class CounterAxis;
+class ModbusAxes;
+
+/// Opens the counter of an axis of kind "counter". Null with `error` set if it is missing; a wrong setting
+/// throws BoardError. setup.
+std::unique_ptr<CounterAxis> open_counter_axis(const PositionAxis& axis, std::string& error);
+
+/// Returns a text that is the same for all axes of kind "modbus" that are read in one request: peer, unit and
+/// sequence register. Throws BoardError. setup.
+std::string modbus_axes_block(const SignalSource& source);
+
+/// Opens the registers of the axes of one block. Axis k of the result is axes[k]. missing: of each axis, the
+/// longest time without a reading that is no fault. Errors as for open_counter_axis(). setup.
+std::unique_ptr<ModbusAxes> open_modbus_axes(const std::vector<PositionAxis>& axes,
+                                             const std::vector<TimeUs>& missing, std::string& error);
+
+}  // namespace vernier

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <linux/can.h>
+
+#include <cstdint>
+
+#include "hal/clock.h"
+#include "hal/fault.h"
+
+namespace vernier {
+
+/// Identifiers and times of one drive on a CANopen bus. The board is a node without NMT: a master starts the
+/// drive and sends SYNC. Source: CiA 301 (predefined connection set, 7.3.3), CiA 402 (default PDOs).
+struct CanopenSettings {
+  std::uint32_t sync = 0x80;              // SYNC
+  std::uint32_t emergency = 0x81;         // EMCY: 0x80 + node
+  std::uint32_t heartbeat = 0x701;        // NMT error control: 0x700 + node
+  std::uint32_t tpdo = 0x381;             // statusword (16 bits), position actual value (32 bits)
+  std::uint32_t rpdo = 0x501;             // the offset (32 bits)
+  InstantNs sync_timeout{20'000'000};     // longest time without SYNC, and without the TPDO
+  InstantNs heartbeat_time{200'000'000};  // longest time without a heartbeat
+  std::int64_t most_per_sync = 1;         // largest change of the offset from one SYNC to the next, counts
+};
+
+/// Counters of one drive; each counter only increases.
+struct CanopenCounts {
+  std::uint64_t syncs = 0, positions = 0;
+  std::uint64_t offsets = 0;      // sent
+  std::uint64_t refused = 0;      // by the bus: no room, interface down
+  std::uint64_t malformed = 0;    // wrong length, remote, extended, or unknown
+  std::uint64_t emergencies = 0;  // error codes that are not "no error"
+  std::uint64_t not_enabled = 0;  // offsets that were wanted while the drive was not in Operation enabled
+  std::uint64_t foreign = 0;      // frames with the board's identifier of somebody else
+  std::uint64_t bus_errors = 0;   // bus off
+  std::uint64_t losses = 0;       // of SYNC, TPDO, heartbeat, state Operational; EMCY; bus off
+  std::uint16_t last_emergency = 0;
+};
+
+/// State of one CiA 402 drive, and the offset that it gets: a state machine without a device.
+///
+/// The drive takes an offset with the next SYNC (RPDO transmission type 0 to 240). A frame that the board
+/// sends comes back to it, in its order on the bus: a SYNC may overtake an offset that waits for the bus.
+///   Operation enabled                    the offset follows, within most_per_sync; it stays while
+///                                        the drive leaves out a TPDO
+///   Quick stop, fault reaction           the offset goes to zero within most_per_sync; the drive still moves
+///   any other state                      zero: the drive has no torque
+///   after a loss                         one write is refused; then the offset only decreases
+///   no SYNC, TPDO or state Operational   the drive takes nothing: writes are refused, the offset stays
+class CanopenDrive {
+ public:
+  explicit CanopenDrive(const CanopenSettings& settings) noexcept : settings_(settings) {}
+
+  /// Takes a frame of the bus, also one that the board has sent. realtime.
+  void take(const can_frame& frame, InstantNs now) noexcept;
+
+  struct Step {
+    HalFault fault = HalFault::kNone;
+    bool send = false;
+    std::int32_t offset = 0;
+  };
+  /// Judges the drive and chooses the offset for this tick. wanted: counts of the object. The caller calls
+  /// sent() if the bus took the frame. realtime.
+  Step step(std::int64_t wanted, InstantNs now) noexcept;
+  void sent(std::int32_t offset, InstantNs now) noexcept {
+    sent_ = offset, pending_ = true, pending_since_ = now;
+    if (doubt_ == Doubt::kRepeat) doubt_ = Doubt::kOnItsWay;
+    ++counts_.offsets;
+  }
+  /// The bus did not take the frame. realtime.
+  void not_sent() noexcept { ++counts_.refused; }
+  /// What the drive has from before. setup.
+  void begin_with(std::int32_t offset) noexcept { sent_ = on_bus_ = applied_ = offset; }
+
+  /// The newest position actual value since the last call of begin_tick(). realtime.
+  bool position(std::int32_t& value) const noexcept {
+    if (fresh_) value = position_;
+    return fresh_;
+  }
+  void begin_tick() noexcept { fresh_ = false; }
+
+  /// Offset that the drive has, or gets with the next SYNC. realtime.
+  std::int32_t offset() const noexcept { return sent_; }
+  /// True: the last step was sent as it was wanted. realtime.
+  bool follows() const noexcept { return follows_; }
+  /// Null, or what is missing: "SYNC", "the heartbeat", ... setup.
+  const char* missing(InstantNs now) const noexcept;
+  bool enabled() const noexcept { return (status_ & kStateMask) == kOperationEnabled; }
+  std::uint16_t status() const noexcept { return status_; }
+  const CanopenCounts& counts() const noexcept { return counts_; }
+
+  /// Statusword, CiA 402: state in bits 0 to 3, 5 and 6.
+  static constexpr std::uint16_t kStateMask = 0x6f, kOperationEnabled = 0x27, kQuickStopActive = 0x07;
+  static constexpr std::uint16_t kReactionMask = 0x4f, kFaultReactionActive = 0x0f;
+  static constexpr std::uint8_t kOffsetBytes = 4;
+  /// NMT state in a heartbeat, CiA 301.
+  static constexpr std::uint8_t kBootUp = 0x00, kOperational = 0x05;
+
+ private:
+  /// When something was heard last.
+  struct Heard {
+    InstantNs at;
+    bool known = false;
+    void now(InstantNs when) noexcept { at = when, known = true; }
+    bool within(InstantNs now, InstantNs time) const noexcept { return known && now - at <= time; }
+  };
+
+  /// Whether the drive has the newest offset: an offset for a drive that takes nothing is sent once more,
+  /// comes back, and is used at a SYNC that the drive answers.
+  enum class Doubt : std::uint8_t { kNone, kRepeat, kOnItsWay, kInDrive };
+
+  void take_heartbeat(const can_frame& frame, InstantNs now) noexcept;
+  void take_emergency(const can_frame& frame) noexcept;
+  void take_own(const can_frame& frame, InstantNs now) noexcept;
+  void take_status(const can_frame& frame, InstantNs now) noexcept;
+  bool takes_offsets(InstantNs now) const noexcept;
+  bool is_stuck(InstantNs now) const noexcept;
+  bool is_well(InstantNs now) const noexcept;
+  std::int64_t goal(std::int64_t wanted, bool well) noexcept;
+  void forget() noexcept;
+
+  CanopenSettings settings_;
+  Heard sync_, heartbeat_, tpdo_, foreign_, step_;
+  std::uint8_t nmt_ = kBootUp;
+  std::uint16_t status_ = 0;
+  bool emergency_ = false, bus_off_ = false;
+  bool synced_ = false;    // a SYNC has come since the last step
+  bool answered_ = false;  // a TPDO has come since the last SYNC
+  Doubt doubt_ = Doubt::kRepeat;
+  bool well_ = false;    // at the last step
+  bool refuse_ = false;  // the tick has not yet learned of a loss
+  bool follows_ = true, fresh_ = false;
+  std::int32_t position_ = 0;
+  std::int32_t applied_ = 0;  // offset of the last SYNC
+  std::int32_t on_bus_ = 0;   // newest offset that has come back
+  std::int32_t sent_ = 0;     // newest offset
+  bool pending_ = false;      // it has not come back
+  InstantNs pending_since_;
+  CanopenCounts counts_;
+};
+
+}  // namespace vernier

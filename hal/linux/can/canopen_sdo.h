@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "hal/linux/can/canopen_drive.h"
+
+namespace vernier {
+
+/// An entry of an object dictionary.
+struct CanopenObject {
+  std::uint16_t index = 0x60b0;
+  std::uint8_t subindex = 0;
+};
+
+/// Reads entries of the object dictionary of a node (SDO upload, expedited). Source: CiA 301, 7.2.4.3. The
+/// board only reads, and only before the first tick: a node has one SDO server for one client at a time.
+class CanopenSdo {
+ public:
+  /// interface: as for open_can(). node: 1 .. 127. Null socket with `error` set. setup.
+  CanopenSdo(const std::string& interface, std::uint32_t node, std::string& error);
+  /// Takes over any socket that keeps frames apart and does not block. setup.
+  CanopenSdo(int socket, std::uint32_t node) : socket_(socket), node_(node) {}
+  ~CanopenSdo();
+  CanopenSdo(const CanopenSdo&) = delete;
+  CanopenSdo& operator=(const CanopenSdo&) = delete;
+
+  /// Reads a value of 1 to 4 bytes. Returns empty, or the reason. Waits at most kWait. setup.
+  std::string read(CanopenObject object, std::uint32_t& value);
+  /// Finds the RPDO with this identifier. Empty, or how its mapping differs from one value of 32 bits of
+  /// `object` that the drive uses with the next SYNC. setup.
+  std::string check_offset(std::uint32_t rpdo, CanopenObject object);
+  /// As check_offset() for the TPDO: statusword, then position actual value, with each SYNC. setup.
+  std::string check_position(std::uint32_t tpdo);
+
+  static constexpr int kWaitMs = 300;
+
+ private:
+  std::string check_mapping(const char* name, std::uint16_t communication, std::uint32_t id,
+                            const std::uint32_t* mapped, std::uint8_t count, std::uint8_t lowest_type);
+
+  int socket_;
+  std::uint32_t node_;
+  bool silent_ = false;  // the last request had no answer
+};
+
+}  // namespace vernier

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "comp/quantity.h"
+#include "hal/support/rounded_ratio.h"
+
+namespace vernier {
+
+/// Continues a counter that wraps around. A step is the shortest way: less than half of the range of the
+/// counter. The first count decides where the counter begins: a count in the upper half is negative.
+class WrappedCount {
+ public:
+  /// range: number of different counts, 2 .. 2^40; a count is 0 .. range - 1. setup.
+  explicit constexpr WrappedCount(std::int64_t range) noexcept : range_(range) {}
+
+  /// Takes the newest count. False: the count is not in the range, and is not taken. realtime.
+  constexpr bool take(std::int64_t count) noexcept {
+    if (count < 0 || count >= range_) return false;
+    std::int64_t step = count - last_;
+    if (step >= range_ - range_ / 2) step -= range_;
+    if (step < -(range_ / 2)) step += range_;
+    position_ += step;
+    last_ = count;
+    return true;
+  }
+  /// Counts from the zero of the counter, over all its wraps.
+  constexpr std::int64_t position() const noexcept { return position_; }
+  /// The next count is a first count again.
+  constexpr void forget() noexcept { last_ = position_ = 0; }
+
+ private:
+  std::int64_t range_, last_ = 0, position_ = 0;
+};
+
+/// Converts counts of a device to counts of an axis: round(number * span / counts) + offset.
+struct PositionScale {
+  std::int64_t span = 1, counts = 1;  // `counts` of the device are `span` of the axis (1 nm, 2^-32 turn); > 0
+  std::int64_t offset = 0;            // position at the device's zero, counts of the axis
+  bool inverted = false;              // a larger number is a smaller position
+};
+
+/// A scale at work. realtime.
+class PositionConverter {
+ public:
+  explicit constexpr PositionConverter(const PositionScale& scale) noexcept
+      : scale_(scale), ratio_(scale.span, scale.counts) {}
+  constexpr AxisPosition position_of(std::int64_t number) const noexcept {
+    const std::int64_t travel = ratio_.of(number);
+    return AxisPosition(scale_.offset + (scale_.inverted ? -travel : travel));
+  }
+
+ private:
+  PositionScale scale_;
+  RoundedRatio ratio_;
+};
+
+}  // namespace vernier
