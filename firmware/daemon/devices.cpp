@@ -233,7 +233,7 @@ std::vector<Route<AxisReader>> Devices::Parts::make_positions() {
     } else if (source.kind == "counter") {
       make_counter(i, routes);
     } else {
-      source.fail("no position of kind " + source.kind + "; drivers: sim, can, canopen, modbus, counter");
+      source.fail("no position of kind " + source.kind + "; drivers: can, canopen, modbus, counter");
     }
   }
   return routes;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/daemon/device_axes.h"
 #include "firmware/daemon/settings/board_file.h"
 #include "hal/command_link.h"
 #include "hal/digital_line.h"
@@ -23,14 +24,6 @@ using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
 
 // Each function opens one device of the board file. Null with `error` set if it is missing; a wrong kind or
 // setting throws BoardError. setup.
-
-/// An axis whose correction leaves through an output.
-struct OutputAxis {
-  const SignalSource* source = nullptr;
-  bool rotary = false;                     // spans are in degrees, else in mm
-  std::int64_t most_per_tick = INT32_MAX;  // largest change of the correction in a tick, counts
-  TimeUs tick;
-};
 
 /// Opens a line for one use: `device`, `baud` and `parity`, or `address` and `port`. wait: longest time for
 /// an answer.

@@ -4,19 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "firmware/daemon/open_devices.h"
+#include "firmware/daemon/device_axes.h"
 #include "firmware/daemon/settings/board_file.h"
 
 namespace vernier {
 
-class AxisReader;
 class CanopenAxes;
-
-/// An axis whose position comes from a device.
-struct PositionAxis {
-  const SignalSource* source = nullptr;
-  bool rotary = false;
-};
+class OutputDevice;
 
 /// Opens the drives of one CANopen bus that axes of kind "canopen" name. Axis k of the result is axes[k].
 /// Null with `error` set if the bus is missing; a wrong setting throws BoardError. setup.

@@ -2,7 +2,10 @@
 // Part of the composition root: opens the counters and registers that give positions.
 #include "firmware/daemon/open_positions.h"
 
+#include <cstdlib>
+
 #include "firmware/daemon/modbus_registers.h"
+#include "firmware/daemon/open_devices.h"
 #include "firmware/daemon/settings/device_settings.h"
 #include "hal/linux/counter_axis.h"
 #include "hal/linux/iio/iio_device.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/daemon/open_drives.h"
+#include "firmware/daemon/device_axes.h"
 
 namespace vernier {
 

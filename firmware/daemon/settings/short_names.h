@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "firmware/daemon/settings/board_file.h"
+#include "firmware/daemon/settings/signal_source.h"
 
 namespace vernier {
 

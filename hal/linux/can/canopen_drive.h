@@ -30,7 +30,7 @@ struct CanopenCounts {
   std::uint64_t malformed = 0;    // wrong length, remote, extended, or unknown
   std::uint64_t emergencies = 0;  // error codes that are not "no error"
   std::uint64_t not_enabled = 0;  // offsets that were wanted while the drive was not in Operation enabled
-  std::uint64_t foreign = 0;      // frames with the board's identifier of somebody else
+  std::uint64_t foreign = 0;      // frames with the board's identifier that another node sent
   std::uint64_t bus_errors = 0;   // bus off
   std::uint64_t losses = 0;       // of SYNC, TPDO, heartbeat, state Operational; EMCY; bus off
   std::uint16_t last_emergency = 0;
