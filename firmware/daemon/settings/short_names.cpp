@@ -27,15 +27,15 @@ void use_short_names(SignalSource& output, double max_correction) {
   if (valid != sequence + RegisterBlock::kValid - RegisterBlock::kSequence)
     output.fail_at("valid", "valid must be the register after sequence (" + std::to_string(sequence + 1) +
                                 "): the board writes one block");
-  const std::int64_t after = value - sequence - RegisterBlock::kValues;
-  if (after < 0 || after % 2 != 0 || after / 2 >= RegisterBlock::kPlaces)
+  const std::int64_t after = value - sequence - RegisterBlock::kValues, place = after / 2;
+  if (after < 0 || after % 2 != 0 || place >= RegisterBlock::kPlaces)
     output.fail_at("register", "register must be sequence + 2 + 2 * n, n from 0 to " +
                                    std::to_string(RegisterBlock::kPlaces - 1) +
                                    ": a value has two registers of the block that begins at sequence");
   output.kind = "modbus-out";
   output.numbers.erase("sequence"), output.numbers.erase("valid"), output.numbers.erase("scale");
   output.numbers["register"] = static_cast<double>(sequence);
-  output.numbers["place"] = static_cast<double>(after / 2);
+  output.numbers["place"] = static_cast<double>(place);
   output.numbers["resolution"] = scale * kMmPerUm;
 }
 
