@@ -41,4 +41,12 @@ class AxisReader {
   virtual bool gives_motion() const noexcept = 0;
 };
 
+/// A device that gives positions only: the firmware derives the motion.
+class PositionReader : public AxisReader {
+ public:
+  /// Sets feed and curvature to zero: the device does not know them. realtime.
+  HalFault read_path(PathReading& reading) noexcept override { return reading = {}, HalFault::kNone; }
+  bool gives_motion() const noexcept override { return false; }
+};
+
 }  // namespace vernier

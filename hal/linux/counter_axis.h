@@ -15,7 +15,7 @@ inline constexpr const char* kCounterRoot = "/sys/bus/counter/devices";
 /// The position of an axis from an encoder at a counter of the kernel (Documentation/ABI/testing/
 /// sysfs-bus-counter). The position at the count zero is a setting; the board does not know whether the
 /// encoder has found its reference mark. Position only: the firmware derives the motion. One axis: index 0.
-class CounterAxis : public AxisReader {
+class CounterAxis : public PositionReader {
  public:
   /// count: directory of the count, ".../counter0/count0". bits: width of the counter, 2 .. 40; 0: the
   /// attribute `ceiling` decides. Returns null with `error` set if the count cannot be read, or is not
@@ -27,9 +27,6 @@ class CounterAxis : public AxisReader {
   void begin_tick() noexcept override;
   /// kNoReading: the driver gave an error, or a count beyond the range of the counter. realtime.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
-  /// Sets feed and curvature to zero: a counter does not know them. realtime.
-  HalFault read_path(PathReading& reading) noexcept override { return reading = {}, HalFault::kNone; }
-  bool gives_motion() const noexcept override { return false; }
 
  private:
   CounterAxis(SysfsAttribute count, std::int64_t range, const PositionScale& scale)

@@ -122,9 +122,4 @@ HalFault CanAxes::read_axis(std::uint32_t index, AxisReading& reading) noexcept 
   return HalFault::kNone;
 }
 
-HalFault CanAxes::read_path(PathReading& reading) noexcept {
-  reading = {};
-  return HalFault::kNone;
-}
-
 }  // namespace vernier

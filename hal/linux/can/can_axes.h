@@ -26,7 +26,7 @@ struct CanCounts {
 
 /// Axis positions over SocketCAN, one frame per axis and controller cycle (CanAxisFrame). Positions only: the
 /// firmware derives the motion. Axis i is the frame with the i-th identifier.
-class CanAxes : public AxisReader {
+class CanAxes : public PositionReader {
  public:
   static constexpr std::uint32_t kMostFrames = 256;   // taken from the socket in one tick
   static constexpr std::uint32_t kStalledFrames = 3;  // frames with one and the same stamp that are accepted
@@ -46,9 +46,6 @@ class CanAxes : public AxisReader {
   void begin_tick() noexcept override;
   /// kNoReading: no new, valid frame of this axis since the previous tick. realtime.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
-  /// Sets feed and curvature to zero: the frames do not contain them. realtime.
-  HalFault read_path(PathReading& reading) noexcept override;
-  bool gives_motion() const noexcept override { return false; }
 
   const CanCounts& counts() const noexcept { return counts_; }
 

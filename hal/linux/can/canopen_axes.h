@@ -12,7 +12,7 @@ namespace vernier {
 
 /// Positions of CiA 402 drives: position actual value (0x6064) with the statusword in a TPDO. One socket for
 /// all drives of a bus. Positions only: the firmware derives the motion.
-class CanopenAxes : public AxisReader {
+class CanopenAxes : public PositionReader {
  public:
   struct Axis {
     CanopenSettings settings;
@@ -32,9 +32,6 @@ class CanopenAxes : public AxisReader {
   void begin_tick() noexcept override;
   /// kNoReading: no TPDO of the drive since the previous tick. realtime.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
-  /// Sets feed and curvature to zero: the frames do not contain them. realtime.
-  HalFault read_path(PathReading& reading) noexcept override { return reading = {}, HalFault::kNone; }
-  bool gives_motion() const noexcept override { return false; }
   const CanopenCounts& counts(std::uint32_t index) const noexcept { return drives_[index].drive.counts(); }
 
  private:

@@ -36,7 +36,7 @@ struct ModbusAxesSettings {
 /// Positions of axes in the registers of a controller (PLC). A separate thread reads; a tick takes the newest
 /// positions and never waits. Positions whose sequence number is that of the positions before are no reading:
 /// the program of the controller stands still.
-class ModbusAxes : public AxisReader {
+class ModbusAxes : public PositionReader {
  public:
   /// line: used by these axes only. setup.
   ModbusAxes(std::shared_ptr<ModbusLine> line, const ModbusAxesSettings& settings);
@@ -47,9 +47,6 @@ class ModbusAxes : public AxisReader {
   void begin_tick() noexcept override;
   /// kNoReading: no new positions since the previous tick. realtime.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
-  /// Sets feed and curvature to zero: the registers do not contain them. realtime.
-  HalFault read_path(PathReading& reading) noexcept override { return reading = {}, HalFault::kNone; }
-  bool gives_motion() const noexcept override { return false; }
 
   /// What was read, for the end of the daemon. setup.
   std::string account() const;
