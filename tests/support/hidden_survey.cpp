@@ -9,13 +9,13 @@
 #include <regex>
 #include <stdexcept>
 
+#include "tests/support/hidden_survey_alternatives.h"
 #include "tests/support/hidden_survey_columns.h"
 #include "tests/support/hidden_survey_csv.h"
 #include "tests/support/hidden_survey_inputs.h"
 #include "tests/support/hidden_survey_key.h"
 #include "tests/support/hidden_survey_noise.h"
 #include "tests/support/hidden_survey_outside.h"
-#include "tests/support/hidden_survey_rivals.h"
 #include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
@@ -27,7 +27,7 @@ using namespace vernier::text;
 namespace {
 
 constexpr double kLeastRemaining = 0.12;  // below this the effect must be absurdly large to be seen
-constexpr double kTells = 20;             // chi^2 between the truth and its best rival, issue's definition
+constexpr double kTells = 20;  // chi^2 between the truth and its best alternative, issue's definition
 constexpr int kDraws = 80;
 
 /// One attempt at a survey: everything drawn, nothing measured yet.
@@ -334,22 +334,22 @@ void Attempt::judge(HiddenSurvey& survey) {
       if (other != e) beside.extend(columns(forms_[other], true));
     const FormColumns mine(base_machine_, measurement_, beside);
     const Eigen::MatrixXd true_columns = mine(forms_[e], true);
-    RivalCourt court{g_,
-                     columns_,
-                     model_options_.runs,
-                     mine,
-                     beside.project(beside.weighted(difference)),
-                     beside.project(beside.weighted(shift_of(e))),
-                     0,
-                     orthonormal(true_columns).cols() + forms_[e].free_numbers,
-                     forms_[e].inputs,
-                     is_by_speed(forms_[e])};
+    AlternativeTest court{g_,
+                          columns_,
+                          model_options_.runs,
+                          mine,
+                          beside.project(beside.weighted(difference)),
+                          beside.project(beside.weighted(shift_of(e))),
+                          0,
+                          orthonormal(true_columns).cols() + forms_[e].free_numbers,
+                          forms_[e].inputs,
+                          is_by_speed(forms_[e])};
     court.truth_chi_square = chi_square_with(true_columns, court.residual);
-    std::vector<Rival> rivals = find_rivals(court, survey.effects[e].accept, draw_);
-    survey.can_tell = survey.can_tell && (rivals.empty() || rivals.front().excess >= tells);
-    survey.rivals.insert(
-        survey.rivals.end(), rivals.begin(),
-        rivals.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, rivals.size())));
+    std::vector<Alternative> alternatives = find_alternatives(court, survey.effects[e].accept, draw_);
+    survey.can_tell = survey.can_tell && (alternatives.empty() || alternatives.front().excess >= tells);
+    survey.alternatives.insert(
+        survey.alternatives.end(), alternatives.begin(),
+        alternatives.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, alternatives.size())));
   }
 }
 
@@ -372,7 +372,8 @@ std::optional<HiddenSurvey> Attempt::survey() {
   result.parameters = complement_->parameters();
   for (std::size_t e = 0; e < forms_.size(); ++e) result.effects.push_back(key_of(e));
   judge(result);
-  if (spec_.kind == SurveyClass::kConfusable && (result.rivals.empty() || result.rivals.front().excess > 2))
+  if (spec_.kind == SurveyClass::kConfusable &&
+      (result.alternatives.empty() || result.alternatives.front().excess > 2))
     return {};
   return result;
 }

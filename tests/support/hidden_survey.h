@@ -95,9 +95,9 @@ struct HiddenEffect {
   std::vector<std::string> statics;  // of the term, in the truth's machine file
 };
 
-/// A rival of the truth and what it costs to believe in it: chi^2 of the fit with it minus that with the
-/// truth.
-struct Rival {
+/// An alternative of the truth and what it costs to believe in it: chi^2 of the fit with it minus that with
+/// the truth.
+struct Alternative {
   Cause cause;
   std::string term;
   double excess = 0;
@@ -107,8 +107,8 @@ struct HiddenSurvey {
   SurveySpec spec;
   std::string truth, model, csv;  // machine file with and without the effect, measurement file
   std::vector<HiddenEffect> effects;
-  std::vector<Rival> rivals;  // best first, at most five; for kSingle and kConfusable
-  bool can_tell = false;      // the best rival's excess is 20 times the noise law's variance or more
+  std::vector<Alternative> alternatives;  // best first, at most five; for kSingle and kConfusable
+  bool can_tell = false;  // the best alternative's excess is 20 times the noise law's variance or more
   std::size_t observations = 0, parameters = 0;
   double u = 0;                   // rms of what the file states or would state of a reading, mm or deg
   std::vector<std::size_t> wild;  // rows with an outlier of the noise

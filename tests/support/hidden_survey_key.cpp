@@ -49,7 +49,7 @@ std::vector<std::string> effects_of(Family family) {
     if (g.axes.size() < 3 &&
         (demands_of(effect).bare || effect == "angular-error" || effect == "thermal-bend"))
       continue;
-    if (effect == "positioning-error") continue;  // no id of FORMATS: a rival only
+    if (effect == "positioning-error") continue;  // no id of FORMATS: an alternative only
     if (effect == "offset" && !rotary) continue;
     if (effect == "gravity-sag" && g.bends.empty()) continue;
     if (effect == "thermal-scale" &&
@@ -83,7 +83,7 @@ std::string key_of(const HiddenSurvey& survey) {
     if (const std::string why = why_outside(e.cause.effect); !why.empty()) item["why_outside"] = why;
     list.push_back(item);
   }
-  for (const Rival& r : survey.rivals) {
+  for (const Alternative& r : survey.alternatives) {
     nlohmann::json item = to_json(r.cause);
     item.update({{"term", r.term}, {"excess_chi_square", r.excess}});
     others.push_back(item);

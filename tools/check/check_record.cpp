@@ -67,9 +67,9 @@ class Collector {
     return std::move(record_);
   }
 
-  SuspectColumns raw() {
+  QuantityColumns raw() {
     take_all();
-    SuspectColumns result{record_.suspects, record_.parameters, {}, raw_set_up_};
+    QuantityColumns result{record_.quantities, record_.parameters, {}, raw_set_up_};
     result.columns.resize(weight_.size(), static_cast<Index>(raw_.size()));
     for (std::size_t j = 0; j < raw_.size(); ++j) result.columns.col(static_cast<Index>(j)) = raw_[j];
     return result;
@@ -147,14 +147,14 @@ class Collector {
       const bool has_effect = most == largest.end() || jacobian.col(i).norm() > kLeastEffect * most->second;
       columns_.push_back(has_effect ? beside_set_up(jacobian.col(i)) : VectorXd::Zero(weight_.size()));
       raw_.push_back(weight_.cwiseProduct(VectorXd(jacobian.col(i))));
-      record_.suspects.push_back({p.name, p.unit, false});
+      record_.quantities.push_back({p.name, p.unit, false});
     }
     record_.parameters = columns_.size();
     for (const VectorXd& column : columns_)
       if (column.norm() > 0) known_.push_back(column.normalized());
   }
 
-  void offer(Suspect suspect, const VectorXd& raw) {
+  void offer(CheckedQuantity quantity, const VectorXd& raw) {
     const VectorXd column = beside_set_up(raw);
     const double full = weighed(raw).norm();
     if (!(column.norm() > kOwn * full) || full <= 0) return;
@@ -164,7 +164,7 @@ class Collector {
     known_.push_back(unit);
     columns_.push_back(column);
     raw_.push_back(weight_.cwiseProduct(raw));
-    record_.suspects.push_back(std::move(suspect));
+    record_.quantities.push_back(std::move(quantity));
   }
 
   void take_places() {
@@ -234,26 +234,26 @@ void require_fit(const model::Machine& machine) {
 
 }  // namespace
 
-SuspectColumns suspect_columns(const model::Machine& machine, const model::Measurement& measurement) {
+QuantityColumns quantity_columns(const model::Machine& machine, const model::Measurement& measurement) {
   require_fit(machine);
   return Collector(machine, measurement).raw();
 }
 
-MatrixXd spread_of_fit(const model::Machine& machine, const std::vector<Suspect>& suspects,
+MatrixXd spread_of_fit(const model::Machine& machine, const std::vector<CheckedQuantity>& quantities,
                        std::size_t parameters) {
   const model::FitRecord& fitted = *machine.fitted;
   MatrixXd spread = MatrixXd::Zero(static_cast<Index>(parameters), fitted.factor.cols());
   for (std::size_t i = 0; i < parameters; ++i) {
-    const auto found = std::find(fitted.parameters.begin(), fitted.parameters.end(), suspects[i].name);
+    const auto found = std::find(fitted.parameters.begin(), fitted.parameters.end(), quantities[i].name);
     if (found != fitted.parameters.end())
       spread.row(static_cast<Index>(i)) = fitted.factor.row(found - fitted.parameters.begin());
   }
   return spread;
 }
 
-bool is_unmeasured(const model::Machine& machine, const Suspect& suspect) {
+bool is_unmeasured(const model::Machine& machine, const CheckedQuantity& quantity) {
   const model::FitRecord& fitted = *machine.fitted;
-  const auto found = std::find(fitted.parameters.begin(), fitted.parameters.end(), suspect.name);
+  const auto found = std::find(fitted.parameters.begin(), fitted.parameters.end(), quantity.name);
   const auto at = static_cast<std::size_t>(found - fitted.parameters.begin());
   return at < fitted.origins.size() && fitted.origins[at] == fit::origin_name(fit::Origin::kPrior);
 }

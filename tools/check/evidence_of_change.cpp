@@ -63,8 +63,8 @@ class Judge {
         std::vector<std::string> left_out, double false_alarms)
       : checks_(checks), last_(checks.back()), left_out_(std::move(left_out)), false_alarms_(false_alarms) {
     answer_.alarm = 1 / ((1 - kScatterShare) * false_alarms);
-    for (const Suspect& one : last_.suspects) unmeasured_.push_back(is_unmeasured(machine, one));
-    const MatrixXd spread = spread_of_fit(machine, last_.suspects, last_.parameters);
+    for (const CheckedQuantity& one : last_.quantities) unmeasured_.push_back(is_unmeasured(machine, one));
+    const MatrixXd spread = spread_of_fit(machine, last_.quantities, last_.parameters);
     const auto p = static_cast<Index>(last_.parameters);
     from_.resize(checks.size());
     for (std::size_t k = checks.size(); k-- > 0;) {
@@ -101,43 +101,43 @@ class Judge {
     VectorXd moment;
   };
 
-  VectorXd parameters_of(const MatrixXd& gram, Index suspect) const {
-    return gram.col(suspect).head(static_cast<Index>(last_.parameters));
+  VectorXd parameters_of(const MatrixXd& gram, Index quantity) const {
+    return gram.col(quantity).head(static_cast<Index>(last_.parameters));
   }
 
   /// Information on a tested parameter, given parameters that are uncertain by `doubt`.
-  double amount_beside(const MatrixXd& gram, Index suspect, const MatrixXd& doubt) const {
-    const VectorXd with = parameters_of(gram, suspect);
-    return gram(suspect, suspect) - with.dot(doubt * with);
+  double amount_beside(const MatrixXd& gram, Index quantity, const MatrixXd& doubt) const {
+    const VectorXd with = parameters_of(gram, quantity);
+    return gram(quantity, quantity) - with.dot(doubt * with);
   }
 
-  Information information(std::size_t since, Index suspect) const {
+  Information information(std::size_t since, Index quantity) const {
     const MatrixXd& doubt = doubt_after_.back();
-    const VectorXd through = doubt * parameters_of(from_[since].gram, suspect);
-    return {amount_beside(from_[since].gram, suspect, doubt),
-            from_[since].moment[suspect] - through.dot(from_[0].moment.head(through.size()))};
+    const VectorXd through = doubt * parameters_of(from_[since].gram, quantity);
+    return {amount_beside(from_[since].gram, quantity, doubt),
+            from_[since].moment[quantity] - through.dot(from_[0].moment.head(through.size()))};
   }
 
-  bool is_seen(std::size_t since, Index suspect, const Information& one) const {
-    const double full = from_[since].gram(suspect, suspect);
+  bool is_seen(std::size_t since, Index quantity, const Information& one) const {
+    const double full = from_[since].gram(quantity, quantity);
     return full > 0 && one.amount > kSeen * full;
   }
 
   /// The first check from `since` on that could show a change of this parameter; `nullopt`: no check so far.
-  std::optional<std::size_t> first_look(std::size_t since, Index suspect) const {
+  std::optional<std::size_t> first_look(std::size_t since, Index quantity) const {
     for (std::size_t k = since; k < checks_.size(); ++k) {
       const MatrixXd& gram = checks_[k].gram;
-      const double full = gram(suspect, suspect);
-      if (full > 0 && amount_beside(gram, suspect, doubt_after_[k]) > kSeen * full) return k;
+      const double full = gram(quantity, quantity);
+      if (full > 0 && amount_beside(gram, quantity, doubt_after_[k]) > kSeen * full) return k;
     }
     return std::nullopt;
   }
 
   /// A change since a check, of a parameter that this check or an earlier one tested. Weights are fixed
   /// before the readings that they weigh: a parameter that a later check adds changes no weight.
-  std::vector<Index> suspects_at(std::size_t since) const {
+  std::vector<Index> quantities_at(std::size_t since) const {
     std::vector<Index> known;
-    for (Index j = 0; j < static_cast<Index>(last_.suspects.size()); ++j)
+    for (Index j = 0; j < static_cast<Index>(last_.quantities.size()); ++j)
       for (std::size_t k = 0; k <= since; ++k)
         if (checks_[k].gram(j, j) > 0) {
           known.push_back(j);
@@ -148,10 +148,10 @@ class Judge {
 
   void weigh() {
     std::vector<double> all;
-    std::map<Index, std::vector<std::pair<double, std::size_t>>> of_suspect;
+    std::map<Index, std::vector<std::pair<double, std::size_t>>> of_quantity;
     for (std::size_t since = 0; since < checks_.size(); ++since) {
       const auto k = static_cast<double>(since + 1);
-      const std::vector<Index> known = suspects_at(since);
+      const std::vector<Index> known = quantities_at(since);
       // A change at any later check has its share: 1/2, 1/6, 1/12 ...
       const double whole = -std::log(k * (k + 1));
       if (known.empty()) all.push_back(whole);  // no information: a ratio of one
@@ -168,20 +168,20 @@ class Judge {
           sizes.push_back(one.log_ratio(size / std::sqrt(first_amount(*first, j)), scatter_since(since)));
         const double ratio = share + log_sum(sizes) - std::log(static_cast<double>(kSizes.size()));
         all.push_back(text::decisive(
-            ratio, "the evidence for a change of " + last_.suspects[static_cast<std::size_t>(j)].name));
-        of_suspect[j].emplace_back(ratio, since);
+            ratio, "the evidence for a change of " + last_.quantities[static_cast<std::size_t>(j)].name));
+        of_quantity[j].emplace_back(ratio, since);
       }
     }
     // The remaining weight is on changes that are still to come.
     all.push_back(-std::log(static_cast<double>(checks_.size() + 1)));
     const double total = log_sum(all);
     answer_.evidence = text::decisive(std::exp(std::min(total, 700.0)), "the evidence for a change");
-    for (const auto& [j, ratios] : of_suspect) {
+    for (const auto& [j, ratios] : of_quantity) {
       std::vector<double> logs;
       for (const auto& one : ratios) logs.push_back(one.first);
       const std::size_t since = std::max_element(ratios.begin(), ratios.end())->second;
       const Information one = information(since, j);
-      ranked_.push_back({last_.suspects[static_cast<std::size_t>(j)], one.score / one.amount,
+      ranked_.push_back({last_.quantities[static_cast<std::size_t>(j)], one.score / one.amount,
                          std::sqrt(scatter_since(since) / one.amount), std::exp(log_sum(logs) - total),
                          since});
     }
@@ -189,18 +189,18 @@ class Judge {
               [](const Change& a, const Change& b) { return a.weight > b.weight; });
     for (Index j = 0; j < static_cast<Index>(last_.parameters); ++j) {
       const Information one = information(checks_.size() - 1, j);
-      const Suspect& suspect = last_.suspects[static_cast<std::size_t>(j)];
+      const CheckedQuantity& quantity = last_.quantities[static_cast<std::size_t>(j)];
       if (unmeasured_[static_cast<std::size_t>(j)] || !is_seen(checks_.size() - 1, j, one))
-        answer_.not_seen.push_back(suspect.name);
+        answer_.not_seen.push_back(quantity.name);
       else
-        answer_.resolved.push_back({suspect, 0, 1 / std::sqrt(one.amount), 0, checks_.size() - 1});
+        answer_.resolved.push_back({quantity, 0, 1 / std::sqrt(one.amount), 0, checks_.size() - 1});
     }
   }
 
   /// Information of the first check alone that could show a change since then. It is known before the
   /// readings of the check, as required for the size of the change that is searched.
-  double first_amount(std::size_t first, Index suspect) const {
-    return amount_beside(checks_[first].gram, suspect, doubt_after_[first]);
+  double first_amount(std::size_t first, Index quantity) const {
+    return amount_beside(checks_[first].gram, quantity, doubt_after_[first]);
   }
 
   /// chi^2 of one check that remains beside the uncertainty of the fit and the change of any one tested
@@ -251,7 +251,7 @@ class Judge {
     double beyond = 0;
     for (const CheckRecord& check : checks_) beyond += check.beyond_set_up;
     const bool any_of_machine = std::any_of(ranked_.begin(), ranked_.end(),
-                                            [](const Change& one) { return !one.suspect.of_instrument; });
+                                            [](const Change& one) { return !one.quantity.of_instrument; });
     const auto k = static_cast<double>(checks_.size());
     constexpr double kFewest = 3;  // readings
     text::Assurance& word = answer_.assurance;
@@ -266,7 +266,7 @@ class Judge {
                                    fmt::join(answer_.not_seen, ", ")));
     for (const Change& one : answer_.resolved)
       word.not_covered(fmt::format("A change of {} by less than about {:.2g} {} (five standard deviations).",
-                                   one.suspect.name, kShown * one.std, one.suspect.unit));
+                                   one.quantity.name, kShown * one.std, one.quantity.unit));
     for (const std::string& label : left_out_)
       word.not_covered(fmt::format("Check \"{}\": its readings scatter more than stated.", label));
   }
@@ -284,7 +284,7 @@ class Judge {
     const bool beside_all = rest_p_ < scatter_limit(false_alarms_, static_cast<double>(checks_.size()));
     // A change that is evident beside the larger noise is reported.
     if (beside_all || (scatters && !alarm) ||
-        (alarm && !ranked_.empty() && ranked_.front().suspect.of_instrument))
+        (alarm && !ranked_.empty() && ranked_.front().quantity.of_instrument))
       return report_instrument(scatters && (beside_all || !alarm), beside_all);
     if (fails("readings") || fails("sensitivity")) {
       answer_.verdict = CheckVerdict::kTooLittle;
@@ -317,8 +317,8 @@ class Judge {
     answer_.verdict = CheckVerdict::kInstrument;
     if (!scatters) {
       answer_.explanation =
-          fmt::format("{} by {:.3g} {} +- {:.2g}.", ranked_.front().suspect.name, ranked_.front().change,
-                      ranked_.front().suspect.unit, ranked_.front().std);
+          fmt::format("{} by {:.3g} {} +- {:.2g}.", ranked_.front().quantity.name, ranked_.front().change,
+                      ranked_.front().quantity.unit, ranked_.front().std);
       return;
     }
     answer_.explanation =
@@ -336,10 +336,10 @@ class Judge {
     constexpr double kNearly = 0.05;  // of the likeliest one's weight
     for (std::size_t i = 1; i < ranked_.size(); ++i)
       if (ranked_[i].weight > kNearly * best.weight)
-        answer_.not_told_apart.push_back(ranked_[i].suspect.name);
+        answer_.not_told_apart.push_back(ranked_[i].quantity.name);
     answer_.explanation =
-        fmt::format("{} has changed by {:.4g} +- {:.2g} {} since check {} ({}).", best.suspect.name,
-                    best.change, best.std, best.suspect.unit, best.since + 1, checks_[best.since].label);
+        fmt::format("{} has changed by {:.4g} +- {:.2g} {} since check {} ({}).", best.quantity.name,
+                    best.change, best.std, best.quantity.unit, best.since + 1, checks_[best.since].label);
     constexpr double kLoud = 1.5;  // times the stated uncertainty
     if (const double loud = std::sqrt(scatter_since(best.since)); loud > kLoud)
       answer_.explanation += fmt::format(
@@ -374,18 +374,18 @@ namespace {
 /// Checks with the tested parameters of all of them, in one order. A check has no information on a parameter
 /// that it did not test.
 std::vector<CheckRecord> aligned(const std::vector<CheckRecord>& checks) {
-  std::vector<Suspect> all = checks.back().suspects;
+  std::vector<CheckedQuantity> all = checks.back().quantities;
   for (const CheckRecord& check : checks)
-    for (const Suspect& one : check.suspects)
+    for (const CheckedQuantity& one : check.quantities)
       if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
   std::vector<CheckRecord> result;
   for (const CheckRecord& check : checks) {
     CheckRecord wide = check;
-    wide.suspects = all;
+    wide.quantities = all;
     wide.gram = MatrixXd::Zero(static_cast<Index>(all.size()), static_cast<Index>(all.size()));
     wide.moment = VectorXd::Zero(static_cast<Index>(all.size()));
     std::vector<Index> at;
-    for (const Suspect& one : check.suspects)
+    for (const CheckedQuantity& one : check.quantities)
       at.push_back(std::find(all.begin(), all.end(), one) - all.begin());
     wide.gram(at, at) = check.gram;
     wide.moment(at) = check.moment;

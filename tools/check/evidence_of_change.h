@@ -13,7 +13,7 @@ enum class CheckVerdict : std::uint8_t { kValid, kChanged, kInstrument, kTooLitt
 const char* verdict_name(CheckVerdict verdict);
 
 struct Change {
-  Suspect suspect;
+  CheckedQuantity quantity;
   double change = 0, std = 0;  // in the parameter's unit
   double weight = 0;           // of the evidence, 0..1
   std::size_t since = 0;       // index of the first check that shows it

@@ -53,14 +53,14 @@ std::string history_text(const CheckHistory& history) {
   Json json = {{"format", "vernier-checks"}, {"version", kVersion}, {"machine", history.machine}};
   json["checks"] = Json::array();
   for (const CheckRecord& check : history.checks) {
-    Json suspects = Json::array();
-    for (const Suspect& one : check.suspects)
-      suspects.push_back({{"name", one.name}, {"unit", one.unit}, {"of_instrument", one.of_instrument}});
+    Json quantities = Json::array();
+    for (const CheckedQuantity& one : check.quantities)
+      quantities.push_back({{"name", one.name}, {"unit", one.unit}, {"of_instrument", one.of_instrument}});
     json["checks"].push_back({{"label", check.label},
                               {"readings", check.readings},
                               {"beyond_set_up", check.beyond_set_up},
                               {"parameters", check.parameters},
-                              {"suspects", suspects},
+                              {"suspects", quantities},
                               {"gram", numbers(check.gram)},
                               {"moment", numbers(check.moment)},
                               {"rest", check.rest},
@@ -85,17 +85,17 @@ CheckHistory parse_history(const std::string& text, const std::string& file) {
       check.readings = one.at("readings").get<std::size_t>();
       check.beyond_set_up = one.at("beyond_set_up").get<double>();
       check.parameters = one.at("parameters").get<std::size_t>();
-      for (const Json& suspect : one.at("suspects"))
-        check.suspects.push_back({suspect.at("name").get<std::string>(),
-                                  suspect.at("unit").get<std::string>(),
-                                  suspect.at("of_instrument").get<bool>()});
-      const auto count = static_cast<Index>(check.suspects.size());
+      for (const Json& quantity : one.at("suspects"))
+        check.quantities.push_back({quantity.at("name").get<std::string>(),
+                                    quantity.at("unit").get<std::string>(),
+                                    quantity.at("of_instrument").get<bool>()});
+      const auto count = static_cast<Index>(check.quantities.size());
       check.gram = matrix_of(one.at("gram"), count, count);
       check.moment = matrix_of(one.at("moment"), count, 1);
       check.rest = one.at("rest").get<double>();
       check.square = one.value("square", 0.0);  // older histories have none
       check.freedom = one.at("freedom").get<double>();
-      if (check.parameters > check.suspects.size())
+      if (check.parameters > check.quantities.size())
         throw std::invalid_argument("more parameters than tested parameters");
       history.checks.push_back(std::move(check));
     }

@@ -613,24 +613,25 @@ std::vector<std::size_t> Alternatives::within(double distance) const {
 Alternatives Finder::alternatives_to(std::size_t item) const {
   Alternatives found;
   const std::vector<std::size_t> others = without(item);
-  for (const std::size_t rival : entry_item_) {
-    if (rival == item || std::find(others.begin(), others.end(), rival) != others.end()) continue;
+  for (const std::size_t alternative : entry_item_) {
+    if (alternative == item || std::find(others.begin(), others.end(), alternative) != others.end()) continue;
     std::vector<std::size_t> set = others;
-    set.push_back(rival);
+    set.push_back(alternative);
     const double distance = evaluate(set).criterion - criterion_;
     if (distance < thresholds_.distance_of_fits) {
       // A form that contains this one and additional terms needs evidence of its own. It is not an
       // alternative.
-      if (pool_.contains(rival, item)) continue;
-      const effects::Choice &mine = pool_.candidate(item).choice, &other = pool_.candidate(rival).choice;
+      if (pool_.contains(alternative, item)) continue;
+      const effects::Choice &mine = pool_.candidate(item).choice,
+                            &other = pool_.candidate(alternative).choice;
       const bool alike =
-          (mine.effect == other.effect && mine.inputs == other.inputs) || pool_.same_kind(rival, item);
-      if (alike && pool_.same_columns(item, rival)) {
-        found.same.push_back(rival);
+          (mine.effect == other.effect && mine.inputs == other.inputs) || pool_.same_kind(alternative, item);
+      if (alike && pool_.same_columns(item, alternative)) {
+        found.same.push_back(alternative);
         continue;
       }
     }
-    if (!pool_.same_cause(item, rival)) found.other.push_back({rival, distance});
+    if (!pool_.same_cause(item, alternative)) found.other.push_back({alternative, distance});
   }
   std::sort(found.other.begin(), found.other.end(),
             [](const Alternative& a, const Alternative& b) { return a.distance < b.distance; });

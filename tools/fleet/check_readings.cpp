@@ -26,13 +26,13 @@ registry::FleetCheck parse_check(const std::string& json, const std::string& fil
 std::vector<registry::FleetReading> readings_of(const check::CheckRecord& record, const std::string& machine,
                                                 std::int64_t at_us) {
   std::vector<registry::FleetReading> readings;
-  for (std::size_t i = 0; i < record.suspects.size(); ++i) {
+  for (std::size_t i = 0; i < record.quantities.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const double amount = record.gram(at, at);
-    if (record.suspects[i].of_instrument || !(amount > 0)) continue;
+    if (record.quantities[i].of_instrument || !(amount > 0)) continue;
     const double value = record.moment[at] / amount, std = 1 / std::sqrt(amount);
     if (!std::isfinite(value) || !std::isfinite(std)) continue;
-    readings.push_back({machine, record.suspects[i].name, record.suspects[i].unit, at_us, value, std});
+    readings.push_back({machine, record.quantities[i].name, record.quantities[i].unit, at_us, value, std});
   }
   return readings;
 }

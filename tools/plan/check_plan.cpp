@@ -41,14 +41,14 @@ class CheckPlanner {
       : machine_(machine), options_(options), offered_(offered_poses(machine, kCheckOffered, 0)) {
     model::Measurement rows = fit::point_readings(offered_);
     rows.uncertainty.setConstant(1e-3 * options.reading_um);
-    all_ = check::suspect_columns(machine, rows);
-    spread_ = check::spread_of_fit(machine, all_.suspects, all_.parameters);
+    all_ = check::quantity_columns(machine, rows);
+    spread_ = check::spread_of_fit(machine, all_.quantities, all_.parameters);
     // Columns are in units of the readings' uncertainty. Here they are converted back to um of the
     // tool point.
     const double per_pose = options.reading_um / std::sqrt(static_cast<double>(kCheckOffered));
     moves_um_ = per_pose * all_.columns.colwise().norm();
-    for (std::size_t j = 0; j < all_.suspects.size(); ++j) {
-      if (all_.suspects[j].of_instrument) continue;
+    for (std::size_t j = 0; j < all_.quantities.size(); ++j) {
+      if (all_.quantities[j].of_instrument) continue;
       const auto at = static_cast<Index>(j);
       (moves_um_[at] > kRounding_um ? looked_ : at_rest_).push_back(at);
     }
@@ -62,15 +62,15 @@ class CheckPlanner {
     const Told told = told_by(chosen);
     const VectorXd amounts = amounts_of(told);
     for (const Index j : looked_) {
-      const check::Suspect& suspect = all_.suspects[static_cast<std::size_t>(j)];
+      const check::CheckedQuantity& quantity = all_.quantities[static_cast<std::size_t>(j)];
       if (!seen(told, amounts, j)) {
-        plan.not_seen.push_back(suspect.name);
+        plan.not_seen.push_back(quantity.name);
         continue;
       }
       const double change = kShown / std::sqrt(amounts[j]);
-      plan.shows.push_back({suspect, change, change * moves_um_[j]});
+      plan.shows.push_back({quantity, change, change * moves_um_[j]});
     }
-    for (const Index j : at_rest_) plan.not_seen.push_back(all_.suspects[static_cast<std::size_t>(j)].name);
+    for (const Index j : at_rest_) plan.not_seen.push_back(all_.quantities[static_cast<std::size_t>(j)].name);
     std::stable_sort(plan.shows.begin(), plan.shows.end(),
                      [](const Shown& a, const Shown& b) { return a.tool_um > b.tool_um; });
     plan.random_um = random_um(chosen.size());
@@ -175,7 +175,7 @@ class CheckPlanner {
   const model::Machine& machine_;
   const CheckPlanOptions& options_;
   model::States offered_;
-  check::SuspectColumns all_;
+  check::QuantityColumns all_;
   MatrixXd spread_;
   VectorXd moves_um_;           // of the tool point by a change of 1, rms over the poses
   std::vector<Index> looked_;   // tested parameters of the machine
@@ -193,8 +193,8 @@ std::string check_plan_text(const CheckPlan& plan, double reading_um) {
       fmt::format("{} poses of {:g} um show from which change on:\n", plan.states.count, reading_um);
   const std::size_t named = std::min(plan.shows.size(), kNamed);
   for (std::size_t i = 0; i < named; ++i)
-    text += fmt::format("  {:<36} {:>10.3g} {:<4} ({:.3g} um at the tool)\n", plan.shows[i].suspect.name,
-                        plan.shows[i].change, plan.shows[i].suspect.unit, plan.shows[i].tool_um);
+    text += fmt::format("  {:<36} {:>10.3g} {:<4} ({:.3g} um at the tool)\n", plan.shows[i].quantity.name,
+                        plan.shows[i].change, plan.shows[i].quantity.unit, plan.shows[i].tool_um);
   if (plan.shows.size() > named)
     text += fmt::format("  and {} others, from {:.3g} um at the tool on\n", plan.shows.size() - named,
                         plan.shows.back().tool_um);

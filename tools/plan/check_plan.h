@@ -17,7 +17,7 @@ struct CheckPlanOptions {
 
 /// The smallest change that a check shows.
 struct Shown {
-  check::Suspect suspect;
+  check::CheckedQuantity quantity;
   double change = 0;   // in its unit
   double tool_um = 0;  // motion of the tool point by it, rms over the work volume
 };

@@ -5,7 +5,7 @@
 
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
-#include "tools/plan/rival.h"
+#include "tools/plan/hypothesis.h"
 
 namespace vernier::plan {
 

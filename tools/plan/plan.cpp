@@ -10,9 +10,9 @@
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/model/chain/prediction.h"
 #include "tools/model/rebind.h"
-#include "tools/plan/bystanders.h"
 #include "tools/plan/choice.h"
 #include "tools/plan/offers.h"
+#include "tools/plan/other_hypotheses.h"
 #include "tools/plan/sentence.h"
 
 namespace vernier::plan {
@@ -28,7 +28,7 @@ constexpr std::size_t kMostExisting = 1500;
 /// Time for a part to take on a new temperature before it is measured again, s.
 constexpr double kSoakS = 3600;
 
-/// Sides of the two named effects, before those of the bystanders.
+/// Sides of the two named effects, before those of the other hypotheses.
 constexpr std::size_t kPair = 2;
 
 /// First observation of each row, and one past the last.
@@ -45,19 +45,19 @@ class Planner {
           const std::string& a, const std::string& b, const std::vector<effects::Effect>& effects,
           const PlanOptions& options)
       : options_(options), model_(fit_model(text, machine, measurement)) {
-    plan_.a = fit_rival(model_, measurement, a, effects);
-    plan_.b = fit_rival(model_, measurement, b, effects);
+    plan_.a = fit_hypothesis(model_, measurement, a, effects);
+    plan_.b = fit_hypothesis(model_, measurement, b, effects);
     plan_.machine = model_.machine;
     free_shift_of_plan(plan_.a.machine);
     free_shift_of_plan(plan_.b.machine);
-    drivers_ = drivers_of(std::vector<const FittedRival*>{&plan_.a, &plan_.b});
+    drivers_ = drivers_of(std::vector<const FittedHypothesis*>{&plan_.a, &plan_.b});
     plan_.rows = model::select_rows(measurement, {});
     existing_ = rows_to_build_on(measurement, drivers_, kMostExisting);
     spread_ = spread();
-    bystanders_ =
-        find_bystanders(model_, measurement, {&plan_.a, &plan_.b}, effects, options.most_bystanders);
-    for (FittedRival& other : bystanders_) free_shift_of_plan(other.machine);
-    keep_complete_bystanders();
+    other_hypotheses_ = find_other_hypotheses(model_, measurement, {&plan_.a, &plan_.b}, effects,
+                                              options.most_other_hypotheses);
+    for (FittedHypothesis& other : other_hypotheses_) free_shift_of_plan(other.machine);
+    keep_complete_others();
   }
 
   Plan plan() {
@@ -72,7 +72,8 @@ class Planner {
     plan_.told_already = sides.reached(kPair) >= 1 || std::abs(plan_.lead_of_a) > plan_.worse().needed;
     if (!plan_.told_already || options_.points) choose(offers);
     if (plan_.rows.rows() > 0 && plan_.separable)
-      for (const FittedRival& other : bystanders_) plan_.ruled_out.push_back(other.candidate.spoken);
+      for (const FittedHypothesis& other : other_hypotheses_)
+        plan_.ruled_out.push_back(other.candidate.spoken);
     plan_.sentence = Explanation(plan_, existing_).sentence();
     return std::move(plan_);
   }
@@ -91,23 +92,23 @@ class Planner {
     machine.base_shifts.push_back(shift);
   }
 
-  model::Measurement bound_to(const model::Measurement& rows, const FittedRival& rival) const {
-    return model::rebind(rows, model_.machine, rival.machine);
+  model::Measurement bound_to(const model::Measurement& rows, const FittedHypothesis& hypothesis) const {
+    return model::rebind(rows, model_.machine, hypothesis.machine);
   }
 
-  double weighted_square(const FittedRival& rival) const {
-    const model::Measurement bound = bound_to(existing_, rival);
-    return fit::residuals(rival.machine, bound).cwiseProduct(fit::fit_weights(bound)).squaredNorm();
+  double weighted_square(const FittedHypothesis& hypothesis) const {
+    const model::Measurement bound = bound_to(existing_, hypothesis);
+    return fit::residuals(hypothesis.machine, bound).cwiseProduct(fit::fit_weights(bound)).squaredNorm();
   }
 
   /// Divisor of the weight 1/u: the standard deviation of the residual of the better effect, not below 1 if u
   /// is given.
   double spread() const {
     double least = 1e300;
-    for (const FittedRival* rival : {&plan_.a, &plan_.b}) {
+    for (const FittedHypothesis* hypothesis : {&plan_.a, &plan_.b}) {
       const double freedom = std::max<double>(1, static_cast<double>(existing_.observations.size()) -
-                                                     static_cast<double>(parameters_of(*rival).size()));
-      least = std::min(least, std::sqrt(weighted_square(*rival) / freedom));
+                                                     static_cast<double>(parameters_of(*hypothesis).size()));
+      least = std::min(least, std::sqrt(weighted_square(*hypothesis) / freedom));
     }
     if (fit::has_uncertainty(existing_)) return std::max(1.0, least);
     return std::max(least, 1e-9);  // exact readings: a picometre
@@ -116,57 +117,57 @@ class Planner {
   /// By how much B explains the rows so far worse than A: chi^2 and the price of the unknowns (BIC).
   double lead_of_a() const {
     const double price = std::log(static_cast<double>(existing_.observations.size()));
-    const auto cost = [&](const FittedRival& rival) {
-      return weighted_square(rival) / (spread_ * spread_) +
-             price * static_cast<double>(rival.candidate.unknowns.size());
+    const auto cost = [&](const FittedHypothesis& hypothesis) {
+      return weighted_square(hypothesis) / (spread_ * spread_) +
+             price * static_cast<double>(hypothesis.candidate.unknowns.size());
     };
     return cost(plan_.b) - cost(plan_.a);
   }
 
-  model::ParameterSet parameters_of(const FittedRival& rival) const {
+  model::ParameterSet parameters_of(const FittedHypothesis& hypothesis) const {
     std::vector<std::string> setups = existing_.states.names(existing_.states.setup);
     setups.emplace_back(kPlanRun);
-    return {rival.machine, setups};
+    return {hypothesis.machine, setups};
   }
 
-  /// A bystander with an input that the rows lack here and there is left aside.
-  void keep_complete_bystanders() {
-    std::erase_if(bystanders_, [&](const FittedRival& other) {
+  /// Another hypothesis with an input that the rows lack here and there is left aside.
+  void keep_complete_others() {
+    std::erase_if(other_hypotheses_, [&](const FittedHypothesis& other) {
       return bound_to(existing_, other).rows() != existing_.rows();
     });
   }
 
   /// The predicted readings of an effect and their derivatives with respect to its free parameters, weighted.
   struct Linear {
-    const FittedRival* rival;
+    const FittedHypothesis* hypothesis;
     Eigen::VectorXd predicted;
     Eigen::MatrixXd jacobian;
   };
-  Linear linear(const model::Measurement& rows, const FittedRival& rival) const {
-    const model::Measurement bound = bound_to(rows, rival);
-    const model::Linearisation all = model::linearise(rival.machine, bound, parameters_of(rival));
+  Linear linear(const model::Measurement& rows, const FittedHypothesis& hypothesis) const {
+    const model::Measurement bound = bound_to(rows, hypothesis);
+    const model::Linearisation all = model::linearise(hypothesis.machine, bound, parameters_of(hypothesis));
     const Eigen::VectorXd weights = fit::fit_weights(bound) / spread_;
-    return {&rival, weights.cwiseProduct(all.predicted),
+    return {&hypothesis, weights.cwiseProduct(all.predicted),
             weights.asDiagonal() * Eigen::MatrixXd(all.jacobian)};
   }
 
   /// Rows [0, existing) count, the others are offers. A true and B refitted, B true and A refitted, then each
-  /// of them true and a bystander refitted.
+  /// of them true and another hypothesis refitted.
   Sides sides_of(const model::Measurement& rows, std::size_t existing) const {
     const std::vector<Eigen::Index> first = first_observations(rows);
     Sides sides;
-    const auto add = [&](const Linear& truth, const Linear& rival) {
-      sides.side.emplace_back(rival.jacobian, truth.predicted - rival.predicted, first, existing);
+    const auto add = [&](const Linear& truth, const Linear& hypothesis) {
+      sides.side.emplace_back(hypothesis.jacobian, truth.predicted - hypothesis.predicted, first, existing);
       // A truth with more unknowns pays for them in a diagnosis.
-      const double more = static_cast<double>(truth.rival->candidate.unknowns.size()) -
-                          static_cast<double>(rival.rival->candidate.unknowns.size());
+      const double more = static_cast<double>(truth.hypothesis->candidate.unknowns.size()) -
+                          static_cast<double>(hypothesis.hypothesis->candidate.unknowns.size());
       const double price = std::log(static_cast<double>(first[existing_.rows()]));
       sides.needed.push_back(needed_non_centrality(options_.confidence, kLead + std::max(0.0, more) * price));
     };
     const Linear a = linear(rows, plan_.a), b = linear(rows, plan_.b);
     add(a, b);
     add(b, a);
-    for (const FittedRival& other : bystanders_) {
+    for (const FittedHypothesis& other : other_hypotheses_) {
       const Linear c = linear(rows, other);
       add(a, c);
       add(b, c);
@@ -181,34 +182,34 @@ class Planner {
 
   void choose(const Offers& offers) {
     const std::size_t most = options_.points.value_or(std::max(kLeastPoints, options_.most_points));
-    const std::vector<FittedRival> others = std::move(bystanders_);
-    bystanders_.clear();
+    const std::vector<FittedHypothesis> others = std::move(other_hypotheses_);
+    other_hypotheses_.clear();
     choose_at_most(offers, most);
     if (!plan_.separable || others.empty()) return;
-    bystanders_ = others;
+    other_hypotheses_ = others;
     // An alternative that no moderate number of rows excludes must not use up the rows that can distinguish
     // the others.
     const std::size_t moderate =
         options_.points.value_or(std::min(most, std::max(kModerate, 3 * plan_.rows.rows())));
     choose_at_most(offers, moderate);
-    while (drop_unreached()) choose_at_most(offers, bystanders_.empty() ? most : moderate);
+    while (drop_unreached()) choose_at_most(offers, other_hypotheses_.empty() ? most : moderate);
   }
 
-  /// Removes the bystanders that the plan does not exclude. False: no such bystander.
+  /// Removes the other hypotheses that the plan does not exclude. False: none of them.
   bool drop_unreached() {
     const Sides real = sides_of(append_rows(existing_, plan_.rows), existing_.rows() + plan_.rows.rows());
-    std::vector<FittedRival> kept;
-    for (std::size_t i = 0; i < bystanders_.size(); ++i) {
+    std::vector<FittedHypothesis> kept;
+    for (std::size_t i = 0; i < other_hypotheses_.size(); ++i) {
       bool reached = true;
       for (const std::size_t side : {kPair + 2 * i, kPair + 2 * i + 1})
         reached = reached && real.side[side].non_centrality() >= real.needed[side];
       if (reached)
-        kept.push_back(bystanders_[i]);
+        kept.push_back(other_hypotheses_[i]);
       else
-        plan_.not_ruled_out.push_back(bystanders_[i].candidate.spoken);
+        plan_.not_ruled_out.push_back(other_hypotheses_[i].candidate.spoken);
     }
-    const bool any = kept.size() < bystanders_.size();
-    bystanders_ = std::move(kept);
+    const bool any = kept.size() < other_hypotheses_.size();
+    other_hypotheses_ = std::move(kept);
     return any;
   }
 
@@ -274,7 +275,7 @@ class Planner {
   Plan plan_;
   Drivers drivers_;
   model::Measurement existing_;
-  std::vector<FittedRival> bystanders_;
+  std::vector<FittedHypothesis> other_hypotheses_;
   double spread_ = 1;
 };
 

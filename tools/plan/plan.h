@@ -11,7 +11,7 @@
 namespace vernier::plan {
 
 /// Finds the rows to measure next that distinguish two named effects. `a`, `b`: ids or add strings (see
-/// fit_rival). The effects must outlive the plan. Throws InputError.
+/// fit_hypothesis). The effects must outlive the plan. Throws InputError.
 Plan plan_next(const std::string& text, const model::Machine& machine, const model::Measurement& measurement,
                const std::string& a, const std::string& b, const std::vector<effects::Effect>& effects,
                const PlanOptions& options = {});

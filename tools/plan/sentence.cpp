@@ -168,11 +168,11 @@ std::vector<Explanation::Contrast> Explanation::contrasts() const {
   return list;
 }
 
-double Explanation::ratio(const FittedRival& rival, const Contrast& contrast) const {
-  const model::Machine bare = without_effect(rival);
+double Explanation::ratio(const FittedHypothesis& hypothesis, const Contrast& contrast) const {
+  const model::Machine bare = without_effect(hypothesis);
   const auto shift = [&](const model::Measurement& rows) -> Eigen::VectorXd {
-    const model::Measurement bound = model::rebind(rows, plan_.machine, rival.machine);
-    return model::predict(rival.machine, bound) - model::predict(bare, bound);
+    const model::Measurement bound = model::rebind(rows, plan_.machine, hypothesis.machine);
+    return model::predict(hypothesis.machine, bound) - model::predict(bare, bound);
   };
   const Eigen::VectorXd now = shift(contrast.planned), was = shift(contrast.as_was);
   if (now.norm() == 0 && was.norm() == 0) return 1;

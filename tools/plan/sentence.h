@@ -35,7 +35,7 @@ class Explanation {
   Contrast level(const std::string& name, const std::string& unit, const model::Column& planned,
                  const model::Column& old, const std::function<void(model::Measurement&, double)>& set) const;
   Answer answer(const Contrast& contrast) const;
-  double ratio(const FittedRival& rival, const Contrast& contrast) const;
+  double ratio(const FittedHypothesis& hypothesis, const Contrast& contrast) const;
 
   const Plan& plan_;
   const model::Measurement& existing_;

@@ -32,7 +32,7 @@ bool any_nonzero(const model::Column& column) { return (column != 0).any(); }
 class Sheet {
  public:
   explicit Sheet(const Plan& plan) : rows_(plan.rows) {
-    drivers_ = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
+    drivers_ = drivers_of(std::vector<const FittedHypothesis*>{&plan.a, &plan.b});
     const std::vector<model::Axis>& axes = plan.machine.axes;
     for (std::size_t a = 0; a < axes.size(); ++a)
       add(format::axis_heading(format::AxisQuantity::kPosition, axes[a].name, axes[a].rotary),
@@ -233,7 +233,7 @@ std::string plan_csv(const Plan& plan) {
 
 std::string plan_gcode(const Plan& plan) {
   std::string text = "; " + plan.sentence + "\n; check clearances before running\nG21 G90 G94\n";
-  const Drivers drivers = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
+  const Drivers drivers = drivers_of(std::vector<const FittedHypothesis*>{&plan.a, &plan.b});
   const bool timed = drivers.kinds.contains(model::SymbolKind::kTime);
   MoveWriter writer(plan.machine, plan.rows.states, text);
   const bool tethered =

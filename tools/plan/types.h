@@ -11,17 +11,17 @@
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
-#include "tools/plan/rival.h"
+#include "tools/plan/hypothesis.h"
 #include "tools/tolerance/placed_part.h"
 
 namespace vernier::plan {
 
 struct PlanOptions {
-  double confidence = 0.95;           // that the chi^2 difference names the right one
-  std::optional<std::size_t> points;  // exact number; nullopt: as few as the confidence needs
-  std::size_t most_points = 60;       // more are no plan
-  std::size_t most_bystanders = 4;    // other effects that a diagnosis would weigh beside the two
-  std::size_t offers = 1000;          // rows to choose from
+  double confidence = 0.95;               // that the chi^2 difference names the right one
+  std::optional<std::size_t> points;      // exact number; nullopt: as few as the confidence needs
+  std::size_t most_points = 60;           // more are no plan
+  std::size_t most_other_hypotheses = 4;  // other effects that a diagnosis would weigh beside the two
+  std::size_t offers = 1000;              // rows to choose from
 };
 
 /// Separation in one direction: the chi^2 of the best refit of the alternative while `truth` is true, in
@@ -32,7 +32,7 @@ struct Separation {
 
 /// The next measurement.
 struct Plan {
-  FittedRival a, b;
+  FittedHypothesis a, b;
   model::Machine machine;   // that `rows` is bound to
   model::Measurement rows;  // planned rows in time order, readings 0; empty: no row helps
   Separation a_true, b_true;

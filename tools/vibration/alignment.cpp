@@ -96,18 +96,19 @@ std::vector<Lagged> correlations(const std::vector<double>& a, const std::vector
   return all;
 }
 
-/// Returns the best lag. `rival` gets the best of the other maxima.
-Lagged best_lag(const std::vector<Lagged>& all, double& rival) {
+/// Returns the best lag. `second_best` gets the best of the other maxima.
+Lagged best_lag(const std::vector<Lagged>& all, double& second_best) {
   if (all.empty()) throw text::InputError("the records have nothing in common: one of them does not move");
   const auto best = std::max_element(
       all.begin(), all.end(), [](const Lagged& a, const Lagged& b) { return a.correlation < b.correlation; });
-  rival = 0;
+  second_best = 0;
   const auto is_top = [&](std::size_t i) {
     return i > 0 && i + 1 < all.size() && all[i].correlation >= all[i - 1].correlation &&
            all[i].correlation > all[i + 1].correlation;
   };
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (is_top(i) && std::labs(all[i].lag - best->lag) > 2) rival = std::max(rival, all[i].correlation);
+    if (is_top(i) && std::labs(all[i].lag - best->lag) > 2)
+      second_best = std::max(second_best, all[i].correlation);
   return *best;
 }
 
@@ -208,7 +209,7 @@ ClockFit align_clocks(const Series& reference, const Series& other) {
   const double step = std::max(std::min(median_step(reference), median_step(other)), longest / kMostSteps);
   ClockFit fit;
   const std::vector<Lagged> lags = correlations(resampled(reference, step), resampled(other, step));
-  const Lagged best = best_lag(lags, fit.rival);
+  const Lagged best = best_lag(lags, fit.second_best);
   fit.offset_s = reference.t_s.front() + static_cast<double>(best.lag) * step - other.t_s.front();
   const double from = std::max(reference.t_s.front(), other.t_s.front() + fit.offset_s);
   const double to = std::min(reference.t_s.back(), other.t_s.back() + fit.offset_s);

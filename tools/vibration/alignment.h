@@ -15,7 +15,7 @@ struct ClockFit {
   double offset_s = 0, rate = 1;
   double offset_std_s = 0, rate_std = 0;  // offset at the middle of the overlap; from the residual
   double correlation = 0;  // of the two series in their overlap, after the alignment of the clocks
-  double rival =
+  double second_best =
       0;  // next best correlation at another lag: if it is close to the first, the result is ambiguous
 };
 

@@ -42,7 +42,7 @@ std::string brief(const json& answer) {
 }
 
 /// The first candidates that name the first one as what they are confounded with.
-std::vector<json> rivals_of_first(const json& candidates) {
+std::vector<json> hypotheses_of_first(const json& candidates) {
   std::vector<json> group;
   if (candidates.empty()) return group;
   group.push_back(candidates[0]);
@@ -108,7 +108,7 @@ Outcome judge_one(const HiddenSurvey& survey, const json& answer) {
     return Outcome::kCustom;
   if (verdict == "missing-effect") return first_right ? Outcome::kRight : Outcome::kWrong;
   if (verdict == "ambiguous") {
-    const std::vector<json> group = rivals_of_first(candidates);
+    const std::vector<json> group = hypotheses_of_first(candidates);
     const bool among =
         std::any_of(group.begin(), group.end(), [&](const json& c) { return is_one_of(c, survey.effects); });
     return among ? Outcome::kAmbiguous : Outcome::kAmbiguousMiss;

@@ -8,7 +8,7 @@ namespace vernier::bench {
 
 /// Who knows the law of the noise, and that one effect of the catalogue is hidden or none: of all candidates
 /// of a diagnosis the one of the greatest likelihood under the true covariance, each with the same price for
-/// its unknowns and for having been one of many. No test, no rival, no instrument.
+/// its unknowns and for having been one of many. No test, no hypothesis, no instrument.
 struct OracleAnswer {
   bool named = false;  // it takes more away than it costs
   bool right = false;  // ... and is the hidden one, or one column with it

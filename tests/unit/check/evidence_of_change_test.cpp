@@ -195,7 +195,7 @@ TEST(Checks, AChangeIsNamedWithItsSize) {
     history.push_back(check(machine, rows(8, crash, random, kNoise_mm)));
     const CheckAnswer answer = judge(machine, history, kFalseAlarms);
     if (answer.verdict != CheckVerdict::kChanged) continue;
-    if (answer.changed.front().suspect.name != "sxy") continue;
+    if (answer.changed.front().quantity.name != "sxy") continue;
     ++named;
     EXPECT_NEAR(answer.changed.front().change, 40e-6, 5 * answer.changed.front().std);
     EXPECT_EQ(answer.changed.front().since, 3U);
@@ -365,11 +365,11 @@ TEST(Checks, LoudReadingsOfAMachineOfManyParametersNameNoChange) {
     quiet_alarms += check_of_tables(fit_machine, 1, nothing, random).verdict != CheckVerdict::kValid ? 1 : 0;
     const CheckAnswer moved = check_of_tables(fit_machine, 1, crash, random);
     for (const Change& one : moved.changed) {
-      right += one.suspect.name == "sxy" ? 1 : 0;
-      EXPECT_LT(std::abs(one.change), one.suspect.unit == "deg" ? 1 : 0.2) << one.suspect.name;
+      right += one.quantity.name == "sxy" ? 1 : 0;
+      EXPECT_LT(std::abs(one.change), one.quantity.unit == "deg" ? 1 : 0.2) << one.quantity.name;
     }
     for (const Change& one : moved.resolved)
-      EXPECT_LT(one.std, one.suspect.unit == "deg" ? 10 : 1) << one.suspect.name;
+      EXPECT_LT(one.std, one.quantity.unit == "deg" ? 10 : 1) << one.quantity.name;
   }
   std::printf("loud: %d changed, %d instrument; quiet: %d alarms; sxy named in %d of %d\n", changed,
               instrument, quiet_alarms, right, kChecks);

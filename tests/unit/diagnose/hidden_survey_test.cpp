@@ -55,7 +55,7 @@ SurveySpec spec_of(SurveyClass kind, Family family, std::uint64_t seed, const st
   return spec;
 }
 
-/// The first of 40 seeds, in their order, whose data can tell the effect from its best rival.
+/// The first of 40 seeds, in their order, whose data can tell the effect from its best alternative.
 HiddenSurvey telling_survey(Family family, const std::string& effect, std::uint64_t seed) {
   for (std::uint64_t k = 0; k < 40; ++k) {
     HiddenSurvey survey = make_survey(spec_of(SurveyClass::kSingle, family, seed + k, effect));

@@ -61,7 +61,7 @@ TEST(CheckPlan, ShowsTheChangesThatItSays) {
     const CheckPlan plan = check_plan(machine, options());
     ASSERT_EQ(plan.states.count, 8U);
     for (const Shown& one : plan.shows) {
-      const auto index = machine.find_static(one.suspect.name);
+      const auto index = machine.find_static(one.quantity.name);
       if (!index) continue;
       Machine changed = model();
       // Five standard deviations show in half of the cases, a third more in nearly all.
@@ -69,7 +69,7 @@ TEST(CheckPlan, ShowsTheChangesThatItSays) {
       const CheckAnswer answer =
           judge(machine, {record_of(machine, measured(changed, plan.states, random), "now")}, 0.01);
       told += answer.verdict == CheckVerdict::kChanged ? 1 : 0;
-      named += !answer.changed.empty() && answer.changed.front().suspect.name == one.suspect.name ? 1 : 0;
+      named += !answer.changed.empty() && answer.changed.front().quantity.name == one.quantity.name ? 1 : 0;
       ++asked;
     }
   }
@@ -108,7 +108,7 @@ TEST(CheckPlan, SummarisesWhatNoPoseIdentifies) {
   const Machine machine = fit::fit(start, measured(start, offered_poses(start, 60, 5000), random)).machine;
   const CheckPlan plan = check_plan(machine, options());
   EXPECT_THAT(plan.not_seen, testing::IsSupersetOf({"z0", "th"}));
-  for (const Shown& one : plan.shows) EXPECT_LT(one.tool_um, 1000) << one.suspect.name;
+  for (const Shown& one : plan.shows) EXPECT_LT(one.tool_um, 1000) << one.quantity.name;
   const std::string text = check_plan_text(plan, 2);
   EXPECT_THAT(text, testing::HasSubstr("not identifiable (no motion of the tool point"));
   EXPECT_THAT(text, testing::HasSubstr("z0"));

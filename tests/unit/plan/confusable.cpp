@@ -154,7 +154,7 @@ Measurement survey(const Confusable& pair, int truth, const Machine& machine, st
 }
 
 Measurement random_rows(const Plan& plan, const Measurement& existing, std::uint64_t seed) {
-  const Drivers drivers = drivers_of(std::vector<const FittedRival*>{&plan.a, &plan.b});
+  const Drivers drivers = drivers_of(std::vector<const FittedHypothesis*>{&plan.a, &plan.b});
   constexpr std::size_t kOffers = 1000;
   const Offers offers = offer_rows(plan.machine, existing, drivers, kOffers);
   std::mt19937_64 engine(seed);

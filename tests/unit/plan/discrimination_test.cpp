@@ -48,7 +48,7 @@ double left_over(const Problem& p, std::size_t existing, const std::vector<std::
   return (d - j * maths::least_squares(j, d)).squaredNorm();
 }
 
-TEST(Discrimination, NonCentralityIsWhatARefitOfTheRivalLeaves) {
+TEST(Discrimination, NonCentralityIsWhatARefitOfTheHypothesisLeaves) {
   const Problem p = random_problem(40, kSeed);
   Discrimination one(p.jacobian, p.difference, p.first, 20);
   // The ridge of 1e-10 of a column's length is all that parts the two.

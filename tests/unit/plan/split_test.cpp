@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tools/plan/rival.h"
+#include "tools/plan/hypothesis.h"
 #include "tools/text/error.h"
 
 namespace vernier::split_test {
@@ -14,20 +14,20 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(SplitRivals, CutsOnlyWhereAnEffectBegins) {
+TEST(SplitHypotheses, CutsOnlyWhereAnEffectBegins) {
   const std::vector<Effect>& all = built_in_effects();
-  EXPECT_THAT(split_rivals({"backlash,servo-lag"}, all), ElementsAre("backlash", "servo-lag"));
-  EXPECT_THAT(split_rivals({"backlash:axis=X,dof=X,servo-lag:axis=X,form=plain"}, all),
+  EXPECT_THAT(split_hypotheses({"backlash,servo-lag"}, all), ElementsAre("backlash", "servo-lag"));
+  EXPECT_THAT(split_hypotheses({"backlash:axis=X,dof=X,servo-lag:axis=X,form=plain"}, all),
               ElementsAre("backlash:axis=X,dof=X", "servo-lag:axis=X,form=plain"));
-  EXPECT_THAT(split_rivals({"backlash:axis=X,dof=X", "servo-lag"}, all),
+  EXPECT_THAT(split_hypotheses({"backlash:axis=X,dof=X", "servo-lag"}, all),
               ElementsAre("backlash:axis=X,dof=X", "servo-lag"));
 }
 
-TEST(SplitRivals, WantsTwo) {
+TEST(SplitHypotheses, WantsTwo) {
   const std::vector<Effect>& all = built_in_effects();
-  EXPECT_THROW(split_rivals({"backlash"}, all), InputError);
-  EXPECT_THROW(split_rivals({"backlash,servo-lag,creep"}, all), InputError);
-  EXPECT_THROW(split_rivals({"backlash,no-such-effect"}, all), InputError);
+  EXPECT_THROW(split_hypotheses({"backlash"}, all), InputError);
+  EXPECT_THROW(split_hypotheses({"backlash,servo-lag,creep"}, all), InputError);
+  EXPECT_THROW(split_hypotheses({"backlash,no-such-effect"}, all), InputError);
 }
 
 }  // namespace

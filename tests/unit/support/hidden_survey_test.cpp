@@ -186,8 +186,8 @@ TEST(HiddenSurvey, MovesAsFastAsItSays) {
 TEST(HiddenSurvey, CannotTellWhatIsConfusableByDesign) {
   for (const Family family : {Family::kBridge, Family::kGantry, Family::kFiveAxis}) {
     const HiddenSurvey survey = make_survey(spec_of(family, "", SurveyClass::kConfusable));
-    ASSERT_FALSE(survey.rivals.empty());
-    EXPECT_LE(survey.rivals[0].excess, 2);
+    ASSERT_FALSE(survey.alternatives.empty());
+    EXPECT_LE(survey.alternatives[0].excess, 2);
     EXPECT_FALSE(survey.can_tell);
   }
 }
@@ -195,17 +195,17 @@ TEST(HiddenSurvey, CannotTellWhatIsConfusableByDesign) {
 TEST(HiddenSurvey, CannotTellTheDelayOfATriggerFromAConstantAtOneFeed) {
   SurveySpec spec = spec_of(Family::kBridge, "trigger-delay");
   spec.feeds = 3;
-  EXPECT_GT(make_survey(spec).rivals.at(0).excess, 1);
+  EXPECT_GT(make_survey(spec).alternatives.at(0).excess, 1);
   spec.feeds = 1;
   const HiddenSurvey survey = make_survey(spec);
   EXPECT_FALSE(survey.can_tell);
-  EXPECT_NEAR(survey.rivals.at(0).excess, 0, 1e-6);
-  EXPECT_TRUE(survey.rivals[0].cause.effect == "tool-radius" ||
-              survey.rivals[0].cause.effect == "probe-pretravel")
-      << survey.rivals[0].cause.effect;
+  EXPECT_NEAR(survey.alternatives.at(0).excess, 0, 1e-6);
+  EXPECT_TRUE(survey.alternatives[0].cause.effect == "tool-radius" ||
+              survey.alternatives[0].cause.effect == "probe-pretravel")
+      << survey.alternatives[0].cause.effect;
 }
 
-// A rival's excess is claimed from linear columns: the fits themselves must agree.
+// An alternative's excess is claimed from linear columns: the fits themselves must agree.
 TEST(HiddenSurvey, TellsByChiSquareWhatFitsTell) {
   const HiddenSurvey survey = make_survey(spec_of(Family::kFiveAxis, "backlash"));
   ASSERT_TRUE(survey.can_tell);

@@ -49,7 +49,7 @@ TEST(AlignClocks, FindsOffsetAndRateFarBelowASample) {
     EXPECT_LT(std::fabs(error_s), 3e-4);  // 3 % of a sample
     EXPECT_LT(std::fabs(fit.rate - rate), 5 * fit.rate_std);
     EXPECT_GT(fit.correlation, 0.99);
-    EXPECT_LT(fit.rival, 0.9);
+    EXPECT_LT(fit.second_best, 0.9);
   }
 }
 
@@ -60,7 +60,7 @@ TEST(AlignClocks, SaysWhereAnotherLagIsAsGood) {
     if (i >= 500 && i < 2500)
       other.t_s.push_back(i * 0.01), other.value.push_back(std::sin(2 * kPi * i * 0.01));
   }
-  EXPECT_GT(align_clocks(reference, other).rival, 0.98);
+  EXPECT_GT(align_clocks(reference, other).second_best, 0.98);
 }
 
 TEST(AlignClocks, RefusesRecordsOfDifferentMotions) {

@@ -25,8 +25,8 @@ struct CheckArguments {
 };
 
 Json change_json(const check::Change& one) {
-  return {{"name", one.suspect.name}, {"change", one.change}, {"std", one.std},
-          {"unit", one.suspect.unit}, {"weight", one.weight}, {"since", one.since + 1}};
+  return {{"name", one.quantity.name}, {"change", one.change}, {"std", one.std},
+          {"unit", one.quantity.unit}, {"weight", one.weight}, {"since", one.since + 1}};
 }
 
 Json answer_json(const check::CheckAnswer& answer, const check::CheckHistory& history) {
@@ -44,7 +44,7 @@ Json answer_json(const check::CheckAnswer& answer, const check::CheckHistory& hi
   json["not_seen"] = answer.not_seen;
   json["resolved"] = Json::array();
   for (const check::Change& one : answer.resolved)
-    json["resolved"].push_back({{"name", one.suspect.name}, {"std", one.std}, {"unit", one.suspect.unit}});
+    json["resolved"].push_back({{"name", one.quantity.name}, {"std", one.std}, {"unit", one.quantity.unit}});
   return json;
 }
 
@@ -55,7 +55,7 @@ std::string put_right(const CheckArguments& arguments, model::Machine machine, c
   const model::ParameterSet parameters(machine, rows.states.names(rows.states.setup));
   Eigen::VectorXd values = parameters.get(machine);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].name != answer.changed.front().suspect.name) continue;
+    if (parameters[i].name != answer.changed.front().quantity.name) continue;
     values[static_cast<Eigen::Index>(i)] += answer.changed.front().change;
     parameters.set(machine, values);
     return model::update_machine_text(text::read_file(arguments.machine), machine, false);
@@ -63,7 +63,7 @@ std::string put_right(const CheckArguments& arguments, model::Machine machine, c
   throw text::LimitNotMet(fmt::format(
       "verdict {}, but no machine file is written: {} is no free parameter of {}; diagnose a longer "
       "measurement, and fit",
-      check::verdict_name(answer.verdict), answer.changed.front().suspect.name, machine.file));
+      check::verdict_name(answer.verdict), answer.changed.front().quantity.name, machine.file));
 }
 
 void run_check(const CheckArguments& arguments) {

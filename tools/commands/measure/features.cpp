@@ -244,7 +244,7 @@ void run_features(const FeaturesArguments& arguments) {
       ends = ends_by_time(record, rows, clock);
       json["clock"] = {{"offset_s", clock.offset_s},         {"rate", clock.rate},
                        {"offset_std_s", clock.offset_std_s}, {"rate_std", clock.rate_std},
-                       {"correlation", clock.correlation},   {"rival", clock.rival}};
+                       {"correlation", clock.correlation},   {"rival", clock.second_best}};
     } else {
       ends = ends_by_position(arguments, record, rows, json);
     }

@@ -40,7 +40,8 @@ Json row_json(const plan::Plan& plan, std::size_t row) {
   json["inputs"] = Json::object();
   for (std::size_t i = 0; i < plan.machine.inputs.size(); ++i)
     json["inputs"][plan.machine.inputs[i].name] = s.input[i][at];
-  const plan::Drivers drivers = plan::drivers_of(std::vector<const plan::FittedRival*>{&plan.a, &plan.b});
+  const plan::Drivers drivers =
+      plan::drivers_of(std::vector<const plan::FittedHypothesis*>{&plan.a, &plan.b});
   for (const model::CandidateInput& candidate : plan.rows.candidates)
     if (drivers.inputs.contains(candidate.name)) json["inputs"][candidate.name] = candidate.value[at];
   return json;
@@ -84,9 +85,9 @@ void run_check_plan(const PlanArguments& arguments) {
   Json json = {{"machine", machine.name},   {"points", plan.states.count},      {"shows", Json::array()},
                {"not_seen", plan.not_seen}, {"tool_random_um", plan.random_um}, {"rows", Json::array()}};
   for (const plan::Shown& one : plan.shows)
-    json["shows"].push_back({{"name", one.suspect.name},
+    json["shows"].push_back({{"name", one.quantity.name},
                              {"change", one.change},
-                             {"unit", one.suspect.unit},
+                             {"unit", one.quantity.unit},
                              {"tool_um", one.tool_um}});
   for (std::size_t row = 0; row < plan.states.count; ++row)
     json["rows"].push_back(pose_json(machine, plan.states, row));
@@ -95,7 +96,7 @@ void run_check_plan(const PlanArguments& arguments) {
     throw text::LimitNotMet(
         fmt::format("{} poses show {} only where it moves the tool by {:.3g} um: more --points, or readings "
                     "surer than {:g} um",
-                    plan.states.count, plan.shows.empty() ? "nothing" : plan.shows.front().suspect.name,
+                    plan.states.count, plan.shows.empty() ? "nothing" : plan.shows.front().quantity.name,
                     worst, options.reading_um));
   if (!arguments.output.empty())
     text::write_file(arguments.output, plan::check_plan_csv(machine, plan, options.reading_um));
@@ -162,20 +163,21 @@ void run_plan(const PlanArguments& arguments) {
   const model::Measurement m = model::read_measurement(arguments.measurements, machine,
                                                        simulate::corrections_of_images(arguments.images));
   const std::vector<effects::Effect> effects = effects::effect_catalogue(arguments.effects);
-  const std::vector<std::string> rivals = plan::split_rivals(arguments.separate, effects);
+  const std::vector<std::string> hypotheses = plan::split_hypotheses(arguments.separate, effects);
   plan::PlanOptions options;
   options.confidence = arguments.confidence;
   if (arguments.points > 0) options.points = arguments.points;
-  const plan::Plan plan = plan::plan_next(text, machine, m, rivals[0], rivals[1], effects, options);
+  const plan::Plan plan = plan::plan_next(text, machine, m, hypotheses[0], hypotheses[1], effects, options);
   if (!arguments.output.empty()) text::write_file(arguments.output, plan::plan_csv(plan));
   if (!arguments.gcode.empty()) text::write_file(arguments.gcode, plan::plan_gcode(plan));
   write_json(arguments.json, plan_json(plan, arguments.confidence));
   std::FILE* out = human_stream(arguments.json);
   fmt::print(out, "{}\n\n", plan.sentence);
-  for (const auto& [rival, side] : {std::pair(&plan.a, &plan.a_true), std::pair(&plan.b, &plan.b_true)})
-    fmt::print(
-        out, "if {} is the true effect: non-centrality now {:.3g}, with the plan {:.3g}, required {:.3g}\n",
-        rival->candidate.label, side->now, plan.rows.rows() > 0 ? side->planned : side->now, side->needed);
+  for (const auto& [hypothesis, side] : {std::pair(&plan.a, &plan.a_true), std::pair(&plan.b, &plan.b_true)})
+    fmt::print(out,
+               "if {} is the true effect: non-centrality now {:.3g}, with the plan {:.3g}, required {:.3g}\n",
+               hypothesis->candidate.label, side->now, plan.rows.rows() > 0 ? side->planned : side->now,
+               side->needed);
   for (const std::string& other : plan.ruled_out) fmt::print(out, "rules out as well: {}\n", other);
   for (const std::string& other : plan.not_ruled_out) fmt::print(out, "does not rule out: {}\n", other);
   if (plan.rows.rows() > 0) fmt::print(out, "\n{}", plan::plan_table(plan));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/plan/rival.h"
+#include "tools/plan/hypothesis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,35 +94,35 @@ effects::MachineText fit_model(const std::string& text, const model::Machine& ma
   return effects::fitted_text(text, fit::fit(effects::with_base_row(machine), measurement));
 }
 
-FittedRival fit_rival(const effects::MachineText& model, const model::Measurement& measurement,
-                      const std::string& name, const std::vector<effects::Effect>& effects) {
-  return fit_rival(model, diagnose::Evidence(model.machine, measurement), measurement, name, effects);
+FittedHypothesis fit_hypothesis(const effects::MachineText& model, const model::Measurement& measurement,
+                                const std::string& name, const std::vector<effects::Effect>& effects) {
+  return fit_hypothesis(model, diagnose::Evidence(model.machine, measurement), measurement, name, effects);
 }
 
-FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidence& evidence,
-                      const model::Measurement& measurement, const std::string& name,
-                      const std::vector<effects::Effect>& effects) {
+FittedHypothesis fit_hypothesis(const effects::MachineText& model, const diagnose::Evidence& evidence,
+                                const model::Measurement& measurement, const std::string& name,
+                                const std::vector<effects::Effect>& effects) {
   const effects::Effect* effect = effect_named(effects, id_of(name));
   if (effect == nullptr)
     throw text::InputError("\"" + id_of(name) + "\": unknown effect (`vernier effects` lists them)");
-  FittedRival rival;
-  rival.add = name.find(':') == std::string::npos ? best_of_effect(evidence, *effect) : name;
+  FittedHypothesis hypothesis;
+  hypothesis.add = name.find(':') == std::string::npos ? best_of_effect(evidence, *effect) : name;
   const model::Machine& base = model.machine;
   effects::EffectToFit one;
-  one.choice = effects::parse_add_string(rival.add, base, effects);
+  one.choice = effects::parse_add_string(hypothesis.add, base, effects);
   one.coefficients = linear_estimate(evidence, effects::make_candidate(base, one.choice));
   // The result of the scan is fixed: data that cannot distinguish two effects do not determine a period
   // either.
   one.hold_scanned = true;
   effects::FittedEffects fitted = effects::fit_with_effects(model, measurement, {one});
-  rival.candidate = std::move(fitted.effects[0]);
-  rival.machine = std::move(fitted.fit.machine);
-  effects::hold_scanned(rival.machine, rival.candidate, false);
-  return rival;
+  hypothesis.candidate = std::move(fitted.effects[0]);
+  hypothesis.machine = std::move(fitted.fit.machine);
+  effects::hold_scanned(hypothesis.machine, hypothesis.candidate, false);
+  return hypothesis;
 }
 
-std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
-                                      const std::vector<effects::Effect>& effects) {
+std::vector<std::string> split_hypotheses(const std::vector<std::string>& arguments,
+                                          const std::vector<effects::Effect>& effects) {
   std::vector<std::string> parts;
   for (const std::string& argument : arguments) {
     std::size_t from = 0;
@@ -140,21 +140,21 @@ std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
   return parts;
 }
 
-Drivers drivers_of(const std::vector<const FittedRival*>& rivals) {
+Drivers drivers_of(const std::vector<const FittedHypothesis*>& hypotheses) {
   Drivers drivers;
-  for (const FittedRival* rival : rivals)
-    for (const auto& [kind, index] : diagnose::drivers_of(rival->machine, rival->candidate)) {
+  for (const FittedHypothesis* hypothesis : hypotheses)
+    for (const auto& [kind, index] : diagnose::drivers_of(hypothesis->machine, hypothesis->candidate)) {
       if (kind < 0) continue;  // a run by its label: new rows have a label of their own
       drivers.kinds.insert(static_cast<model::SymbolKind>(kind));
       if (static_cast<model::SymbolKind>(kind) == model::SymbolKind::kInput)
-        drivers.inputs.insert(rival->machine.inputs[index].name);
+        drivers.inputs.insert(hypothesis->machine.inputs[index].name);
     }
   return drivers;
 }
 
-model::Machine without_effect(const FittedRival& rival) {
-  model::Machine machine = rival.machine;
-  for (const effects::CandidateUnknown& unknown : effects::linear_unknowns(rival.candidate))
+model::Machine without_effect(const FittedHypothesis& hypothesis) {
+  model::Machine machine = hypothesis.machine;
+  for (const effects::CandidateUnknown& unknown : effects::linear_unknowns(hypothesis.candidate))
     machine.statics[*machine.find_static(unknown.name)].value = 0;
   return machine;
 }

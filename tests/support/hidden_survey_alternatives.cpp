@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/support/hidden_survey_rivals.h"
+#include "tests/support/hidden_survey_alternatives.h"
 #include "tests/support/hidden_survey_inputs.h"
 
 #include <algorithm>
@@ -10,23 +10,23 @@ namespace vernier::support {
 using namespace vernier::text;
 namespace {
 
-/// Share of the truth's column that the rival's columns cannot follow.
+/// Share of the truth's column that the alternative's columns cannot follow.
 double missed(const Eigen::MatrixXd& basis, const Eigen::VectorXd& truth) {
   if (truth.size() == 0 || truth.squaredNorm() == 0) return 1;
   return 1 - (basis.transpose() * truth).squaredNorm() / truth.squaredNorm();
 }
 
 /// Temperatures and loads have a zero of their own (their reference); what a voltage is at zero nobody knows.
-bool has_zero(const RivalCourt& court, const Form& form) {
+bool has_zero(const AlternativeTest& court, const Form& form) {
   return std::none_of(court.columns.begin(), court.columns.end(), [&](const LoggedColumn& c) {
     return c.unit == std::string("V") &&
            std::find(form.inputs.begin(), form.inputs.end(), c.name) != form.inputs.end();
   });
 }
 
-/// `with_reference`: an input's reference is one more unknown of the rival.
-void judge(const RivalCourt& court, const Form& form, bool with_reference, std::vector<Cause>& accept,
-           std::vector<Rival>& rivals) {
+/// `with_reference`: an input's reference is one more unknown of the alternative.
+void judge(const AlternativeTest& court, const Form& form, bool with_reference, std::vector<Cause>& accept,
+           std::vector<Alternative>& alternatives) {
   if (is_accepted(accept, form.cause)) return;
   const Eigen::MatrixXd basis = orthonormal(court.form_columns(form, with_reference));
   if (basis.cols() == 0) return;
@@ -40,13 +40,13 @@ void judge(const RivalCourt& court, const Form& form, bool with_reference, std::
     return accept.push_back(form.cause);
   const double excess = court.residual.squaredNorm() - (basis.transpose() * court.residual).squaredNorm() -
                         court.truth_chi_square;
-  const auto same =
-      std::find_if(rivals.begin(), rivals.end(), [&](const Rival& r) { return r.cause == form.cause; });
-  const Rival rival{form.cause, form.places.front().text, excess};
-  if (same == rivals.end())
-    rivals.push_back(rival);
+  const auto same = std::find_if(alternatives.begin(), alternatives.end(),
+                                 [&](const Alternative& r) { return r.cause == form.cause; });
+  const Alternative alternative{form.cause, form.places.front().text, excess};
+  if (same == alternatives.end())
+    alternatives.push_back(alternative);
   else if (excess < same->excess)
-    *same = rival;
+    *same = alternative;
 }
 
 }  // namespace
@@ -68,8 +68,9 @@ bool is_accepted(const std::vector<Cause>& accept, const Cause& cause) {
   });
 }
 
-std::vector<Rival> find_rivals(const RivalCourt& court, std::vector<Cause>& accept, Draw& draw) {
-  std::vector<Rival> rivals;
+std::vector<Alternative> find_alternatives(const AlternativeTest& court, std::vector<Cause>& accept,
+                                           Draw& draw) {
+  std::vector<Alternative> alternatives;
   for (const EffectScan& scan : effect_scans())
     for (int step = 0; step < scan.steps; ++step) {
       // Half as wide again on both sides: a search may wander out of what is plausible.
@@ -77,12 +78,13 @@ std::vector<Rival> find_rivals(const RivalCourt& court, std::vector<Cause>& acce
       for (const Form& form : forms_of(scan.effect, court.geometry, court.columns, court.runs, share, draw))
         for (const bool with_reference : {true, false})
           if (with_reference || (!form.reference_factor.empty() && has_zero(court, form)))
-            judge(court, form, with_reference, accept, rivals);
+            judge(court, form, with_reference, accept, alternatives);
     }
-  // A twin that was found late may have been a rival under another of its forms.
-  std::erase_if(rivals, [&](const Rival& r) { return is_accepted(accept, r.cause); });
-  std::sort(rivals.begin(), rivals.end(), [](const Rival& a, const Rival& b) { return a.excess < b.excess; });
-  return rivals;
+  // A twin that was found late may have been an alternative under another of its forms.
+  std::erase_if(alternatives, [&](const Alternative& r) { return is_accepted(accept, r.cause); });
+  std::sort(alternatives.begin(), alternatives.end(),
+            [](const Alternative& a, const Alternative& b) { return a.excess < b.excess; });
+  return alternatives;
 }
 
 }  // namespace vernier::support

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/plan/bystanders.h"
+#include "tools/plan/other_hypotheses.h"
 #include "tools/effects/add_string.h"
 
 #include <algorithm>
@@ -19,10 +19,11 @@ Cause cause_of(const effects::Candidate& candidate) {
 
 }  // namespace
 
-std::vector<FittedRival> find_bystanders(const effects::MachineText& model,
-                                         const model::Measurement& measurement,
-                                         const std::vector<const FittedRival*>& named,
-                                         const std::vector<effects::Effect>& effects, std::size_t most) {
+std::vector<FittedHypothesis> find_other_hypotheses(const effects::MachineText& model,
+                                                    const model::Measurement& measurement,
+                                                    const std::vector<const FittedHypothesis*>& named,
+                                                    const std::vector<effects::Effect>& effects,
+                                                    std::size_t most) {
   const diagnose::Evidence evidence(model.machine, measurement);
   const std::vector<diagnose::ScannedCandidate> list = diagnose::enumerate_candidates(evidence, effects);
   diagnose::Scanner scanner(evidence, list);
@@ -32,15 +33,15 @@ std::vector<FittedRival> find_bystanders(const effects::MachineText& model,
     return value_of(x, evidence) > value_of(y, evidence);
   });
   std::set<Cause> seen;
-  for (const FittedRival* rival : named) seen.insert(cause_of(rival->candidate));
-  std::vector<FittedRival> found;
+  for (const FittedHypothesis* hypothesis : named) seen.insert(cause_of(hypothesis->candidate));
+  std::vector<FittedHypothesis> found;
   for (const diagnose::Scored& item : scored) {
     if (found.size() >= most || value_of(item, evidence) < value_of(scored.front(), evidence) - kNear) break;
     const effects::Candidate& candidate = list[item.candidate].candidate;
     if (!seen.insert(cause_of(candidate)).second) continue;
     diagnose::Scored refined = item;
     scanner.refine(refined, none);
-    found.push_back(fit_rival(
+    found.push_back(fit_hypothesis(
         model, evidence, measurement,
         effects::add_string(evidence.machine(), effects::choice_at(candidate, refined.scanned)), effects));
   }

@@ -8,8 +8,8 @@
 
 namespace vernier::support {
 
-/// What rivals are judged on.
-struct RivalCourt {
+/// What alternatives are judged on.
+struct AlternativeTest {
   const Geometry& geometry;
   const std::vector<LoggedColumn>& columns;
   const std::vector<std::string>& runs;
@@ -31,8 +31,9 @@ double chi_square_with(const Eigen::MatrixXd& columns, const Eigen::VectorXd& re
 /// Every other form of every effect against the truth, best first, one per cause. A form whose columns hold
 /// the truth's, without more coefficients, with the same inputs and both driven by speed or neither, is
 /// the same effect under another name: added to `accept`. One with more coefficients only says the same more
-/// loosely and is no rival.
-std::vector<Rival> find_rivals(const RivalCourt& court, std::vector<Cause>& accept, Draw& draw);
+/// loosely and is no alternative.
+std::vector<Alternative> find_alternatives(const AlternativeTest& court, std::vector<Cause>& accept,
+                                           Draw& draw);
 
 /// Is the cause one of these? Empty axis and input of `accept` match any.
 bool is_accepted(const std::vector<Cause>& accept, const Cause& cause);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tools/model/measurement.h"
-#include "tools/plan/rival.h"
+#include "tools/plan/hypothesis.h"
 
 namespace vernier::plan {
 
@@ -12,9 +12,10 @@ namespace vernier::plan {
 /// compares these causes: rows that separate two named effects should separate these causes too. The result
 /// has one cause per effect, driving axis and input, best first, at most `most`. The named effects are not
 /// included.
-std::vector<FittedRival> find_bystanders(const effects::MachineText& model,
-                                         const model::Measurement& measurement,
-                                         const std::vector<const FittedRival*>& named,
-                                         const std::vector<effects::Effect>& effects, std::size_t most);
+std::vector<FittedHypothesis> find_other_hypotheses(const effects::MachineText& model,
+                                                    const model::Measurement& measurement,
+                                                    const std::vector<const FittedHypothesis*>& named,
+                                                    const std::vector<effects::Effect>& effects,
+                                                    std::size_t most);
 
 }  // namespace vernier::plan

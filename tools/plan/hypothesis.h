@@ -18,7 +18,7 @@ effects::MachineText fit_model(const std::string& text, const model::Machine& ma
                                const model::Measurement& measurement);
 
 /// An effect that was added to a fitted machine and fitted to the same rows.
-struct FittedRival {
+struct FittedHypothesis {
   effects::Candidate candidate;
   std::string add;
   model::Machine machine;  // with the effect, at its best fit; all unknowns of the effect are free
@@ -27,30 +27,30 @@ struct FittedRival {
 /// `name`: an effect id (the candidate of that effect which fits the rows best) or a complete `add` string.
 /// The effects must outlive the result. Throws InputError: unknown effect, no candidate of the effect in
 /// these rows.
-FittedRival fit_rival(const effects::MachineText& model, const model::Measurement& measurement,
-                      const std::string& name, const std::vector<effects::Effect>& effects);
+FittedHypothesis fit_hypothesis(const effects::MachineText& model, const model::Measurement& measurement,
+                                const std::string& name, const std::vector<effects::Effect>& effects);
 
 /// Fits an alternative with given evidence of the model and the rows.
-FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidence& evidence,
-                      const model::Measurement& measurement, const std::string& name,
-                      const std::vector<effects::Effect>& effects);
+FittedHypothesis fit_hypothesis(const effects::MachineText& model, const diagnose::Evidence& evidence,
+                                const model::Measurement& measurement, const std::string& name,
+                                const std::vector<effects::Effect>& effects);
 
 /// Fall of chi^2 in units of the noise less the price of the unknowns (BIC).
 double value_of(const diagnose::Scored& scored, const diagnose::Evidence& evidence);
 
 /// Splits the text of `--separate` at commas. A comma separates only if the text after it begins with the id
 /// of an effect. Throws InputError if the number of parts is not two.
-std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
-                                      const std::vector<effects::Effect>& effects);
+std::vector<std::string> split_hypotheses(const std::vector<std::string>& arguments,
+                                          const std::vector<effects::Effect>& effects);
 
 /// Variables of the alternatives besides positions and constants.
 struct Drivers {
   std::set<model::SymbolKind> kinds;
   std::set<std::string> inputs;
 };
-Drivers drivers_of(const std::vector<const FittedRival*>& rivals);
+Drivers drivers_of(const std::vector<const FittedHypothesis*>& hypotheses);
 
 /// Returns the machine of the alternative without its effect: the coefficients of the effect are 0.
-model::Machine without_effect(const FittedRival& rival);
+model::Machine without_effect(const FittedHypothesis& hypothesis);
 
 }  // namespace vernier::plan
