@@ -175,6 +175,7 @@ class Diagnoser {
     std::vector<LadderStep> ladder;          // begins with the model as given
     std::string machine_text;
     fit::FitResult end;
+    std::vector<effects::Candidate> effects;  // of `end`, in the order of `accepted`
   };
 
   LadderStep first_step() const {
@@ -190,7 +191,7 @@ class Diagnoser {
 
   /// Fits the items one after another. Excludes those that the fits or the check rows do not confirm.
   Steps fit_steps(const std::vector<std::size_t>& proposed) const {
-    Steps steps{proposed, {}, {}, {first_step()}, {}, base_};
+    Steps steps{proposed, {}, {}, {first_step()}, {}, base_, {}};
     steps.machine_text = steps.ladder.front().text;
     for (std::size_t count = 1; count <= steps.accepted.size();) {
       options_.progress(0.8 + 0.1 * static_cast<double>(count) / static_cast<double>(proposed.size()),
@@ -217,6 +218,7 @@ class Diagnoser {
       steps.ladder.push_back(step_of(item, fitted, confirmation->value));
       steps.machine_text = fitted.text;
       steps.end = fitted.fit;
+      steps.effects = fitted.effects;
       ++count;
     }
     return steps;
@@ -246,6 +248,7 @@ class Diagnoser {
     result_.ladder = std::move(steps.ladder);
     result_.machine_text = std::move(steps.machine_text);
     result_.end = std::move(steps.end);
+    effects_ = std::move(steps.effects);
   }
 
   /// Compares the first cause with its alternatives by full fits. If the fit prefers an alternative, and the
@@ -305,11 +308,16 @@ class Diagnoser {
       const std::size_t item = items[i];
       CandidateFinding finding;
       const effects::FittedEffects fitted = fit_with({item});
-      finding.candidate = fitted.effects[0];
+      // What stands beside an accepted effect in the model changes the values of that effect.
+      const auto accepted = std::find(accepted_.begin(), accepted_.end(), item);
+      finding.accepted = accepted != accepted_.end();
+      finding.candidate = finding.accepted ? effects_[static_cast<std::size_t>(accepted - accepted_.begin())]
+                                           : fitted.effects[0];
       finding.add = add_string_of(item);
       finding.axis = effects::axis_of(axes, finding.candidate.choice);
       for (const effects::CandidateUnknown& unknown : finding.candidate.unknowns)
-        for (const fit::ParameterEstimate& estimate : fitted.fit.estimates)
+        for (const fit::ParameterEstimate& estimate :
+             finding.accepted ? result_.end.estimates : fitted.fit.estimates)
           if (estimate.name == unknown.name) finding.parameters.push_back(estimate);
       finding.rms_after_um = fitted.fit.after.rms_um;
       finding.check_rms_before_um = base_.check.rms_um;
@@ -319,7 +327,6 @@ class Diagnoser {
       if (base_.chi_square > 0) finding.share = 1 - fitted.fit.chi_square / base_.chi_square;
       finding.score = finder_.score_alone(item);
       finding.p_value = finder_.p_value(item);
-      finding.accepted = std::find(accepted_.begin(), accepted_.end(), item) != accepted_.end();
       finding.why_not = pool_[item].why_not;
       result_.candidates.push_back(std::move(finding));
       listed_.push_back(item);
@@ -332,8 +339,9 @@ class Diagnoser {
   fit::FitResult base_;
   std::string text_;  // of the machine, fitted
   Finder finder_;
-  const Pool& pool_;                   // of the finder
-  std::vector<std::size_t> accepted_;  // of the finder, without those that gain nothing in the fit
+  const Pool& pool_;                         // of the finder
+  std::vector<std::size_t> accepted_;        // of the finder, without those that gain nothing in the fit
+  std::vector<effects::Candidate> effects_;  // accepted ones, as in the last fit
   std::vector<std::size_t> listed_;
   std::set<std::size_t> confirmed_;         // items that the check rows confirm
   std::vector<std::string> not_confirmed_;  // labels of steps that the check rows contradict

@@ -31,7 +31,7 @@ struct CandidateFinding {
   effects::Candidate candidate;
   std::string add;
   std::optional<std::size_t> axis;  // axis that drives it, else the axis of the transform on which it acts
-  std::vector<fit::ParameterEstimate> parameters;
+  std::vector<fit::ParameterEstimate> parameters;  // of an accepted effect: beside all accepted effects
   std::optional<double> rms_after_um, check_rms_before_um, check_rms_after_um;  // of lengths
   std::optional<double> rms_after_urad, check_rms_after_urad;                   // of rotations
   double share = 0, p_value = 1;

@@ -93,6 +93,41 @@ TEST(Records, WormGearAndLongWaveAreThreeCauses) {
   for (std::size_t i = 1; i < answer.ladder.size(); ++i) EXPECT_EQ(answer.ladder[i].effect, "cyclic-error");
 }
 
+// Each value is estimated beside all effects. Alone, a wave has the other waves in its residual.
+TEST(Records, TheValuesOfACauseAreThoseBesideTheOtherEffects) {
+  std::mt19937_64 random(31);
+  std::normal_distribution<double> noise(0, 0.0005);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::string text = "C[deg],rz[deg],u[deg]\n";
+  for (int i = 0; i < 219; ++i) {
+    const double c = std::min(359.9, 360.0 * (i % 73 + share(random)) / 73);
+    const double error = 0.010 * sine(c / 90 + 0.05) + 0.006 * sine(c / 45 + 0.16);
+    text += fmt::format("{:.4f},{:.6f},0.0005\n", c, c + error + noise(random));
+  }
+  const Diagnosis answer = diagnosed(kRotary, text);
+  ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
+  const CandidateFinding& first = answer.candidates.at(0);
+  ASSERT_EQ(first.candidate.choice.effect->id, "cyclic-error");
+  const auto period = std::find_if(first.parameters.begin(), first.parameters.end(),
+                                   [](const fit::ParameterEstimate& one) { return one.value > 20; });
+  ASSERT_NE(period, first.parameters.end());
+  EXPECT_NEAR(period->value, 90, 4 * period->std);
+  EXPECT_LT(period->std, 0.15) << "0.5 deg beside the unexplained second wave";
+}
+
+// A temperature that stands still at its reference shows no growth, with or without an own reference.
+TEST(Records, AnInputThatStandsStillIsNoCause) {
+  const std::string machine =
+      R"(<machine name="m"><variables><static><c value="0" unit="mm"/></static>
+      <machineaxes><X min="0" max="600"/></machineaxes><inputs><T unit="degC" reference="20"/></inputs></variables>
+      <transforms branch="tool"><sixdof n="1" X="X+c"/></transforms></machine>)";
+  const Diagnosis answer = diagnosed(machine, forth_and_back([](double x, int) { return 40e-6 * x; },
+                                                             ",T[degC]", [](int) { return ",20"; }));
+  ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
+  EXPECT_EQ(answer.candidates.at(0).candidate.choice.effect->id, "scale-error");
+  EXPECT_EQ(find(answer, "thermal-scale"), nullptr);
+}
+
 TEST(Records, WildReadingsAreToldWithoutAnUncertainty) {
   const auto cells = [](int) { return std::string(); };
   const auto error = [](double x, int sense) {

@@ -2,10 +2,12 @@
 #include "tools/diagnose/propose/enumerate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
+#include <string_view>
 
 #include "tools/diagnose/propose/pulls.h"
 #include "tools/effects/probe.h"
@@ -62,6 +64,16 @@ std::vector<double> logarithmic(double low, double high, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
     grid.push_back(low * std::pow(high / low, static_cast<double>(i) / static_cast<double>(count - 1)));
   return grid;
+}
+
+/// Is the term, or one summand of it, the same whatever the inputs are?
+bool is_without_input(const model::Expr& term) {
+  if (term.op == model::Op::kAdd || term.op == model::Op::kSubtract)
+    return std::ranges::any_of(term.args, [](const model::ExprPtr& part) { return is_without_input(*part); });
+  return !model::any_node(term, [](const model::Expr& node) {
+    return std::ranges::any_of(std::array{"{T}", "{S}", "{L}", "{F}", "{V}"},
+                               [&](std::string_view mark) { return is_symbol(node, mark); });
+  });
 }
 
 /// Lists the candidates of one survey.
@@ -209,6 +221,7 @@ class Enumerator {
     for (std::size_t i = 0; i < machine_.inputs.size(); ++i) {
       if (effects::class_of_input(machine_.inputs[i]) != wanted) continue;
       if (wanted == effects::InputClass::kOther && is_like_a_clock(i)) continue;
+      if (stands_still(i) && has_a_part_without_input(form)) continue;
       effects::Choice one = choice;
       one.inputs = {machine_.inputs[i].name};
       one.units = {machine_.inputs[i].unit};
@@ -225,6 +238,18 @@ class Enumerator {
         with_axis(two);
       }
     }
+  }
+
+  bool stands_still(std::size_t input) const {
+    const model::Column& value = evidence_.measurement().states.input[input];
+    return value(evidence_.rows()).maxCoeff() <= value(evidence_.rows()).minCoeff();
+  }
+
+  /// Example: growth with an own reference, k*(T-20)+c. If the input stands still, the constant part alone
+  /// would explain the rows.
+  static bool has_a_part_without_input(const effects::EffectForm& form) {
+    return std::ranges::any_of(form.trees,
+                               [](const model::ExprPtr& tree) { return is_without_input(*tree); });
   }
 
   /// Does a column increase with the rows, as a cycle counter or a time stamp does? It has the
