@@ -27,7 +27,7 @@ std::string print_component(const ErrorEquation& equation, std::size_t component
 std::string print_text(const DerivedMachine& derived);
 /// Prints a derived machine as a LaTeX fragment (amsmath).
 std::string print_latex(const DerivedMachine& derived);
-/// Returns a derived machine as JSON.
+/// Returns the error equation of a machine as JSON.
 nlohmann::ordered_json to_json(const DerivedMachine& derived);
 
 }  // namespace vernier::derive

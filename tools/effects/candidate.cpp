@@ -217,7 +217,8 @@ class Maker {
       const std::size_t next = mark == "across2" ? 2 : 1;
       wave = gravity_->across(place, mark == "across" ? *choice_.toward : (own + next) % 3);
     }
-    if (!wave) missing("a chain of turns in proportion to axes, from the base to there,");
+    if (!wave)
+      missing("only rotations that are proportional to one axis each, between the base and this place,");
     // A constant bend by gravity cannot be distinguished from the shape of the part.
     if (wave->is_constant() && choice_.form->place != PlaceRule::kBend)
       missing("a place where an axis changes what gravity does (here it is the same at every pose),");

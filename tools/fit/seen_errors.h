@@ -17,9 +17,9 @@ namespace vernier::fit {
 /// errors of the good axes are no evidence about a bad axis.
 class SeenErrors {
  public:
-  /// squares: expected square of each value relative to its neighbours; from_data: share of each
-  /// that the readings determine; moved: influence of each on the readings at the convention's
-  /// scale, squared.
+  /// Each vector has one number for each parameter. squares: expected square of the parameter, relative to
+  /// its neighbours in the table. from_data: share of the parameter that the readings determine, 0 to 1.
+  /// moved: square of the change of the readings if the parameter changes by its scale in `convention`.
   SeenErrors(const Convention& convention, const Eigen::VectorXd& squares, const Eigen::VectorXd& from_data,
              const Eigen::VectorXd& moved);
 

@@ -48,7 +48,7 @@ class Gate {
   /// True for a request for a challenge. A challenge can be used once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// Gives the challenge of one connection. The challenge replaces the previous one of the connection. If the
-  /// table is full, the oldest challenge of the same link is removed. If the link has no challenge, the
+  /// table is full, the oldest challenge of the same link is removed. If no challenge is of the same link, the
   /// oldest of all links is removed. Not real-time safe.
   ChallengeReply challenge(LinkAccess access, const Caller& from, TimeUs now) noexcept;
   /// Removes the challenge of a connection that has ended. Not real-time safe.
