@@ -28,6 +28,7 @@ def program(folder, *words):
     subprocess.run([PROGRAM, *words, "--json", out, "--residuals", rows], check=True, capture_output=True)
     with open(out, encoding="utf-8") as file:
         result = json.load(file)
+    result.pop("made_by")  # the record of the command, which a module has not
     with open(rows, encoding="utf-8") as file:
         return result, list(csv.DictReader(file))
 
@@ -62,7 +63,7 @@ class Module(unittest.TestCase):
         result.model.save(mine)
         subprocess.run([PROGRAM, "fit", MODEL, SURVEY, "-o", written], check=True, capture_output=True)
         with open(mine, encoding="utf-8") as one, open(written, encoding="utf-8") as other:
-            self.assertEqual(one.read(), other.read())
+            self.assertEqual(one.read(), other.read().split("<!-- made by: ")[0])
         self.assertLess(vernier.compare(vernier.Machine(mine), self.meas).rms_um, 3.2)
 
     def test_compare_is_the_programs(self):

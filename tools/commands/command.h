@@ -14,6 +14,9 @@ namespace vernier::commands {
 /// functions by topic.
 using RegisterCommand = void (*)(CLI::App& vernier);
 
+namespace again_cli {
+void register_again(CLI::App& vernier);
+}  // namespace again_cli
 namespace ballbar_path_cli {
 void register_ballbar_path(CLI::App& vernier);
 }  // namespace ballbar_path_cli

@@ -11,11 +11,13 @@
 #include "tools/commands/command.h"
 #include "tools/commands/help_text.h"
 #include "tools/commands/manners.h"
+#include "tools/commands/provenance.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
 namespace {
 
+constexpr const char* kProgram = "vernier " VERNIER_VERSION " (" VERNIER_COMMIT ")";
 constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2, kOurBug = 70;
 
 /// Commands of one topic, in the order of the workflow.
@@ -50,7 +52,8 @@ const std::vector<Topic>& topics() {
        {exchange_cli::register_export, exchange_cli::register_import_tables, correct_cli::register_correct}},
       {"Many machines", {fleet_cli::register_fleet}},
       {"This program",
-       {workbench_cli::register_workbench, completion_cli::register_completion, manual_cli::register_manual}},
+       {workbench_cli::register_workbench, again_cli::register_again, completion_cli::register_completion,
+        manual_cli::register_manual}},
   };
   return kTopics;
 }
@@ -114,7 +117,7 @@ int run(const std::vector<std::string>& arguments) {
       "Vernier makes machine tools, measuring machines and robots more accurate. It fits a model of the "
       "machine's errors to measurements and corrects the axes with it.",
       "vernier"};
-  app.set_version_flag("-V,--version", "vernier " VERNIER_VERSION " (" VERNIER_COMMIT ")");
+  app.set_version_flag("-V,--version", kProgram);
   app.footer(
       "Exit status: 0 done, 1 bad input or usage (nothing written), 2 the answer is no, 70 internal error.\n"
       "`vernier COMMAND --help` documents each command.");
@@ -125,6 +128,7 @@ int run(const std::vector<std::string>& arguments) {
   vernier::commands::require_known_commands(app, arguments);
   vernier::commands::require_known_dashes(app, arguments);
   app.parse_complete_callback([&] {
+    vernier::commands::record_provenance(arguments, kProgram);
     vernier::commands::require_files_in_their_places(app, arguments);
     require_places(app);
     vernier::commands::warn_of_machine(app);

@@ -8,11 +8,23 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "hal/support/output_file.h"
 #include "tools/text/error.h"
+#include "tools/text/file_hooks.h"
 
 namespace vernier::text {
+namespace {
+
+FileHooks& hooks() {
+  static FileHooks of_process;
+  return of_process;
+}
+
+}  // namespace
+
+void set_file_hooks(FileHooks of_process) { hooks() = std::move(of_process); }
 
 std::string read_file(const std::string& path) {
   if (std::filesystem::is_directory(path)) throw InputError({path, 0}, "", "is a folder, not a file");
@@ -21,11 +33,13 @@ std::string read_file(const std::string& path) {
   std::ostringstream text;
   text << file.rdbuf();
   if (file.bad()) throw InputError({path, 0}, "", std::string("cannot be read: ") + std::strerror(errno));
-  return text.str();
+  std::string bytes = text.str();
+  if (hooks().read) hooks().read(path, bytes);
+  return bytes;
 }
 
 void write_file(const std::string& path, const std::string& text) {
-  if (const auto failed = write_output(path, text))
+  if (const auto failed = write_output(path, hooks().write ? hooks().write(path, text) : text))
     throw InputError({path, 0}, "", "cannot be written: " + failed.message());
 }
 

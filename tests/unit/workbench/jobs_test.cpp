@@ -50,7 +50,12 @@ TEST(Job, GivesTheResultOfTheCommandItShows) {
       "/bin/sh", {"-c", test::program() + " fit m.xml rows.csv -o other.xml --json -"}, rig.folder.project(),
       1 << 20, [](std::string_view) {}, running);
   EXPECT_EQ(job["result"], json::parse(typed.out));
-  EXPECT_EQ(read_file(rig.folder.in("new.xml")), read_file(rig.folder.in("other.xml")));
+  // Only the records of their commands differ: each has the name of its file.
+  const auto machine = [&](const char* name) {
+    const std::string text = read_file(rig.folder.in(name));
+    return text.substr(0, text.find("<!-- made by: "));
+  };
+  EXPECT_EQ(machine("new.xml"), machine("other.xml"));
 }
 
 TEST(Job, FailureSaysFileLineAndWord) {
