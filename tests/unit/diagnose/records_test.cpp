@@ -128,6 +128,28 @@ TEST(Records, AnInputThatStandsStillIsNoCause) {
   EXPECT_EQ(find(answer, "thermal-scale"), nullptr);
 }
 
+// Y and Z stand still, so a shift by heat fits as well as Z times heat does. The shift is the name.
+TEST(Records, AnAxisThatStandsStillIsNotInTheName) {
+  const std::string machine = R"(<machine name="m"><variables><static>
+      <BaseShift X="0" Y="0" Z="0" rX="0" rY="0" rZ="0"/></static><machineaxes><X min="0" max="600"/>
+      <Y min="0" max="400"/><Z min="0" max="300"/></machineaxes><inputs><T unit="degC" reference="20"/></inputs>
+      </variables><transforms branch="tool"><sixdof n="1" X="X"/><sixdof n="2" Y="Y"/><sixdof n="3" Z="Z"/>
+      </transforms></machine>)";
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::uniform_real_distribution<double> position(0, 600);
+  std::string text = "X[mm],Y[mm],Z[mm],T[degC],x[mm],y[mm],z[mm],u[um],run,t[s]\n";
+  for (int i = 0; i < 300; ++i) {
+    const double heat = 1.5 * std::sin(i / 15.3), x = position(random);
+    text += fmt::format("{:.3f},200,150,{:.3f},{:.6f},{:.6f},{:.6f},1,r{},{}\n", x, 20 + heat,
+                        x + 0.004 * heat + noise(random), 200 + noise(random), 150 + noise(random), i / 50,
+                        900 * i);
+  }
+  const Diagnosis answer = diagnosed(machine, text);
+  ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
+  EXPECT_EQ(answer.candidates.at(0).candidate.choice.effect->id, "thermal-offset") << answer.explanation;
+}
+
 TEST(Records, WildReadingsAreToldWithoutAnUncertainty) {
   const auto cells = [](int) { return std::string(); };
   const auto error = [](double x, int sense) {

@@ -5,33 +5,51 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace vernier::diagnose {
 
 namespace {
 
-/// Rank among forms that fit alike, simplest first: at the axis' own degree of freedom, then
-/// across the axis, then anywhere. The steps are far below any evidence.
-double rank_of(const effects::Candidate& candidate, double step) {
-  switch (candidate.choice.form->place) {
+double rank_of_place(effects::PlaceRule place) {
+  switch (place) {
     case effects::PlaceRule::kOwn:
       return 0;
     case effects::PlaceRule::kPair:
     case effects::PlaceRule::kEachAxis:
-      return step;
+      return 1;
     case effects::PlaceRule::kCross:
     case effects::PlaceRule::kNormal:
     case effects::PlaceRule::kBase:
     case effects::PlaceRule::kJoint:
-      return 2 * step;
+      return 2;
     case effects::PlaceRule::kTurn:
     case effects::PlaceRule::kBaseTurn:
     case effects::PlaceRule::kLength:
     case effects::PlaceRule::kBend:
-      return 3 * step;
+      return 3;
     default:
-      return 4 * step;
+      return 4;
   }
+}
+
+/// Is the term a position times an input or a time? If the axis stands still, a term without the axis fits as
+/// well.
+bool is_position_times_another(const effects::EffectForm& form) {
+  const auto is = [&](std::string_view name) {
+    return form.any(
+        [&](const model::Expr& node) { return node.op == model::Op::kSymbol && node.name == name; });
+  };
+  return is("{q}") && (form.asks_for_input() || is("t"));
+}
+
+/// Rank among forms that fit alike, simplest first: at the axis' own degree of freedom, then
+/// across the axis, then anywhere; last what has a position in it beside another quantity. The steps are far
+/// below any evidence.
+double rank_of(const effects::Candidate& candidate, double step) {
+  constexpr double kBesideAnother = 4;
+  const effects::EffectForm& form = *candidate.choice.form;
+  return step * (rank_of_place(form.place) + (is_position_times_another(form) ? kBesideAnother : 0));
 }
 
 /// Is the first unknown that is scanned a period?
