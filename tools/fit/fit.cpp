@@ -426,15 +426,20 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   const StatedPriors stated = stated_priors(result, options, convention);
   const bool with_u = has_uncertainty(measurement);
   Settled end;
+  const std::size_t readings = result.before.count - problem.things().eliminated();
+  if (options.loss != Loss::kSquared && !problem.things().empty())
+    throw text::InputError(
+        "--loss: a robust loss does not work with the columns same and on; remove bad touches by "
+        "--residuals, or use the squared loss");
   if (result.parameters.size() == 0) {
-    end = nothing_free(problem, result.before.count, with_u);
+    end = nothing_free(problem, readings, with_u);
     result.converged = true;
   } else {
     const auto solved = [&] {
       const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
       const bool squared = options.loss == Loss::kSquared;
-      end = squared ? settle(problem, near, convention, stated, result.before.count, with_u, options.noise)
-                    : describe(problem, near, convention, stated, result.before.count, with_u, options.noise);
+      end = squared ? settle(problem, near, convention, stated, readings, with_u, options.noise)
+                    : describe(problem, near, convention, stated, readings, with_u, options.noise);
       result.iterations += squared ? end.iterations : 0;
       result.converged = result.converged && (!squared || end.converged);
     };

@@ -288,6 +288,7 @@ class Settler {
     if (result_.noise.independent()) return result_.variance * data;
     MatrixXd hanging = j.transpose() * covariance_times(layout, result_.noise, j);
     hanging.diagonal() += stated_unit() * stated_.weight;
+    if (const MatrixXd known = problem_.known_normal(result_.point); known.size() > 0) hanging += known;
     return hanging;
   }
 

@@ -16,11 +16,23 @@ using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 /// nearest to the measured vector. tool.
 Eigen::VectorXd predict(const Machine& machine, const Measurement& measurement);
 
+/// Things (`same`, `on`) are at their best estimate for the machine. `known_cost`: weighted sum of squares of
+/// their known values about these estimates; 0 without an uncertain known value.
+struct Prediction {
+  Eigen::VectorXd predicted;
+  double known_cost = 0;
+};
+Prediction predict_with_things(const Machine& machine, const Measurement& measurement);
+
 /// The prediction and its derivatives by the free parameters (analytic): n_obs x n_params, mm or
 /// deg per parameter unit.
 struct Linearisation {
   Eigen::VectorXd predicted;
   SparseRows jacobian;
+  /// Known values of things minus their estimates, times 1/u, and their derivatives by the parameters
+  /// (of the estimates, times 1/u). Empty without an uncertain known value.
+  Eigen::VectorXd known_residual;
+  Eigen::MatrixXd known_jacobian;
 };
 Linearisation linearise(const Machine& machine, const Measurement& measurement,
                         const ParameterSet& parameters);
