@@ -21,6 +21,8 @@
 #include "tools/fit/set_up.h"
 #include "tools/fit/settle.h"
 #include "tools/fit/solve.h"
+#include "tools/fit/things/estimates.h"
+#include "tools/fit/things/size.h"
 #include "tools/fit/unseen_turns.h"
 #include "tools/format/readings.h"
 #include "tools/maths/factors.h"
@@ -423,6 +425,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   result.misfit_mm = convention.misfit_mm;
   result.reach_mm = convention.reach_mm;
   FitProblem problem(machine, rows, result.parameters);
+  result.size = decide_size(problem, machine, result.parameters, convention, convention.centre);
   const StatedPriors stated = stated_priors(result, options, convention);
   const bool with_u = has_uncertainty(measurement);
   Settled end;
@@ -454,6 +457,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   result.after = role_statistics(measurement, result.residual, false);
   result.check = role_statistics(measurement, result.residual, true);
   estimate(result, end);
+  result.things = estimates_of_things(result, measurement);
   judge(result, machine, measurement);
   result.check_ratio = check_ratio(result, convention.centre, measurement);
   result.prediction_variance = prediction_variance(result, measurement);

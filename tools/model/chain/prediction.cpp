@@ -122,8 +122,12 @@ Linearisation linearise(const Machine& machine, const Measurement& m, const Para
   return linearise(machine, Linearizer(machine, m, parameters), m.observations.size(), parameters.size());
 }
 
-Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
-                        std::size_t parameters) {
+namespace {
+
+/// Linearises all rows at fixed things, then calls end(things, result).
+template <class End>
+Linearisation linearised(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
+                         std::size_t parameters, const End& end) {
   Linearisation result;
   result.predicted.resize(static_cast<Eigen::Index>(observations));
   std::vector<int> outer{0}, columns;
@@ -144,9 +148,42 @@ Linearisation linearise(const Machine& machine, const Linearizer& linearizer, st
     result.jacobian = Eigen::Map<const SparseRows>(
         static_cast<Eigen::Index>(observations), static_cast<Eigen::Index>(parameters),
         static_cast<Eigen::Index>(columns.size()), outer.data(), columns.data(), values.data());
-    if (!linearizer.things().empty()) eliminate(linearizer.things(), at, result);
+    if (!linearizer.things().empty()) end(at, result);
   });
   return result;
+}
+
+}  // namespace
+
+Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
+                        std::size_t parameters) {
+  return linearised(machine, linearizer, observations, parameters,
+                    [&](const ThingsAt& at, Linearisation& raw) { eliminate(linearizer.things(), at, raw); });
+}
+
+std::vector<EstimatedThing> estimate_things(const Machine& machine, const Measurement& m,
+                                            const ParameterSet& parameters) {
+  std::vector<EstimatedThing> list;
+  const Linearizer linearizer(machine, m, parameters);
+  const Things& things = linearizer.things();
+  std::vector<std::size_t> touches(m.things.size(), 0);
+  for (const Observation& o : m.observations)
+    if (is_of_thing(o.kind) && format::component_of(o.kind) == 0 && m.check[o.row] == 0)
+      ++touches[m.thing[o.row]];
+  const auto take = [&](const ThingsAt& at, const Linearisation& raw) {
+    for (std::size_t cluster = 0; cluster < things.clusters(); ++cluster) {
+      const Eigen::MatrixXd own = pseudo_inverse(at.normal(cluster));
+      const Eigen::MatrixXd follow = follows(things, at, cluster, raw.jacobian);
+      for (const std::size_t thing : things.things(cluster)) {
+        if (touches[thing] == 0) continue;
+        const Eigen::Index first = things.first_of(thing), count = unknowns_of(m.things[thing].artefact);
+        list.push_back({thing, touches[thing], at.shape(thing), own.block(first, first, count, count),
+                        follow.middleRows(first, count)});
+      }
+    }
+  };
+  linearised(machine, linearizer, m.observations.size(), parameters.size(), take);
+  return list;
 }
 
 }  // namespace vernier::model

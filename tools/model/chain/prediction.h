@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "tools/model/chain/thing_shape.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
@@ -42,5 +43,15 @@ Linearisation linearise(const Machine& machine, const Measurement& measurement,
 class Linearizer;
 Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
                         std::size_t parameters);
+
+/// A thing at its best estimate. `own`: covariance of its unknown values at a fixed machine for readings of
+/// weight 1/u; `follows`: their derivatives by the parameters.
+struct EstimatedThing {
+  std::size_t thing = 0, touches = 0;
+  ThingShape shape;
+  Eigen::MatrixXd own, follows;
+};
+std::vector<EstimatedThing> estimate_things(const Machine& machine, const Measurement& measurement,
+                                            const ParameterSet& parameters);
 
 }  // namespace vernier::model

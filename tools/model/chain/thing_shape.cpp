@@ -201,6 +201,10 @@ void move_thing(const Artefact& a, const ThingUnknowns& step, ThingShape& shape)
   if (layout.radius > 0) shape.radius += step[layout.place + layout.tilt];
 }
 
+Eigen::Matrix3Xd place_directions(const Artefact& a, const ThingShape& shape) {
+  return place_axes(a, shape).leftCols(layout_of(a).place);
+}
+
 KnownValues known_values(const Artefact& a, const ThingShape& shape) {
   const Layout layout = layout_of(a);
   KnownValues known{ThingUnknowns::Zero(layout.size()), ThingUnknowns::Zero(layout.size())};

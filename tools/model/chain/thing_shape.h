@@ -37,6 +37,9 @@ TouchReading touch(const Artefact& artefact, const ThingShape& shape, const Eige
 /// Moves the unknown values of a thing by a step.
 void move_thing(const Artefact& artefact, const ThingUnknowns& step, ThingShape& shape);
 
+/// Returns the directions of the unknown coordinates of the place: columns, in the order of the unknowns.
+Eigen::Matrix3Xd place_directions(const Artefact& artefact, const ThingShape& shape);
+
 /// Values that are known with an uncertainty: 1 / u^2 of each unknown value, 0 if it is not known; and the
 /// known value minus the value of `shape`.
 struct KnownValues {

@@ -38,6 +38,7 @@ double weight_of(const Measurement& m, const Observation& o) {
 }
 
 MatrixXd pseudo_inverse(const MatrixXd& matrix) {
+  if (matrix.size() == 0) return matrix;
   const VectorXd shrink =
       matrix.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0.0; });
   const MatrixXd scaled = shrink.asDiagonal() * matrix * shrink.asDiagonal();
