@@ -183,7 +183,11 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
   hold_at(problem, held, file);
   SetUp given = fitted_set_up(machine, own.shifts, problem, file);
   if (!rows.things.empty()) {
-    SetUp aligned = fitted_set_up(machine, own.shifts, problem, aligned_start(own, rows));
+    const Eigen::VectorXd start = aligned_start(own, rows);
+    model::Machine there = own.rigid;
+    own.shifts.set(there, start);
+    hold_at(problem, unseen_turns(there, rows, own.shifts, reach_of(there, rows)), start);
+    SetUp aligned = fitted_set_up(machine, own.shifts, problem, start);
     if (aligned.cost < (1 - kSetUpGain) * plain.cost) plain = std::move(aligned);
   }
   return given.cost < (1 - kSetUpGain) * plain.cost ? std::move(given.machine) : std::move(plain.machine);

@@ -374,7 +374,11 @@ class Builder {
   /// Is a column of labels of things a reading in this file? `on` needs an artefact of the machine file:
   /// older files may have a column of this name.
   bool names_things(const char* name) const {
-    return has_word(name) && (std::string_view(name) != columns::kOn || !machine_.artefacts.empty());
+    if (!has_word(name)) return false;
+    if (std::string_view(name) != columns::kOn || !machine_.artefacts.empty()) return true;
+    for (std::size_t row = 0; row < reader_.rows(); ++row)
+      if (!reader_.cell(name, row).empty()) return false;
+    return true;  // a template that is not filled in
   }
 
   void read_things() {
@@ -795,6 +799,16 @@ bool is_free_of_set_up(const Measurement& m, const Observation& o) {
 
 bool Measurement::has_recorded(std::string_view name) const {
   return std::find(recorded.begin(), recorded.end(), name) != recorded.end();
+}
+
+void refuse_things(const Measurement& m, const std::string& command) {
+  for (std::size_t row = 0; row < m.rows(); ++row) {
+    if (m.thing_of(row) == kNoThing) continue;
+    const Thing& thing = m.things[m.thing[row]];
+    throw text::InputError(
+        {m.files[m.file[row]], m.line[row]}, thing.label,
+        command + " does not read the columns same and on; leave out these files, or use vernier fit");
+  }
 }
 
 void require_time_order(const Measurement& m) {

@@ -133,6 +133,10 @@ Measurement read_measurement(const std::vector<std::string>& paths, const Machin
 /// time order, time-dependent terms and lags have no meaning. tool.
 void require_time_order(const Measurement& measurement);
 
+/// Throws InputError with file, line and label if a row meets a thing (`same`, `on`). command: the command
+/// that cannot use such rows, as its user types it. tool.
+void refuse_things(const Measurement& measurement, const std::string& command);
+
 /// Returns the rows `keep` of a measurement with their observations. `keep` may contain a row several times.
 /// A distance is kept only if both its ends are kept.
 Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& keep);

@@ -116,8 +116,8 @@ constexpr const char* kMill = R"(<machine name="mill">
     <inputs><L unit="mm" reference="100"/></inputs>
   </variables>
   <transforms branch="tool">
-    <sixdof n="1" X="X-Y*C0Y*pi/180" Y="Y"/>
-    <sixdof n="2" X="Z*B0Z*pi/180" Y="-Z*A0Z*pi/180" Z="Z"/>
+    <sixdof n="1" X="X-Y*C0Y*0.017453292519943295" Y="Y"/>
+    <sixdof n="2" X="Z*B0Z*0.017453292519943295" Y="-Z*A0Z*0.017453292519943295" Z="Z"/>
     <sixdof n="3" Z="-L"/>
   </transforms>
 </machine>
@@ -250,12 +250,12 @@ Case mill(Random& random) {
            .goal = 3};
   Survey survey("X[mm],Y[mm],Z[mm],L[mm],on,u[um]");
   const double turn = uniform(random, -0.01, 0.01);
-  for (const double tool : {60.0, 180.0})
+  for (const double tool : {60.0, 260.0})
     for (std::size_t i = 0; i < plate.size(); ++i) {
       Vector3d ball = plate[i] + noise(random, 0.5e-3);
       ball = Vector3d(100 + std::cos(turn) * ball.x() - std::sin(turn) * ball.y(),
                       80 + std::sin(turn) * ball.x() + std::cos(turn) * ball.y(), ball.z() - 350);
-      touch_ball(survey, one.truth, ball, kRadius_mm, tool, fmt::format("P{}", i), 5, kU_mm, random);
+      touch_ball(survey, one.truth, ball, kRadius_mm, tool, fmt::format("P{}", i), 9, kU_mm, random);
     }
   one.survey = survey.text();
   return one;

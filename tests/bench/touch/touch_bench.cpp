@@ -33,8 +33,12 @@ struct Tally {
 void judge_poses(const Case& one, const fit::FitResult& result, Tally& tally) {
   const model::Measurement fresh = fit::point_readings(one.fresh);
   model::Machine fitted = result.machine, truth = one.truth;
+  fitted.base_shifts.clear();
+  truth.base_shifts.clear();
+  const model::ParameterSet own(fitted, {});  // the set-ups are the last of the parameters
+  const auto n = static_cast<Eigen::Index>(own.size());
   const Eigen::VectorXd off = model::predict(fitted, fresh) - model::predict(truth, fresh);
-  const model::Linearisation linear = model::linearise(fitted, fresh, result.parameters);
+  const model::Linearisation linear = model::linearise(fitted, fresh, own);
   // Set-ups and the place of the base are no property of the arm.
   const Eigen::MatrixXd motions = fit::rigid_motions(model::forward(fitted, one.fresh).position);
   const Eigen::MatrixXd basis = maths::thin_q(motions);
@@ -47,7 +51,8 @@ void judge_poses(const Case& one, const fit::FitResult& result, Tally& tally) {
     ++tally.count;
   }
   for (Eigen::Index i = 0; i < left.size(); ++i) {
-    const double std = std::sqrt(beside.row(i) * result.covariance * beside.row(i).transpose());
+    const double std =
+        std::sqrt(beside.row(i) * result.covariance.topLeftCorner(n, n) * beside.row(i).transpose());
     tally.covered += std::abs(left[i]) <= 1.96 * std ? 1 : 0;
     tally.scaled += std::pow(left[i] / std, 2);
     ++tally.judged;
