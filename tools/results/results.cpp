@@ -80,7 +80,7 @@ ordered_json size_json(const fit::SizeOfMachine& size) {
   return json;
 }
 
-ordered_json three(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+ordered_json three_numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 ordered_json things_json(const std::vector<fit::ThingEstimate>& things) {
   ordered_json list = ordered_json::array();
@@ -90,10 +90,10 @@ ordered_json things_json(const std::vector<fit::ThingEstimate>& things) {
                          {"setup", one.setup},
                          {"frame", one.in_measuring_frame ? "measuring" : "workpiece"},
                          {"touches", one.touches},
-                         {"place_mm", three(one.place_mm)},
-                         {"u_place_mm", three(one.u_place_mm)}};
+                         {"place_mm", three_numbers(one.place_mm)},
+                         {"u_place_mm", three_numbers(one.u_place_mm)}};
     if (one.direction) {
-      json["direction"] = three(*one.direction);
+      json["direction"] = three_numbers(*one.direction);
       json["u_direction_deg"] = one.u_direction_deg;
     }
     if (one.radius_mm) {
