@@ -194,8 +194,8 @@ class Meaning {
     for (const auto& [label, rows] : rows_of) {
       any_reading_ = true;
       if (rows.size() == 1)
-        findings_.add_of_kind("met once", LintWeight::kWarning, line(rows.front()), label.first,
-                              "this point was met in one row only: the row gives no information",
+        findings_.add_of_kind("one row", LintWeight::kWarning, line(rows.front()), label.first,
+                              "one row only has this label: it gives no information",
                               "a typing error in the label? Meet a point from many poses");
     }
     if (!rows_of.empty() && table_.find(columns::kDistance) == nullptr &&

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
@@ -272,8 +273,11 @@ class Reader {
 
   void read_artefact(const pugi::xml_node& node) {
     no_children(node);
-    check_attributes(node, {"name", "type", "radius", "uradius", "x", "y", "z", "u", "nx", "ny", "nz",
-                            "setup", "tip", "side", "note"});
+    namespace columns = format::columns;
+    check_attributes(node,
+                     {"name", "type", "radius", "uradius", columns::kPoint[0], columns::kPoint[1],
+                      columns::kPoint[2], columns::kUncertainty, columns::kNormal[0], columns::kNormal[1],
+                      columns::kNormal[2], columns::kSetup, "tip", "side", "note"});
     Artefact item;
     item.line = line(node);
     item.name = attribute(node, "name").value_or("");
@@ -282,26 +286,32 @@ class Reader {
     const auto known = artefact_type_named(type);
     if (!known) fail_attribute(node, "type", type, "type is point, line, plane, sphere or cylinder");
     item.type = *known;
-    item.setup = attribute(node, "setup");
+    item.setup = attribute(node, columns::kSetup);
     for (const Artefact& other : machine_.artefacts)
       if (other.name == item.name && (other.setup == item.setup || !other.setup || !item.setup))
         fail(node, item.name, "two artefacts have this name in one set-up");
     read_size(node, item);
-    item.place = three(node, {"x", "y", "z"});
-    item.direction = three(node, {"nx", "ny", "nz"});
-    item.u_place = length(node, "u").value_or(0);
-    if (item.u_place < 0) fail_attribute(node, "u", *attribute(node, "u"), "u must not be negative");
+    item.place = three(node, format::columns::kPoint);
+    item.direction = three(node, format::columns::kNormal);
+    const std::string u = attribute(node, columns::kUncertainty).value_or("");
+    item.u_place = length(node, columns::kUncertainty).value_or(0);
+    if (item.u_place < 0) fail_attribute(node, columns::kUncertainty, u, "u must not be negative");
     if (item.u_place > 0 && !item.place)
-      fail_attribute(node, "u", *attribute(node, "u"),
+      fail_attribute(node, columns::kUncertainty, u,
                      "u is the uncertainty of a known place: give x, y and z");
-    if (item.direction && !item.has_direction())
-      fail_attribute(node, "nx", *attribute(node, "nx"), "a " + type + " has no direction");
-    if (item.direction) {
-      const auto& n = *item.direction;
-      if (std::abs(std::hypot(n[0], n[1], n[2]) - 1) > 1e-3)
-        fail_attribute(node, "nx", *attribute(node, "nx"), "nx, ny and nz must be a unit vector");
-    }
+    check_direction(node, item);
     machine_.artefacts.push_back(std::move(item));
+  }
+
+  void check_direction(const pugi::xml_node& node, const Artefact& item) {
+    if (!item.direction) return;
+    const char* const first = format::columns::kNormal.front();
+    const std::string word = attribute(node, first).value_or("");
+    if (!item.has_direction()) fail_attribute(node, first, word, "a point or a sphere has no direction");
+    const auto& n = *item.direction;
+    constexpr double kUnit = 1e-3;  // tolerance of the length of a unit vector that was written with digits
+    if (std::abs(std::hypot(n[0], n[1], n[2]) - 1) > kUnit)
+      fail_attribute(node, first, word, "the direction must be a unit vector");
   }
 
   /// Reads the radius of an artefact, and the tip that touches it.
