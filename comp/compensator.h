@@ -94,7 +94,7 @@ struct Deviation {
 struct Correction {
   std::int32_t counts = 0;
 };
-/// The only place that converts a deviation to a correction. -INT32_MIN becomes INT32_MAX. realtime.
+/// The only place that converts a deviation to a correction. -INT32_MIN becomes INT32_MAX. Real-time safe.
 constexpr Correction correction_for(Deviation deviation) noexcept {
   return Correction{deviation.counts == INT32_MIN ? INT32_MAX : -deviation.counts};
 }
@@ -117,7 +117,7 @@ struct CycleOutput {
 };
 
 /// Returns the value of an input of the tick, limited to the range of its channel, in the format of the
-/// program. The result is monotone, so the limits give the range. realtime.
+/// program. The result is monotone, so the limits give the range. Real-time safe.
 std::int32_t channel_value(const Channel& channel, std::int64_t value) noexcept;
 
 struct ShareProgram;
@@ -131,7 +131,7 @@ struct EquationState {
 };
 
 /// The printed form of a program (`vernier compile`, equation.cpp): computes the deviations of the outputs
-/// from the channels, in the order and formats of the program. realtime.
+/// from the channels, in the order and formats of the program. Real-time safe.
 using PrintedEquation = void (*)(const std::int32_t* channel, LagState* lag, bool starting,
                                  std::int32_t* deviation) noexcept;
 
@@ -139,31 +139,32 @@ using PrintedEquation = void (*)(const std::int32_t* channel, LagState* lag, boo
 /// slew state. The program must have been verified and must outlive the compensator.
 class Compensator {
  public:
-  /// setup.
+  /// Starts with registers, lags and correction 0. Not real-time safe.
   explicit Compensator(const Program& program) noexcept;
 
   /// Returns the correction of this tick. Call step() once per tick: the slew limit and the lags count ticks.
   /// weight: 0..kFullWeight, the fraction of the correction that is applied (ramp-in, ramp-out). step() never
-  /// fails. realtime.
+  /// fails. Real-time safe.
   CycleOutput step(const CycleInput& input, WeightQ16 weight = kFullWeight) noexcept;
 
   /// Starts the slew limit of an axis from the correction that its drive already has. A change of the program
-  /// then makes no step. setup.
+  /// then makes no step. Not real-time safe.
   void start_from(std::uint32_t axis, Correction held) noexcept { slew_[axis].start_from(held.counts); }
 
-  /// Forgets lags and slew state: the next step starts from zero correction. setup.
+  /// Forgets lags and slew state: the next step starts from zero correction. Not real-time safe.
   void reset() noexcept;
 
   /// The channels and lags at the start of the last step; empty for a program with more channels than fit.
-  /// Copies only existing channels and lags. realtime.
+  /// Copies only existing channels and lags. Real-time safe.
   void state(EquationState& state) const noexcept;
 
   /// Makes step() run the printed form instead of the program. The corrections are identical to the last bit
-  /// and need a sixth to a third of the instructions. equation: printed from this program. setup.
+  /// and need a sixth to a third of the instructions. equation: printed from this program.
+  /// Not real-time safe.
   void use_printed(PrintedEquation equation) noexcept { printed_ = equation; }
   bool printed() const noexcept { return printed_ != nullptr; }
 
-  /// Register i after the last step, for tests and for watching intermediates. setup.
+  /// Register i after the last step, for tests and for watching intermediates. Not real-time safe.
   std::int32_t register_value(std::uint32_t i) const noexcept { return registers_[i]; }
 
  private:

@@ -92,7 +92,7 @@ constexpr std::uint32_t results_of(const Instruction& step, View<ErrorTable> tab
 /// Executes a VERIFIED equation (comp/verify.h). `registers` contains the constants and channels;
 /// run_equation adds the results. registers: register_count() long; lags: lag_count states; `starting` sets
 /// every lag to its input. Time of run_equation: one pass over the instructions. The verifier proves that
-/// run_equation has no overflow and no access outside the memory. realtime.
+/// run_equation has no overflow and no access outside the memory. Real-time safe.
 void run_equation(const Equation& equation, std::int32_t* registers, LagState* lags, bool starting) noexcept;
 
 }  // namespace vernier

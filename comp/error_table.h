@@ -60,7 +60,7 @@ struct ErrorTable {
   }
 };
 
-/// Head of a record. realtime.
+/// Head of a record. Real-time safe.
 constexpr Segment segment_at(const std::int32_t* record) noexcept {
   return {record[0], static_cast<std::uint32_t>(record[1]), static_cast<std::uint32_t>(record[2]),
           static_cast<std::uint32_t>(record[3])};
@@ -69,7 +69,7 @@ constexpr Segment segment_at(const std::int32_t* record) noexcept {
 /// Piece of an evenly spaced table. grid_piece is exact within one count beyond a station, where both pieces
 /// have the same value. A piece that starts beyond the position is never returned. Beyond the last station
 /// grid_piece returns the last piece. position: at or after the first station. grid_piece needs one
-/// multiplication. realtime.
+/// multiplication. Real-time safe.
 constexpr std::uint32_t grid_piece(const ErrorTable& table, std::int32_t position) noexcept {
   const std::uint64_t inside =
       static_cast<std::uint32_t>(position) - static_cast<std::uint32_t>(table.records[0]);
@@ -79,7 +79,8 @@ constexpr std::uint32_t grid_piece(const ErrorTable& table, std::int32_t positio
 
 /// Returns the number of the piece that contains `position`; beyond the last station the last piece.
 /// position: at or after the first station. The work of piece_of depends only on the table, not on the
-/// position: one multiplication for evenly spaced stations, else a bisection without branches. realtime.
+/// position: one multiplication for evenly spaced stations, else a bisection without branches.
+/// Real-time safe.
 constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position) noexcept {
   if (table.grid_multiplier != 0) return grid_piece(table, position);
   std::uint32_t base = 0;
@@ -93,7 +94,8 @@ constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position)
 
 /// Returns the position within the segment as a fraction 0..kFractionOne (Q30); limited to 1 beyond the end.
 /// position: at or after the start of the segment. fraction_in truncates: error < 2^-30 + 2^-31 of the
-/// segment, exact at both ends (the verifier rejects a reciprocal that misses 1 at the far end). realtime.
+/// segment, exact at both ends (the verifier rejects a reciprocal that misses 1 at the far end).
+/// Real-time safe.
 constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position) noexcept {
   const std::uint32_t distance =
       static_cast<std::uint32_t>(position) - static_cast<std::uint32_t>(segment.start);
@@ -102,14 +104,14 @@ constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position
 }
 
 /// Returns the value between two stations: near + fraction * rise, c = {near, rise}, rounded once, ties up
-/// (<= 1/2 LSB of the column). Stays within the two; product < 2^62. realtime.
+/// (<= 1/2 LSB of the column). Stays within the two; product < 2^62. Real-time safe.
 constexpr std::int32_t linear_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   return c[0] + narrow(round_shift(c[1] * fraction, 30));
 }
 
 /// Returns the value of the cubic c[0] + f (c[1] + f (c[2] + f c[3])), f the fraction (Q30), all in the
 /// column's format. The inner two products are truncated, the last is rounded: together within -5/2 and +1/2
-/// LSB. Every partial sum of the cubic is below 2^31 (proved by the verifier). realtime.
+/// LSB. Every partial sum of the cubic is below 2^31 (proved by the verifier). Real-time safe.
 constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   const std::int32_t second = c[2] + narrow((c[3] * fraction) >> 30);
   const std::int32_t first = c[1] + narrow((second * fraction) >> 30);
@@ -117,7 +119,7 @@ constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fractio
 }
 
 /// Computes the values of kColumns columns of one record. piece_values is recursive, so that the compiler
-/// removes the loop. realtime.
+/// removes the loop. Real-time safe.
 template <unsigned kDegree, unsigned kColumns>
 constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::int32_t* out) noexcept {
   static_assert(kDegree == 1 || kDegree == 3);
@@ -127,7 +129,7 @@ constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::i
 
 /// Interpolates all columns of a table at `position`. The table has kDegree and kColumns. out: kColumns
 /// values, each in the format of its column. Error: <= 1/2 LSB of the column (linear) or 5/2 LSB (cubic), and
-/// the fraction's 2^-29 of the rise. realtime.
+/// the fraction's 2^-29 of the rise. Real-time safe.
 template <unsigned kDegree, unsigned kColumns>
 inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
@@ -137,7 +139,7 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
 }
 
 /// Interpolates like look_up<kDegree, kColumns>, with the degree and number of columns read from the table at
-/// run time. The values are identical. realtime.
+/// run time. The values are identical. Real-time safe.
 inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
   const std::int32_t* const record = table.record(piece_of(table, held));
@@ -153,7 +155,7 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
 
 /// position brought into [first, first + period) by whole periods. wrapped() is exact if the verifier
 /// accepted the wrap for the range of the position: then the estimated number of periods has an error of at
-/// most 1. realtime.
+/// most 1. Real-time safe.
 inline std::int32_t wrapped(const Wrap& wrap, std::int32_t position) noexcept {
   const std::int64_t distance = std::int64_t{position} - wrap.first;
   const std::int64_t periods = (distance * wrap.reciprocal) >> wrap.shift;

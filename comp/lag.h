@@ -14,7 +14,7 @@ struct LagState {
 
 constexpr unsigned kLagGuardBits = 30;
 
-/// Sets the state to u, as FORMATS defines the start of a lag. realtime.
+/// Sets the state to u, as FORMATS defines the start of a lag. Real-time safe.
 constexpr void start_lag(LagState& state, std::int32_t u) noexcept {
   state.value = std::int64_t{u} * (std::int64_t{1} << kLagGuardBits);
 }
@@ -22,7 +22,7 @@ constexpr void start_lag(LagState& state, std::int32_t u) noexcept {
 /// state += gain * (u - state); returns the state in u's format, rounded (<= 1/2 LSB).
 /// gain = mantissa / 2^shift, mantissa 0..2^31-1, shift 31..62, so 0 <= gain < 1. u - state < 2^62 in guard
 /// format; its product with the mantissa is taken in two halves below 2^63. Stays within the range of all u.
-/// realtime.
+/// Real-time safe.
 constexpr std::int32_t step_lag(LagState& state, std::int32_t u, std::int32_t mantissa,
                                 unsigned shift) noexcept {
   const std::int64_t difference = std::int64_t{u} * (std::int64_t{1} << kLagGuardBits) - state.value;

@@ -22,7 +22,7 @@ struct MotionBounds {
 /// distance is overshot, within the acceleration.
 class MotionLimit {
  public:
-  /// target: counts, |target| <= 2^31. Returns the new value. Time: constant (31 steps). realtime.
+  /// target: counts, |target| <= 2^31. Returns the new value. Time: constant (31 steps). Real-time safe.
   constexpr std::int64_t approach(std::int64_t target, const MotionBounds& bounds) noexcept {
     const std::int64_t way = target - value_;
     const std::int64_t low = higher(speed_ - bounds.acceleration, -bounds.slew),
@@ -41,7 +41,7 @@ class MotionLimit {
 
   /// A speed from which `way` counts are enough to stop: (v + a/2)^2 <= 2 a way. The result is at least the
   /// sum v + (v - a) + (v - 2a) ... of the ticks to a stop, and at most a/8 more; `way` if one tick is
-  /// enough. way: >= 0; acceleration: as in MotionBounds; both sides stay below 2^64. realtime.
+  /// enough. way: >= 0; acceleration: as in MotionBounds; both sides stay below 2^64. Real-time safe.
   static constexpr std::int64_t braking_speed(std::int64_t way, std::int64_t acceleration) noexcept {
     if (way <= acceleration) return way;
     const auto a = static_cast<std::uint64_t>(acceleration);

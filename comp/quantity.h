@@ -7,7 +7,7 @@ namespace vernier {
 
 /// One integer with its unit in the type. Conversion to or from a bare integer is always explicit; sums and
 /// differences keep the unit. The operators of Quantity have no saturation and no check of overflow: callers
-/// keep the ranges. Context: realtime.
+/// keep the ranges. Real-time safe.
 template <class Unit, class Integer>
 struct Quantity {
   using Count = Integer;

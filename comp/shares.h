@@ -33,13 +33,13 @@ struct ShareProgram {
 
 /// Proves for a share program the properties that verify_program proves for a program. program: verified.
 /// ranges: room for kMaxRegisters; contains the ranges of the program's registers; receives the ranges of the
-/// shares after them. setup.
+/// shares after them. Not real-time safe.
 ProgramFault verify_shares(const ShareProgram& shares, const Program& program, ValueRange* ranges) noexcept;
 
 /// Computes the shares of a tick's correction, before the limits and ramps: one entry per share, in the order
 /// of the shares. run_shares executes the equation of the tick again from the start values of the tick. The
 /// tick itself does no work for a display. The share program must be VERIFIED. state: of the same program;
-/// registers: room for kMaxRegisters. False if the state is of another program. setup.
+/// registers: room for kMaxRegisters. False if the state is of another program. Not real-time safe.
 bool run_shares(const ShareProgram& shares, const Program& program, const EquationState& state,
                 std::int32_t* registers, Correction* corrections) noexcept;
 

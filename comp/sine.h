@@ -22,7 +22,7 @@ constexpr std::int32_t kSineErrorMilliLsb = 1120;
 /// Sine and cosine of `turns`, 2^-32 turn, any value: the whole circle without an edge. Method: take the
 /// nearest of 512 nodes, then add the angle d from the node (|d| <= pi/512) by the addition theorem, in 37
 /// fraction bits. sin d = d - d^3/6 (remainder below 8e-14), cos d = 1 - d^2/2 (remainder d^4/24 < 6e-11).
-/// sine_cosine has no branch and no division; the work does not depend on the angle. realtime.
+/// sine_cosine has no branch and no division; the work does not depend on the angle. Real-time safe.
 constexpr SineCosine sine_cosine(std::uint32_t turns) noexcept {
   constexpr std::int64_t kRadPerCount = 1686629713;  // 2 pi 2^(37 + 23 - 32), rounded
   constexpr std::int64_t kSixth = 715827883;         // 2^32 / 6
@@ -38,7 +38,7 @@ constexpr SineCosine sine_cosine(std::uint32_t turns) noexcept {
 }
 
 /// Converts an angle in a register's format to turns: angle * multiplier / 2^shift, truncated, modulo one
-/// turn. The product is below 2^62. realtime.
+/// turn. The product is below 2^62. Real-time safe.
 constexpr std::uint32_t turns_of(std::int32_t angle, std::int32_t multiplier, unsigned shift) noexcept {
   return static_cast<std::uint32_t>((std::int64_t{angle} * multiplier) >> shift);
 }

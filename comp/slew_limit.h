@@ -10,7 +10,7 @@ namespace vernier {
 /// every sequence of targets. SlewLimit separates the motion of a correction from its table interpolation.
 class SlewLimit {
  public:
-  /// target: counts; step: counts a tick, >= 0. Returns the new value. realtime.
+  /// target: counts; step: counts a tick, >= 0. Returns the new value. Real-time safe.
   constexpr std::int32_t approach(std::int32_t target, std::int32_t step) noexcept {
     const std::int64_t wanted = std::int64_t{target} - value_;
     const std::int64_t allowed = clamp<std::int64_t>(wanted, -std::int64_t{step}, step);

@@ -29,25 +29,25 @@ struct ValueRange {
 
 /// Proves by interval analysis of the integers that no run of the program can overflow, shift wrongly or read
 /// outside the memory. ranges: room for kMaxRegisters; receives the range of every register. Assumes only the
-/// sizes of the views. setup.
+/// sizes of the views. Not real-time safe.
 ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept;
 
 /// Returns the work of one tick of a verified program, or of one evaluation of its shares. Unit: about one
 /// product of a sum. Instructions, terms, steps of searches, columns, sines and lags are weighted.
-/// tests/bench/weights measured the weights. setup.
+/// tests/bench/weights measured the weights. Not real-time safe.
 std::uint64_t work_of(const Equation& equation, std::uint32_t channels) noexcept;
 
 /// Returns the number of cache lines (64 bytes) of the tables that one run may read when the caches are
-/// empty: the steps of a search that are further apart than a line, and the record found. setup.
+/// empty: the steps of a search that are further apart than a line, and the record found. Not real-time safe.
 std::uint64_t lines_of(const Equation& equation) noexcept;
 
 /// True if grid_piece finds every piece from one count after its start to one count before its end. At a
-/// station both neighbours have the same value. The segments must be in order. setup.
+/// station both neighbours have the same value. The segments must be in order. Not real-time safe.
 bool grid_finds_every_piece(const ErrorTable& table) noexcept;
 
 /// Computes the ranges of the results of one instruction (results_of many) from the ranges of all earlier
 /// registers. The compiler chooses formats with these ranges. `position` is the first register that the
-/// instruction writes. setup.
+/// instruction writes. Not real-time safe.
 ProgramFault range_of(const Equation& equation, const Instruction& step, std::uint32_t position,
                       const ValueRange* ranges, ValueRange* results) noexcept;
 

@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// Non-owning view of `size` values; unchecked, for ranges that were validated at setup. realtime.
+/// Non-owning view of `size` values; unchecked, for ranges that were validated at setup. Real-time safe.
 template <class T>
 struct View {
   const T* data = nullptr;

@@ -17,7 +17,7 @@ constexpr Wide wide(std::int64_t value) noexcept {
 }
 constexpr bool is_negative(Wide a) noexcept { return (a.high >> 63) != 0; }
 
-/// Sum, difference and opposite modulo 2^128. realtime.
+/// Sum, difference and opposite modulo 2^128. Real-time safe.
 constexpr Wide operator+(Wide a, Wide b) noexcept {
   const std::uint64_t low = a.low + b.low;
   return {a.high + b.high + (low < a.low ? 1 : 0), low};
@@ -27,7 +27,7 @@ constexpr Wide operator-(Wide a, Wide b) noexcept {
 }
 constexpr Wide operator-(Wide a) noexcept { return Wide{} - a; }
 
-/// Returns the exact product of two unsigned words, as four products of halves. realtime.
+/// Returns the exact product of two unsigned words, as four products of halves. Real-time safe.
 constexpr Wide long_product(std::uint64_t a, std::uint64_t b) noexcept {
   constexpr std::uint64_t kHalf = 0xffffffff;
   const std::uint64_t low = (a & kHalf) * (b & kHalf);
@@ -36,14 +36,14 @@ constexpr Wide long_product(std::uint64_t a, std::uint64_t b) noexcept {
   return {(a >> 32) * (b >> 32) + (left >> 32) + (right >> 32), (right << 32) | (low & kHalf)};
 }
 
-/// Returns a * b modulo 2^128. realtime.
+/// Returns a * b modulo 2^128. Real-time safe.
 constexpr Wide operator*(Wide a, Wide b) noexcept {
   Wide result = long_product(a.low, b.low);
   result.high += a.low * b.high + a.high * b.low;
   return result;
 }
 
-/// |a|, as an unsigned number of 128 bits. realtime.
+/// |a|, as an unsigned number of 128 bits. Real-time safe.
 constexpr Wide magnitude(Wide a) noexcept { return is_negative(a) ? -a : a; }
 
 }  // namespace vernier

@@ -30,21 +30,21 @@ class AxisReader {
  public:
   virtual ~AxisReader() = default;
   /// Begins a tick of the firmware. Readings that came in until now are the readings of this tick and do not
-  /// change until the next call. begin_tick() never waits. realtime.
+  /// change until the next call. begin_tick() never waits. Real-time safe.
   virtual void begin_tick() noexcept {}
-  /// Newest reading of an axis. kNoReading: no reading since the last tick. realtime.
+  /// Newest reading of an axis. kNoReading: no reading since the last tick. Real-time safe.
   virtual HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept = 0;
-  /// Reads feed and curvature of the path, as far as the controller knows them. realtime.
+  /// Reads feed and curvature of the path, as far as the controller knows them. Real-time safe.
   virtual HalFault read_path(PathReading& reading) noexcept = 0;
   /// True if the controller itself gives velocity, acceleration, direction and since. If false, only the
-  /// position is filled and the firmware derives the other values. setup.
+  /// position is filled and the firmware derives the other values. Not real-time safe.
   virtual bool gives_motion() const noexcept = 0;
 };
 
 /// A device that gives positions only: the firmware derives the motion.
 class PositionReader : public AxisReader {
  public:
-  /// Sets feed and curvature to zero: the device does not know them. realtime.
+  /// Sets feed and curvature to zero: the device does not know them. Real-time safe.
   HalFault read_path(PathReading& reading) noexcept override { return reading = {}, HalFault::kNone; }
   bool gives_motion() const noexcept override { return false; }
 };

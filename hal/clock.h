@@ -11,9 +11,9 @@ constexpr InstantNs instant_ns(TimeUs time) { return InstantNs(time.count * 1000
 class Clock {
  public:
   virtual ~Clock() = default;
-  /// realtime.
+  /// Returns the time of now. Real-time safe.
   virtual InstantNs now() noexcept = 0;
-  /// Returns when now() >= due, immediately if that is past. kRefused: the timer failed. realtime.
+  /// Returns when now() >= due, immediately if that is past. kRefused: the timer failed. Real-time safe.
   virtual HalFault sleep_until(InstantNs due) noexcept = 0;
 };
 

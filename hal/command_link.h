@@ -19,28 +19,29 @@ class CommandHandler {
  public:
   virtual ~CommandHandler() = default;
   /// Names the connection of the next requests: a number that the link uses for no other connection later. A
-  /// link without connections does not call this function. setup.
+  /// link without connections does not call this function. Not real-time safe.
   virtual void comes_over(std::uint64_t connection) { static_cast<void>(connection); }
-  /// Reports that a connection has ended. setup.
+  /// Reports that a connection has ended. Not real-time safe.
   virtual void ends(std::uint64_t connection) { static_cast<void>(connection); }
   /// Returned by answer() if the reply takes longer because a medium is at work.
   static constexpr std::uint32_t kLater = UINT32_MAX;
 
   /// request: any bytes; reply: room for the longest. answer() returns the bytes of the reply, 0: no reply,
-  /// or kLater: the link then calls later() for the reply, and serves other clients meanwhile. setup.
+  /// or kLater: the link then calls later() for the reply, and serves other clients meanwhile.
+  /// Not real-time safe.
   virtual std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) = 0;
-  /// True if the request of the last answer() had a valid signature. setup.
+  /// True if the request of the last answer() had a valid signature. Not real-time safe.
   virtual bool was_signed() const { return false; }
-  /// Argument for later(), valid right after answer() or give() returned kLater. setup.
+  /// Argument for later(), valid right after answer() or give() returned kLater. Not real-time safe.
   virtual std::uint32_t ticket() const { return 0; }
   /// Fetches the deferred reply. Returns its bytes, kLater while the reply is being made, 0 if no reply is
-  /// pending. setup.
+  /// pending. Not real-time safe.
   virtual std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) {
     return static_cast<void>(ticket), static_cast<void>(reply), 0;
   }
-  /// The live registers for masters that use registers only. setup.
+  /// The live registers for masters that use registers only. Not real-time safe.
   virtual void fill_registers(std::uint16_t* values) = 0;
-  /// Takes a command from a plain master. setup.
+  /// Takes a command from a plain master. Not real-time safe.
   virtual CommandGiven give(std::uint16_t command) = 0;
 };
 
@@ -50,10 +51,10 @@ class CommandLink {
   virtual ~CommandLink() = default;
   /// Waits at most `wait` for requests and answers them. Never waits for a peer that stops within a request
   /// or does not take its reply. kRefused: the link is broken and has been opened again, or will be at the
-  /// next call. A peer that misbehaves is no fault. setup.
+  /// next call. A peer that misbehaves is no fault. Not real-time safe.
   virtual HalFault serve(CommandHandler& handler, TimeUs wait) noexcept = 0;
   /// Handles on which the operating system can wait for a request: at most `room` handles are put into
-  /// `handles`. Returns how many; 0 if the link has no handle. setup.
+  /// `handles`. Returns how many; 0 if the link has no handle. Not real-time safe.
   virtual std::uint32_t handles(int* handles, std::uint32_t room) const noexcept {
     return static_cast<void>(handles), static_cast<void>(room), 0;
   }

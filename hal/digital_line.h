@@ -8,7 +8,7 @@ namespace vernier {
 class DigitalInput {
  public:
   virtual ~DigitalInput() = default;
-  /// kRefused: the line cannot be read; `on` is not changed. realtime.
+  /// kRefused: the line cannot be read; `on` is not changed. Real-time safe.
   virtual HalFault read_line(bool& on) noexcept = 0;
 };
 
@@ -16,7 +16,7 @@ class DigitalInput {
 class DigitalOutput {
  public:
   virtual ~DigitalOutput() = default;
-  /// kRefused: the line may have its old state. realtime.
+  /// kRefused: the line may have its old state. Real-time safe.
   virtual HalFault write_line(bool on) noexcept = 0;
 };
 

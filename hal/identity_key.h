@@ -12,10 +12,10 @@ class IdentityKey {
  public:
   static constexpr std::uint32_t kPublicBytes = 32, kSignatureBytes = 64;
   virtual ~IdentityKey() = default;
-  /// The public half, kPublicBytes. setup.
+  /// The public half, kPublicBytes. Not real-time safe.
   virtual const std::uint8_t* public_half() const noexcept = 0;
   /// Signs a message (Ed25519ph, RFC 8032). message: size bytes; signature: room for kSignatureBytes.
-  /// kRefused: the library failed and `signature` is not valid. setup.
+  /// kRefused: the library failed and `signature` is not valid. Not real-time safe.
   virtual HalFault sign(const std::uint8_t* message, std::uint32_t size,
                         std::uint8_t* signature) noexcept = 0;
 };

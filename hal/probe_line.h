@@ -17,9 +17,10 @@ class ProbeLine {
   virtual ~ProbeLine() = default;
   /// Reads the oldest edge that has not been read yet. kNoReading: no edge is waiting. kRefused: edges were
   /// lost since the last call; the next call continues with the remaining edges. read_edge() never waits.
-  /// realtime.
+  /// Real-time safe.
   virtual HalFault read_edge(ProbeEdge& edge) noexcept = 0;
-  /// Returns the largest time between `at` and the edge; 0 if the device does not know this time. setup.
+  /// Returns the largest time between `at` and the edge; 0 if the device does not know this time.
+  /// Not real-time safe.
   virtual InstantNs resolution() const noexcept = 0;
 };
 

@@ -16,18 +16,19 @@ class SlotStore {
   /// Returns the number of bytes that a slot can contain.
   virtual std::uint32_t capacity() const noexcept = 0;
   /// kNoReading: the slot was never written. A flash may instead return the contents of an erased slot, all
-  /// bits one. kRefused: the slot contains fewer bytes than requested, or cannot be read. setup.
+  /// bits one. kRefused: the slot contains fewer bytes than requested, or cannot be read. Not real-time safe.
   virtual HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept = 0;
-  /// Returns when the bytes are on the medium. kRefused: the medium may have a part of the bytes. setup.
+  /// Returns when the bytes are on the medium. kRefused: the medium may have a part of the bytes.
+  /// Not real-time safe.
   virtual HalFault write_record(std::uint32_t place, const std::uint8_t* bytes,
                                 std::uint32_t size) noexcept = 0;
-  /// kNoReading: beyond the written bytes. setup.
+  /// kNoReading: beyond the written bytes. Not real-time safe.
   virtual HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
                               std::uint32_t size) noexcept = 0;
-  /// kNoDevice: beyond the capacity; kRefused: the medium is full or broken. setup.
+  /// kNoDevice: beyond the capacity; kRefused: the medium is full or broken. Not real-time safe.
   virtual HalFault write_image(std::uint32_t slot, std::uint32_t offset, const std::uint8_t* bytes,
                                std::uint32_t size) noexcept = 0;
-  /// Cuts the slot to `size` bytes and returns when the bytes are on the medium. setup.
+  /// Cuts the slot to `size` bytes and returns when the bytes are on the medium. Not real-time safe.
   virtual HalFault finish_image(std::uint32_t slot, std::uint32_t size) noexcept = 0;
 };
 

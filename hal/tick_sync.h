@@ -10,7 +10,7 @@ class TickSync {
  public:
   virtual ~TickSync() = default;
   /// Waits for the next sync signal. kNoReading: no signal came until `latest`; kRefused: the device is
-  /// broken, returned immediately. Several signals since the last call count as one signal. realtime.
+  /// broken, returned immediately. Several signals since the last call count as one signal. Real-time safe.
   virtual HalFault wait_for_sync(InstantNs latest) noexcept = 0;
 };
 

@@ -52,7 +52,7 @@ class ImageView {
 
   /// Validates the whole image, the program included. The views are empty unless open() returns kNone. bytes:
   /// start of the image, aligned to 8, any content; size: bytes available. After kNone, workspace.ranges
-  /// contains the proved range of every register. setup.
+  /// contains the proved range of every register. Not real-time safe.
   ImageFault open(const std::uint8_t* bytes, std::uint32_t size, ImageWorkspace& workspace) noexcept;
 
   const ImageHeader& header() const noexcept { return *header_; }

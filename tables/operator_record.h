@@ -41,7 +41,7 @@ constexpr std::uint32_t kOperatorMagic = 0x3152504f;  // "OPR1"
 constexpr std::uint32_t kOperatorPlace = 2, kOperatorRecordCount = 2;
 
 /// Number of an axis in a record, made from the name, so that a board file with another order of axes keeps
-/// the weight of each axis. Not 0. setup.
+/// the weight of each axis. Not 0. Not real-time safe.
 std::uint32_t operator_axis(const char* name, std::uint32_t size) noexcept;
 
 /// A record and the place where it must be stored.
@@ -68,7 +68,7 @@ enum class OperatorRecordsState : std::uint8_t {
 /// with the state before or after the change, or kDamaged.
 class OperatorRecords {
  public:
-  /// Loads the newer valid record of the two places. setup.
+  /// Loads the newer valid record of the two places. Not real-time safe.
   static OperatorRecords load(const OperatorPlace& first, const OperatorPlace& second) noexcept;
   /// State of the places since load() and the changes stored since. A damaged pair is intact after at
   /// most two changes.
@@ -76,9 +76,9 @@ class OperatorRecords {
   /// True if a record is stored; else state() is the state of a board whose operator has set nothing.
   bool known() const noexcept { return now_.sequence != 0; }
   const OperatorState& state() const noexcept { return now_.state; }
-  /// Returns the change that stores another state. setup.
+  /// Returns the change that stores another state. Not real-time safe.
   OperatorChange change_to(const OperatorState& state) const noexcept;
-  /// The change is on the medium. setup.
+  /// The change is on the medium. Not real-time safe.
   void stored(const OperatorChange& change) noexcept;
 
  private:
@@ -87,7 +87,7 @@ class OperatorRecords {
   OperatorRecordsState places_ = OperatorRecordsState::kNothing;
 };
 
-/// True for a record that a board may use: magic, checksum, sequence. setup.
+/// True for a record that a board may use: magic, checksum, sequence. Not real-time safe.
 bool is_valid(const OperatorRecord& record) noexcept;
 
 }  // namespace vernier

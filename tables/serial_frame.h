@@ -18,14 +18,14 @@ constexpr std::uint32_t kMaxFramedBytes = kMaxReplyBytes + kFrameSumBytes;
 constexpr std::uint32_t kMaxFrameBytes = 2 * kMaxFramedBytes + 2;
 
 /// Puts a message into a frame. message: size bytes, at most kMaxReplyBytes; frame: room for kMaxFrameBytes.
-/// Returns the bytes of the frame. setup.
+/// Returns the bytes of the frame. Not real-time safe.
 std::uint32_t write_frame(const std::uint8_t* message, std::uint32_t size, std::uint8_t* frame) noexcept;
 
 /// Finds the messages in the bytes of a line.
 class FrameReader {
  public:
   /// Takes the next byte; true if the byte completed a message. The message is valid until the next call.
-  /// setup.
+  /// Not real-time safe.
   bool take(std::uint8_t byte) noexcept;
   const std::uint8_t* message() const noexcept { return bytes_; }
   std::uint32_t size() const noexcept { return size_; }

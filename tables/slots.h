@@ -68,7 +68,8 @@ struct SlotChange {
 ///                                                          └──── revert, or a reset ──► confirmed A
 class Slots {
  public:
-  /// Loads the newer valid record of the two; without a valid record, there is no confirmed image. setup.
+  /// Loads the newer valid record of the two; without a valid record, there is no confirmed image.
+  /// Not real-time safe.
   static Slots load(const SlotRecord& first, const SlotRecord& second) noexcept;
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }
@@ -83,14 +84,14 @@ class Slots {
   /// Returns the slot that may be overwritten: neither confirmed nor on trial; kNoSlot while a trial runs.
   std::uint8_t free_slot() const noexcept;
 
-  /// The image in free_slot() is to be tried. Only while no trial runs. setup.
+  /// The image in free_slot() is to be tried. Only while no trial runs. Not real-time safe.
   SlotChange start_trial(std::uint64_t issued, std::uint32_t security) const noexcept;
   /// Returns the change that confirms the image on trial. Call confirm() only while an image is on trial.
-  /// setup.
+  /// Not real-time safe.
   SlotChange confirm() const noexcept;
-  /// Reverts the image on trial. setup.
+  /// Reverts the image on trial. Not real-time safe.
   SlotChange revert() const noexcept;
-  /// The change is on the medium. setup.
+  /// The change is on the medium. Not real-time safe.
   void stored(const SlotChange& change) noexcept;
 
  private:
@@ -100,9 +101,10 @@ class Slots {
   std::uint32_t next_place_ = 0;
 };
 
-/// Converts a valid record of version 1 to the present version; an invalid record gives no record. setup.
+/// Converts a valid record of version 1 to the present version; an invalid record gives no record.
+/// Not real-time safe.
 SlotRecord upgraded(const SlotRecordV1& record) noexcept;
-/// True for a record that a board may use: magic, checksum, slots that exist and differ. setup.
+/// True for a record that a board may use: magic, checksum, slots that exist and differ. Not real-time safe.
 bool is_valid(const SlotRecord& record) noexcept;
 
 }  // namespace vernier

@@ -46,15 +46,15 @@ class LatchRing {
   static constexpr std::int64_t kMostUneven = 8;
 
   /// Adds a sample. sample.at: later than the previous sample; otherwise the ring is emptied and starts with
-  /// this sample. realtime.
+  /// this sample. Real-time safe.
   void add(const LatchSample& sample) noexcept;
 
-  /// Goes to an instant. realtime.
+  /// Goes to an instant. Real-time safe.
   LatchFault seek(InstantNs when) noexcept;
 
   /// Computes the position at the instant of the last successful seek(). axis: below kMaxAxes; rollover:
   /// whole turns (2^32 counts) between two samples are ignored. time_uncertainty: standard uncertainty of the
-  /// instant, 0 .. 2^31 ns. kTooFast or kNone. realtime.
+  /// instant, 0 .. 2^31 ns. kTooFast or kNone. Real-time safe.
   LatchFault position_of(std::uint32_t axis, bool rollover, InstantNs time_uncertainty,
                          LatchedPosition& latched) const noexcept;
 

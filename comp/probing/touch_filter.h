@@ -33,14 +33,14 @@ struct TouchCounts {
 class TouchFilter {
  public:
   /// settle: time after a change of the contact; later edges within this time belong to the same contact, >=
-  /// 0. setup.
+  /// 0. Not real-time safe.
   explicit TouchFilter(InstantNs settle = InstantNs(1'000'000)) noexcept : settle_(settle) {}
 
   /// Takes an edge of the line. at: not earlier than the previous edge. edge() returns true and fills `touch`
-  /// if the edge ended a touch that was settling. realtime.
+  /// if the edge ended a touch that was settling. Real-time safe.
   bool edge(InstantNs at, bool made, Touch& touch) noexcept;
   /// Call wait() when time passes without an edge. Returns true and fills `touch` if the last contact has
-  /// settled at `now`. realtime.
+  /// settled at `now`. Real-time safe.
   bool wait(InstantNs now, Touch& touch) noexcept;
 
   const TouchCounts& counts() const noexcept { return counts_; }

@@ -17,7 +17,7 @@ struct WorkpieceFrame {
   std::int32_t cosine = kOne;  // Q30; cosine^2 + sine^2 within 2^-28 of one
   std::int32_t sine = 0;       // of the angle from the machine's X to the workpiece's X
 
-  /// True if cosine and sine form a rotation and all values are in range. setup.
+  /// True if cosine and sine form a rotation and all values are in range. Not real-time safe.
   constexpr bool valid() const noexcept {
     constexpr std::int64_t kUnit = std::int64_t{kOne} * kOne;
     if (cosine < -kOne || cosine > kOne || sine < -kOne || sine > kOne) return false;
@@ -26,7 +26,7 @@ struct WorkpieceFrame {
       if (at.count <= -kMost || at.count >= kMost) return false;
     return off <= (kUnit >> 28) && off >= -(kUnit >> 28);
   }
-  /// Machine to workpiece coordinates, X, Y, Z; error below 2 nm. machine: |.| < 2^50. realtime.
+  /// Machine to workpiece coordinates, X, Y, Z; error below 2 nm. machine: |.| < 2^50. Real-time safe.
   constexpr void to_workpiece(const PositionNm* machine, PositionNm* workpiece) const noexcept {
     const std::int64_t x = machine[0].count - origin[0].count, y = machine[1].count - origin[1].count;
     workpiece[0] = PositionNm(turned(x, cosine) + turned(y, sine));

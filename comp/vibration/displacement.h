@@ -43,11 +43,11 @@ class Displacement {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts at rest. False, without any change, if a setting is out of range. setup.
+  /// Starts at rest. False, without any change, if a setting is out of range. Not real-time safe.
   bool start(const DisplacementScale& scale) noexcept;
 
   /// Takes a sample, LSB; returns the displacement at the instant of the sample. A sample beyond +-kLimit is
-  /// limited to +-kLimit, a displacement beyond int32 to int32; both are counted. realtime.
+  /// limited to +-kLimit, a displacement beyond int32 to int32; both are counted. Real-time safe.
   LengthNm step(std::int32_t sample) noexcept;
 
   std::uint32_t held() const noexcept { return held_; }

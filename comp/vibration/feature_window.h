@@ -55,17 +55,17 @@ class FeatureWindow {
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
   /// Starts an empty window. `weights` must outlive the window; several axes may share `weights`. False if
-  /// scale or weights are out of range. setup.
+  /// scale or weights are out of range. Not real-time safe.
   bool start(const FeatureScale& scale, const SpectralWeights& weights) noexcept;
 
-  /// Takes one sample, in LSB. A sample beyond +-kLimit is limited to +-kLimit and counted. realtime.
+  /// Takes one sample, in LSB. A sample beyond +-kLimit is limited to +-kLimit and counted. Real-time safe.
   void push(std::int32_t sample) noexcept;
 
-  /// True if n samples have come since start(). realtime.
+  /// True if n samples have come since start(). Real-time safe.
   bool filled() const noexcept { return seen_ >= window_; }
   std::uint32_t held() const noexcept { return held_; }
 
-  /// The features of the last n samples (zeros before the first). realtime.
+  /// The features of the last n samples (zeros before the first). Real-time safe.
   FeatureValues features() const noexcept;
 
  private:

@@ -17,7 +17,7 @@ struct Scaled {
 };
 
 /// Converts an unsigned integer of 128 bits; keeps its upper 64 significant bits (relative error < 2^-63).
-/// realtime.
+/// Real-time safe.
 constexpr Scaled scaled(Wide value) noexcept {
   if (value.high == 0) {
     if (value.low == 0) return {};
@@ -30,10 +30,10 @@ constexpr Scaled scaled(Wide value) noexcept {
 }
 constexpr Scaled scaled(std::uint64_t value) noexcept { return scaled(Wide{0, value}); }
 
-/// Returns a * 2^power, exact. realtime.
+/// Returns a * 2^power, exact. Real-time safe.
 constexpr Scaled shifted(Scaled a, std::int32_t power) noexcept { return {a.mantissa, a.exponent + power}; }
 
-/// Returns a * b, truncated (relative error < 2^-62). realtime.
+/// Returns a * b, truncated (relative error < 2^-62). Real-time safe.
 constexpr Scaled operator*(Scaled a, Scaled b) noexcept {
   if (a.mantissa == 0 || b.mantissa == 0) return {};
   const Wide product = long_product(a.mantissa, b.mantissa);
@@ -54,7 +54,7 @@ constexpr std::uint64_t corrected(std::uint64_t y, std::int64_t r) noexcept {
 constexpr std::uint64_t kOneQ62 = std::uint64_t{1} << 62;
 
 /// 1 / a; a > 0. Start: the line 48/17 - 32/17 d on d = 1/2..1, error at most 1/17. Four Newton steps reduce
-/// the error to 2e-20; truncation of the products leaves 2^-60. realtime.
+/// the error to 2e-20; truncation of the products leaves 2^-60. Real-time safe.
 constexpr Scaled reciprocal(Scaled a) noexcept {
   std::uint64_t y = 13021231110853801140u - long_product(a.mantissa, 8680820740569200760u).high;
   for (int step = 0; step < 4; ++step)
@@ -64,7 +64,7 @@ constexpr Scaled reciprocal(Scaled a) noexcept {
 }
 
 /// 1 / sqrt(a); a > 0. Start: 2.15 - 1.24 d on d = 1/4..1, error at most 0.1. A step changes the error e to
-/// 1.5 e^2; five steps reach 1e-26; the cut products leave 2^-59. realtime.
+/// 1.5 e^2; five steps reach 1e-26; the cut products leave 2^-59. Real-time safe.
 constexpr Scaled inverse_root(Scaled a) noexcept {
   const int odd = a.exponent & 1;
   const std::uint64_t d = a.mantissa >> odd;  // a = d * 2^even, d 2^62..2^64
@@ -79,7 +79,7 @@ constexpr Scaled inverse_root(Scaled a) noexcept {
   return {y << zeros, -62 - 32 - zeros - even / 2};
 }
 
-/// Returns the nearest integer, ties upwards; INT64_MAX if the value is larger. realtime.
+/// Returns the nearest integer, ties upwards; INT64_MAX if the value is larger. Real-time safe.
 constexpr std::int64_t count_of(Scaled a) noexcept {
   if (a.mantissa == 0 || a.exponent < -64) return 0;
   if (a.exponent >= 0) return INT64_MAX;

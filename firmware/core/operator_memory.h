@@ -13,16 +13,16 @@ namespace vernier {
 /// and the links put the present state into Exchange; only the context of the store writes the medium.
 class OperatorMemory {
  public:
-  /// store, wiring, exchange: outlive this object. setup.
+  /// store, wiring, exchange: outlive this object. Not real-time safe.
   OperatorMemory(SlotStore& store, const Wiring& wiring, Exchange& exchange) noexcept
       : store_(store), wiring_(wiring), exchange_(exchange) {}
 
   /// Reads the stored state and puts the weights of the axes into Exchange. If a record was begun and is not
   /// readable, or the two records are not one change apart, the result is a deactivated correction: the
-  /// newest setting may have been a deactivation. Call once, before the first tick. setup.
+  /// newest setting may have been a deactivation. Call once, before the first tick. Not real-time safe.
   OperatorState load() noexcept;
   /// Stores the present state if it differs from the stored state, or if a record is damaged. If the medium
-  /// refuses, the next call tries again. setup.
+  /// refuses, the next call tries again. Not real-time safe.
   void save() noexcept;
   /// True if the last write was refused: a start would restore an older state, or stay deactivated.
   bool refused() const noexcept { return refused_.load(std::memory_order_relaxed); }

@@ -22,7 +22,8 @@ struct ProbeSettings {
   bool rollover[kMaxAxes] = {};                          // whole turns of the axis do not count
   std::uint8_t xyz[3] = {kMaxAxes, kMaxAxes, kMaxAxes};  // board's axes X, Y, Z; kMaxAxes: no such axis
 
-  /// Returns the standard uncertainty of the instant of a touch. resolution: of the edge's stamp. setup.
+  /// Returns the standard uncertainty of the instant of a touch. resolution: of the edge's stamp.
+  /// Not real-time safe.
   InstantNs time_uncertainty(InstantNs resolution) const noexcept;
 };
 
@@ -35,14 +36,14 @@ class Probing {
   static constexpr std::uint32_t kMostWaiting = 8;
 
   /// line: outlives this object. actual: gives the positions of the axes in a tick, and outlives this object;
-  /// null: the positions that the cycle read. setup.
+  /// null: the positions that the cycle read. Not real-time safe.
   Probing(ProbeLine& line, const ProbeSettings& settings, AxisReader* actual = nullptr) noexcept;
 
-  /// Sets the delay from contact to edge, for later edges: 0 .. 50 ms. realtime.
+  /// Sets the delay from contact to edge, for later edges: 0 .. 50 ms. Real-time safe.
   void set_delay(InstantNs delay) noexcept { settings_.delay = delay; }
 
   /// Call after a tick that has read its axes at `woke` and written its corrections. time: the t of the
-  /// machine file in this tick. realtime.
+  /// machine file in this tick. Real-time safe.
   void after_tick(const Cycle& cycle, const TickReport& report, InstantNs woke, TimeUs time,
                   Exchange& exchange) noexcept;
 

@@ -55,49 +55,51 @@ struct LinkRights {
 /// Programs and StoreDesk connect the four duties. The constructor takes all memory.
 class Service : private CommandHandler {
  public:
-  /// board, store: outlive the service. setup.
+  /// board, store: outlive the service. Not real-time safe.
   Service(ServiceOptions options, const Board& board, SlotStore& store);
 
   /// Checks the image of the store and gives it to the first tick. Restores the last settings of the operator
-  /// and the latched fault. setup.
+  /// and the latched fault. Not real-time safe.
   UploadResult boot();
   /// Starts like boot(), but runs an unsigned image given at the start of the board; the store is not
-  /// changed. setup.
+  /// changed. Not real-time safe.
   UploadResult boot_with(std::span<const std::uint8_t> image);
 
-  /// Sleeps until the next tick is due and runs the tick. realtime.
+  /// Sleeps until the next tick is due and runs the tick. Real-time safe.
   TickReport tick() noexcept;
 
-  /// Removes the correction from the next tick on; the correction cannot be applied again. realtime.
+  /// Removes the correction from the next tick on; the correction cannot be applied again. Real-time safe.
   void end() noexcept { ending_ = true; }
 
-  /// Sets a share of all corrections, which multiplies the shares that the links give to axes. realtime.
+  /// Sets a share of all corrections, which multiplies the shares that the links give to axes.
+  /// Real-time safe.
   void set_weight(WeightQ16 weight) noexcept { weight_ = weight; }
 
-  /// Sets the delay of the probe (ProbeSettings) for later edges. realtime.
+  /// Sets the delay of the probe (ProbeSettings) for later edges. Real-time safe.
   void set_probe_delay(InstantNs delay) noexcept {
     if (probing_) probing_->set_delay(delay);
   }
   /// Gives a command of the board itself, like a command from a link. A command that is already waiting is
-  /// kept. realtime.
+  /// kept. Real-time safe.
   void order(Command command) noexcept {
     Command none = Command::kNone;
     exchange_.command.compare_exchange_strong(none, command);
   }
 
-  /// The guardian: hands programs over to the tick, ends trials. guard() never waits. setup.
+  /// The guardian: hands programs over to the tick, ends trials. guard() never waits. Not real-time safe.
   void guard() noexcept { uploader_.programs().guard(now()); }
   /// Serves one link: waits at most `wait` for requests and answers them. Without store_beside, serve() also
-  /// does all other duties except the tick. setup.
+  /// does all other duties except the tick. Not real-time safe.
   HalFault serve(CommandLink& link, TimeUs wait, const LinkRights& rights = {}) noexcept;
   /// The store: executes the requests that a link has left for it and records the actions of the guardian.
-  /// True: a link can collect a reply. setup.
+  /// True: a link can collect a reply. Not real-time safe.
   bool look_after_store() noexcept;
   bool store_is_asked() const noexcept {
     return desk_.asked() ||
            settings_told_.load(std::memory_order_relaxed) != settings_asked_.load(std::memory_order_relaxed);
   }
-  /// Does the duties of the guardian and of the store in one context, one after the other. setup.
+  /// Does the duties of the guardian and of the store in one context, one after the other.
+  /// Not real-time safe.
   void look_after_programs() noexcept;
 
   /// True if an operator deactivated the correction, or held it before this start. For the context of boot().

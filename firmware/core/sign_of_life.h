@@ -13,7 +13,7 @@ class SignOfLife {
   static constexpr InstantNs kPeriod{250'000'000};  // an eighth of the unit's WatchdogSec
 
   explicit SignOfLife(InstantNs now) noexcept : told_(now) {}
-  /// True if the watchdog may be fed now. ticks: number of ticks that ran so far. setup.
+  /// True if the watchdog may be fed now. ticks: number of ticks that ran so far. Not real-time safe.
   bool due(std::uint64_t ticks, InstantNs now) noexcept {
     if (now - told_ < kPeriod || ticks == ticks_) return false;
     ticks_ = ticks;

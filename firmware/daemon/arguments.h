@@ -17,7 +17,7 @@ extern const char* const kUsage;
 /// "vernierd 0.1.0 (commit)".
 extern const char* const kVersion;
 
-/// False: not understood; kUsage is the help text. setup.
+/// False: not understood; kUsage is the help text. Not real-time safe.
 bool parse_arguments(int argc, char** argv, Arguments& arguments);
 
 }  // namespace vernier

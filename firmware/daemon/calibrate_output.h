@@ -15,7 +15,7 @@ namespace vernier {
 /// code. The code changes by at most the whole range in five seconds, and is at its zero at the end. output:
 /// its axis 0, made with `scale`, whose range is used; start: present code; steps: codes on the way up, at
 /// least 2; stop: ends the motion. Fewer than 2 * steps - 1 points in the result: the motion was ended early.
-/// Throws BoardError if a write is refused. setup.
+/// Throws BoardError if a write is refused. Not real-time safe.
 std::vector<CalibrationPoint> calibrate_output(CorrectionWriter& output, const AnalogueScale& scale,
                                                std::int64_t start, int steps, Clock& clock,
                                                std::istream& answers, std::ostream& questions,

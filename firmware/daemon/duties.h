@@ -19,7 +19,8 @@ namespace vernier {
 ///   sensors   waits for drivers.
 class Duties {
  public:
-  /// All arguments outlive this object. priority: SCHED_FIFO of the guardian, 0: an ordinary thread. setup.
+  /// All arguments outlive this object. priority: SCHED_FIFO of the guardian, 0: an ordinary thread.
+  /// Not real-time safe.
   Duties(Service& service, Devices& devices, ServiceManager& manager, int priority);
   /// Ends the threads; the store first completes its present request.
   ~Duties();

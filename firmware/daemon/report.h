@@ -12,11 +12,11 @@ struct GrantReport {
 };
 
 /// Reports the result of a run to people (standard output; standard error if json is "-") and to programs
-/// (json: a file, "-" or empty). False if the file cannot be written. tool.
+/// (json: a file, "-" or empty). False if the file cannot be written.
 bool report_run(const Runner& runner, const Cycle& cycle, const GrantReport& grant, const std::string& json);
 
 /// Writes a result for programs: json is a file, "-" for standard output, or empty for no output. Returns
-/// false, with a message on standard error, if the result cannot be written. tool.
+/// false, with a message on standard error, if the result cannot be written.
 bool write_result(const std::string& json, const std::string& text);
 
 }  // namespace vernier

@@ -23,18 +23,18 @@ class Component {
   /// Reports changes in LinuxCNC's log. level: as of rtapi_print_msg, 1: an error, 3: a note.
   using Say = void (*)(int level, const char* text);
 
-  /// pins, hatch: outlive this object. mm_per_unit: unit of the machine's lengths, mm. setup.
+  /// pins, hatch: outlive this object. mm_per_unit: unit of the machine's lengths, mm. Not real-time safe.
   Component(const Pins& pins, Hatch& hatch, const Wiring& wiring, double mm_per_unit, Say say);
-  /// Call the destructor when no tick runs any more. setup.
+  /// Call the destructor when no tick runs any more. Not real-time safe.
   ~Component();
   Component(const Component&) = delete;
   Component& operator=(const Component&) = delete;
-  /// Starts the two threads; false if the system refuses them. setup.
+  /// Starts the two threads; false if the system refuses them. Not real-time safe.
   bool start() noexcept;
-  /// Ends the two threads. Ticks may still run; the hatch is not used any more. setup.
+  /// Ends the two threads. Ticks may still run; the hatch is not used any more. Not real-time safe.
   void stop() noexcept;
 
-  /// A cycle of the servo thread. period_ns: of the thread. realtime.
+  /// A cycle of the servo thread. period_ns: of the thread. Real-time safe.
   void tick(long period_ns) noexcept;
 
  private:

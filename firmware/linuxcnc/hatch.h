@@ -21,17 +21,18 @@ struct Call {
   std::uint8_t bytes[kMostBytes] = {};
 };
 
-/// True if the process exists and is not a zombie (a process that only waits for its parent). setup.
+/// True if the process exists and is not a zombie (a process that only waits for its parent).
+/// Not real-time safe.
 bool process_lives(std::int32_t pid) noexcept;
-/// Waits at most `wait` for a request. setup.
+/// Waits at most `wait` for a request. Not real-time safe.
 bool wait_for_call(Call& call, TimeUs wait) noexcept;
 inline bool is_asked(const Call& call) noexcept {
   return (call.turn.load(std::memory_order_acquire) & 1) != 0;
 }
-/// The request is answered: result, size and bytes are in the call. setup.
+/// The request is answered: result, size and bytes are in the call. Not real-time safe.
 void answer_call(Call& call) noexcept;
 /// Waits until the call is answered. False, and the call is withdrawn, if `peer` has ended or `stop` is set.
-/// setup.
+/// Not real-time safe.
 bool make_call(Call& call, std::int32_t peer, const std::atomic<bool>& stop) noexcept;
 
 /// Requests to the component's store, which vernier-hal keeps (hal/slot_store.h).

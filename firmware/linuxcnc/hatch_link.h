@@ -8,10 +8,10 @@ namespace vernier {
 /// The component's side of the links that vernier-hal serves.
 class HatchLink : public CommandLink {
  public:
-  /// call: outlives the link. setup.
+  /// call: outlives the link. Not real-time safe.
   explicit HatchLink(Call& call) noexcept : call_(call) {}
   HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
-  /// The link's access, for the waiting request; LinkAccess::kRead without a request. setup.
+  /// The link's access, for the waiting request; LinkAccess::kRead without a request. Not real-time safe.
   LinkAccess access() const noexcept;
 
  private:
@@ -21,7 +21,7 @@ class HatchLink : public CommandLink {
 /// vernier-hal's side: passes the requests of a link to the component.
 class HatchHandler : public CommandHandler {
  public:
-  /// hatch, stop: outlive the handler. setup.
+  /// hatch, stop: outlive the handler. Not real-time safe.
   HatchHandler(Hatch& hatch, LinkAccess access, const std::atomic<bool>& stop) noexcept
       : hatch_(hatch), access_(access), stop_(stop) {}
   void comes_over(std::uint64_t connection) override { connection_ = connection; }

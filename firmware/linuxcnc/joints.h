@@ -21,23 +21,23 @@ namespace vernier {
 /// from the new zero when the joint is homed.
 class Joints : public AxisReader, public CorrectionWriter {
  public:
-  /// pins: outlive this object. mm_per_unit: unit of the machine's lengths, mm. setup.
+  /// pins: outlive this object. mm_per_unit: unit of the machine's lengths, mm. Not real-time safe.
   Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit = 1) noexcept;
 
-  /// Reads the joints' pins. seconds: of the thread's period. realtime.
+  /// Reads the joints' pins. seconds: of the thread's period. Real-time safe.
   void read(double seconds) noexcept;
   /// Adds the corrections to the commands, and subtracts from the feedback the corrections that were added.
-  /// realtime.
+  /// Real-time safe.
   void write() noexcept;
-  /// Largest change of a joint's correction in a tick, counts; 0: no change. realtime.
+  /// Largest change of a joint's correction in a tick, counts; 0: no change. Real-time safe.
   void set_slew(std::uint32_t joint, std::int64_t counts) noexcept { joints_[joint].slew = counts; }
   bool all_homed() const noexcept { return all_homed_; }
   /// True if the correction would move this joint (or any joint) past its limit. The correction is then
-  /// limited. realtime.
+  /// limited. Real-time safe.
   bool at_limit(std::uint32_t joint) const noexcept { return joints_[joint].at_limit; }
   bool any_at_limit() const noexcept;
   /// Reads the position of a joint, in its counts: feedback without the correction. kNoReading: no feedback.
-  /// realtime.
+  /// Real-time safe.
   HalFault stands(std::uint32_t joint, AxisPosition& position) const noexcept;
 
   HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override;
@@ -85,7 +85,7 @@ class Joints : public AxisReader, public CorrectionWriter {
 /// Positions of the joints, for touches.
 class StandingJoints : public AxisReader {
  public:
-  /// joints: outlive this object. setup.
+  /// joints: outlive this object. Not real-time safe.
   explicit StandingJoints(const Joints& joints) noexcept : joints_(joints) {}
   HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
     return joints_.stands(axis, reading.position);

@@ -20,7 +20,7 @@ struct LoadedWiring {
 };
 
 /// Checks every argument before any object is made. Returns true, or false with `why`: one line that names
-/// the argument and its error. setup.
+/// the argument and its error. Not real-time safe.
 bool read_load_arguments(const LoadArguments& arguments, LoadedWiring& loaded, std::span<char> why);
 
 }  // namespace vernier

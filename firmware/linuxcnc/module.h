@@ -2,6 +2,6 @@
 #pragma once
 
 /// rtapi_app calls rtapi_app_main when it loads the module, and rtapi_app_exit before it unloads the module.
-/// 0, or a negative errno. setup.
+/// 0, or a negative errno. Not real-time safe.
 extern "C" int rtapi_app_main();
 extern "C" void rtapi_app_exit();

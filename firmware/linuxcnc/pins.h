@@ -28,7 +28,7 @@ struct Pins {
   hal_u32_t *execution, *execution_max;  // ns
 };
 
-/// Exports the pins of a component. Returns null if HAL refuses a pin. setup.
+/// Exports the pins of a component. Returns null if HAL refuses a pin. Not real-time safe.
 Pins* make_pins(int component, const Wiring& wiring) noexcept;
 
 }  // namespace vernier

@@ -9,7 +9,7 @@ namespace vernier {
 /// refused, as by a broken medium; the running image continues.
 class RemoteStore : public SlotStore {
  public:
-  /// hatch, stop: outlive the store. setup.
+  /// hatch, stop: outlive the store. Not real-time safe.
   RemoteStore(Hatch& hatch, std::uint32_t capacity, const std::atomic<bool>& stop) noexcept
       : hatch_(hatch), stop_(stop), capacity_(capacity) {}
 
@@ -21,7 +21,7 @@ class RemoteStore : public SlotStore {
   HalFault write_image(std::uint32_t slot, std::uint32_t offset, const std::uint8_t* bytes,
                        std::uint32_t size) noexcept override;
   HalFault finish_image(std::uint32_t slot, std::uint32_t size) noexcept override;
-  /// Bytes of the image that vernier-hal was started with. setup.
+  /// Bytes of the image that vernier-hal was started with. Not real-time safe.
   HalFault read_given(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept;
 
  private:

@@ -15,10 +15,12 @@ class AnalogueOutput : public OutputDevice {
  public:
   /// channel: directory of an exported channel of the PWM class (/sys/class/pwm/pwmchip0/pwm0); scale: in ns
   /// of on-time; period: ns, >= scale.high. A channel that is off, or has another period, is set to the zero
-  /// of its scale and switched on. Returns null with `error` set if the channel cannot be set up. setup.
+  /// of its scale and switched on. Returns null with `error` set if the channel cannot be set up.
+  /// Not real-time safe.
   static std::unique_ptr<AnalogueOutput> pwm(const std::string& channel, std::int64_t period_ns,
                                              const AnalogueScale& scale, std::string& error);
-  /// device: directory of an IIO device; channel: the N of out_voltageN_raw; scale: in codes. setup.
+  /// device: directory of an IIO device; channel: the N of out_voltageN_raw; scale: in codes.
+  /// Not real-time safe.
   static std::unique_ptr<AnalogueOutput> iio_dac(const std::string& device, unsigned channel,
                                                  const AnalogueScale& scale, std::string& error);
 
@@ -36,7 +38,7 @@ class AnalogueOutput : public OutputDevice {
   const AnalogueScale& scale(std::uint32_t) const noexcept override { return converter_.scale(); }
 
   /// Reads the code of the device and writes the same code again: the axis does not move. kNoReading: the
-  /// driver does not give the code; it was not written. setup.
+  /// driver does not give the code; it was not written. Not real-time safe.
   HalFault rewrite() noexcept;
 
  private:

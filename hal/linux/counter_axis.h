@@ -19,13 +19,13 @@ class CounterAxis : public PositionReader {
  public:
   /// count: directory of the count, ".../counter0/count0". bits: width of the counter, 2 .. 40; 0: the
   /// attribute `ceiling` decides. Returns null with `error` set if the count cannot be read, or is not
-  /// enabled. setup.
+  /// enabled. Not real-time safe.
   static std::unique_ptr<CounterAxis> open(const std::string& count, int bits, const PositionScale& scale,
                                            std::string& error);
 
   /// Reads the count: one system call. realtime, if the counter's bus is fast enough.
   void begin_tick() noexcept override;
-  /// kNoReading: the driver gave an error, or a count beyond the range of the counter. realtime.
+  /// kNoReading: the driver gave an error, or a count beyond the range of the counter. Real-time safe.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
 
  private:

@@ -8,7 +8,7 @@ namespace vernier {
 class FileLock {
  public:
   /// Locks `path`, which exists. Returns empty, or the reason of a failure: "in use by another process".
-  /// setup.
+  /// Not real-time safe.
   std::string take(const std::string& path);
   FileLock() = default;
   ~FileLock();
@@ -19,7 +19,7 @@ class FileLock {
   int fd_ = -1;
 };
 
-/// Locks an open descriptor; false if another process has the lock. setup.
+/// Locks an open descriptor; false if another process has the lock. Not real-time safe.
 bool lock_descriptor(int fd) noexcept;
 
 }  // namespace vernier

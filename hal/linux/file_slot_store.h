@@ -9,13 +9,13 @@ namespace vernier {
 /// Slots as files of a directory: slot0.vup, slot1.vup, record0 to record3; every finished write is synced.
 class FileSlotStore : public SlotStore {
  public:
-  /// directory: exists and may be written; capacity: most bytes of a slot. setup.
+  /// directory: exists and may be written; capacity: most bytes of a slot. Not real-time safe.
   FileSlotStore(std::string directory, std::uint32_t capacity);
 
   std::uint32_t capacity() const noexcept override { return capacity_; }
   HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override;
   /// Makes the file of a record of `size` bytes, all ones (never written), if there is no file: the first
-  /// write then needs no further room on the medium. setup.
+  /// write then needs no further room on the medium. Not real-time safe.
   HalFault reserve_record(std::uint32_t place, std::uint32_t size) noexcept;
   HalFault write_record(std::uint32_t place, const std::uint8_t* bytes, std::uint32_t size) noexcept override;
   HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,

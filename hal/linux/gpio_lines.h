@@ -22,14 +22,14 @@ class GpioLine {
   enum class Use { kInput, kOutput, kEdges };
 
   /// Requests the line; an output starts off. Returns null with `error` set if the chip or line does not
-  /// exist, or if the line is in use. setup.
+  /// exist, or if the line is in use. Not real-time safe.
   static std::unique_ptr<GpioLine> request(const GpioAddress& address, Use use, std::string& error);
   virtual ~GpioLine() = default;
 
-  /// 1 on, 0 off, -1 with errno set. realtime.
+  /// 1 on, 0 off, -1 with errno set. Real-time safe.
   virtual int get() noexcept = 0;
   virtual bool set(bool on) noexcept = 0;
-  /// Moves the edges of the kernel into the queue without waiting. realtime.
+  /// Moves the edges of the kernel into the queue without waiting. Real-time safe.
   virtual void read_edges(EdgeQueue& queue) noexcept = 0;
 };
 
@@ -46,7 +46,8 @@ class GpioProbeLine : public ProbeLine {
   InstantNs resolution() const noexcept override { return InstantNs{}; }
   /// Times that edges were missing; only goes up.
   std::uint64_t losses() const noexcept { return queue_.losses(); }
-  /// Reads the line. 1: the probe touches, 0: the probe does not touch, -1: the line cannot be read. setup.
+  /// Reads the line. 1: the probe touches, 0: the probe does not touch, -1: the line cannot be read.
+  /// Not real-time safe.
   int level() noexcept { return line_->get(); }
 
  private:

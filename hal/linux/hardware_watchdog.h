@@ -10,7 +10,7 @@ namespace vernier {
 class HardwareWatchdog {
  public:
   /// Starts the watchdog immediately, with a time of `seconds` if the driver supports setting the time.
-  /// Returns null with `error` set if the watchdog cannot be opened. setup.
+  /// Returns null with `error` set if the watchdog cannot be opened. Not real-time safe.
   static std::unique_ptr<HardwareWatchdog> open(const std::string& device, int seconds, std::string& error);
   /// Without an earlier disarm(), the watchdog resets the computer when its time is over.
   ~HardwareWatchdog();
@@ -18,7 +18,7 @@ class HardwareWatchdog {
   HardwareWatchdog& operator=(const HardwareWatchdog&) = delete;
 
   void feed() noexcept;
-  /// Stops the watchdog at an orderly end, if the driver supports this. setup.
+  /// Stops the watchdog at an orderly end, if the driver supports this. Not real-time safe.
   void disarm() noexcept;
 
  private:

@@ -12,17 +12,18 @@ namespace vernier {
 /// number of an axis, from 0. Setting up moves no axis.
 class OutputDevice : public CorrectionWriter {
  public:
-  /// Takes the device for exclusive use; false if another process, or another output, uses it. setup.
+  /// Takes the device for exclusive use; false if another process, or another output, uses it.
+  /// Not real-time safe.
   virtual bool lock() noexcept = 0;
   /// Reads the correction that the device has now, and that the daemon must remove. kNoReading: the device
-  /// does not report it. setup.
+  /// does not report it. Not real-time safe.
   virtual HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept = 0;
-  /// Tries the device without a motion: empty, or the error. setup.
+  /// Tries the device without a motion: empty, or the error. Not real-time safe.
   virtual std::string attempt(std::uint32_t axis) = 0;
   /// Returns the number of writes whose correction was beyond the range.
   virtual std::uint64_t held_at_end(std::uint32_t axis) const noexcept = 0;
   virtual const AnalogueScale& scale(std::uint32_t axis) const noexcept = 0;
-  /// Returns what the device reports of its work when the daemon ends; empty: nothing. setup.
+  /// Returns what the device reports of its work when the daemon ends; empty: nothing. Not real-time safe.
   virtual std::string account() const { return {}; }
 };
 

@@ -13,13 +13,15 @@ struct RealtimeGrant {
 
 /// Makes the calling thread a realtime thread: memory locked, stack touched, SCHED_FIFO, deep idle states off
 /// while the process lives. Continues without the refused settings; the caller reports the refused settings.
-/// priority: 1..99. setup.
+/// priority: 1..99. Not real-time safe.
 RealtimeGrant become_realtime(int priority) noexcept;
 
-/// Gives the calling thread only SCHED_FIFO, for a thread beside the tick. Returns 0 or the errno. setup.
+/// Gives the calling thread only SCHED_FIFO, for a thread beside the tick. Returns 0 or the errno.
+/// Not real-time safe.
 int become_realtime_thread(int priority) noexcept;
 
-/// Threads made from now on have stacks of 1 MB, in the place of 8 that would all be locked in memory. setup.
+/// Threads made from now on have stacks of 1 MB, in the place of 8 that would all be locked in memory.
+/// Not real-time safe.
 void keep_stacks_small() noexcept;
 
 /// Number of stack bytes that become_realtime touches, so that no page fault occurs in the tick.

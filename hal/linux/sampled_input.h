@@ -15,7 +15,7 @@ class SampledInput : public InputReader {
   /// sample(), and not the thread of the tick.
   HalFault sample() noexcept;
   /// The newest sample, once per tick. kNoReading: the last attempt failed, no sample was taken yet, or no
-  /// new sample came for stale_reads reads. realtime.
+  /// new sample came for stale_reads reads. Real-time safe.
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
 
   static constexpr double kPerUnit = 1e6;  // inputs count in millionths of their unit

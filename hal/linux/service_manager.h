@@ -8,14 +8,14 @@ namespace vernier {
 /// not fit is dropped.
 class ServiceManager {
  public:
-  /// Reads the address of the service manager from NOTIFY_SOCKET. setup.
+  /// Reads the address of the service manager from NOTIFY_SOCKET. Not real-time safe.
   ServiceManager() noexcept;
   ~ServiceManager();
   ServiceManager(const ServiceManager&) = delete;
   ServiceManager& operator=(const ServiceManager&) = delete;
 
   /// state: "READY=1", "WATCHDOG=1", "STOPPING=1". Returns false if a service manager is present and the
-  /// message could not be sent. setup.
+  /// message could not be sent. Not real-time safe.
   bool notify(const char* state) noexcept;
 
  private:

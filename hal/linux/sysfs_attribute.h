@@ -15,25 +15,25 @@ class SysfsAttribute {
   enum class Use { kRead, kWrite, kBoth };
 
   /// Returns nullopt with `error` set ("/sys/...: No such file or directory") if the attribute cannot be
-  /// opened. setup.
+  /// opened. Not real-time safe.
   static std::optional<SysfsAttribute> open(const std::string& path, Use use, std::string& error);
   SysfsAttribute(SysfsAttribute&& other) noexcept;
   SysfsAttribute& operator=(SysfsAttribute&& other) noexcept;
   ~SysfsAttribute();
 
-  /// Takes the attribute for exclusive use; false if another process uses it. setup.
+  /// Takes the attribute for exclusive use; false if another process uses it. Not real-time safe.
   bool lock() noexcept;
 
   /// Writes the number and a line feed. kRefused: the driver or the device refused. realtime, if the bus of
   /// the device is fast enough.
   HalFault write(std::int64_t value) noexcept;
-  /// Writes a word ("normal"). setup.
+  /// Writes a word ("normal"). Not real-time safe.
   HalFault write(const std::string& word) noexcept;
   /// Reads a decimal number, with or without a fraction, in millionths; further digits are cut off.
   /// kNoReading: the driver gave an error, an empty text, or no number; `micro` is then not changed. Waits as
   /// long as the driver does.
   HalFault read_micro(std::int64_t& micro) noexcept;
-  /// Reads a whole number; errors as for read_micro. setup.
+  /// Reads a whole number; errors as for read_micro. Not real-time safe.
   HalFault read(std::int64_t& value) noexcept;
 
  private:

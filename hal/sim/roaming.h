@@ -20,7 +20,7 @@ class Roaming : public Trajectory {
   /// tick: time between two ticks; share_per_s: peak speed over range, 1/s.
   Roaming(const std::vector<RoamingAxis>& axes, std::vector<InputMicro> inputs, TimeUs tick,
           double share_per_s, std::uint64_t seed);
-  /// Lets an input oscillate around its value as a sine: amplitude in 1e-6 of its unit. setup.
+  /// Lets an input oscillate around its value as a sine: amplitude in 1e-6 of its unit. Not real-time safe.
   void vibrate(std::uint32_t input, double amplitude_micro, double frequency_Hz);
   void at(std::int64_t tick, PlantState& state) noexcept override;
 

@@ -23,35 +23,36 @@ struct AnalogueScale {
   std::int64_t low = 0, high = 0;  // ends of the range that is used, codes; 0 <= low < high
   bool inverted = false;           // a positive correction lowers the code
 
-  /// True if the scale can be used. setup.
+  /// True if the scale can be used. Not real-time safe.
   bool valid() const noexcept {
     return span > 0 && span <= kMostCounts && codes > 0 && codes <= INT32_MAX && low >= 0 && low < high &&
            high <= INT32_MAX && zero >= low && zero <= high;
   }
   /// wanted_code returns the code of a correction, without limits; code_for returns the code that is written.
-  /// In the tick, AnalogueConverter computes both. setup.
+  /// In the tick, AnalogueConverter computes both. Not real-time safe.
   std::int64_t wanted_code(AxisTravel correction) const noexcept;
   std::int64_t code_for(AxisTravel correction) const noexcept;
-  /// Returns the correction that a code represents, to the nearest count. code: 0 .. 2^31. setup.
+  /// Returns the correction that a code represents, to the nearest count. code: 0 .. 2^31.
+  /// Not real-time safe.
   AxisTravel correction_of(std::int64_t code) const noexcept {
     const std::int64_t off = RoundedRatio(span, codes).of(code - zero);
     return AxisTravel(inverted ? -off : off);
   }
 };
 
-/// A scale at work. realtime.
+/// A scale at work. Real-time safe.
 class AnalogueConverter {
  public:
-  /// scale: must be valid(). setup.
+  /// scale: must be valid(). Not real-time safe.
   explicit AnalogueConverter(const AnalogueScale& scale) noexcept
       : scale_(scale), ratio_(scale.codes, scale.span) {}
 
-  /// Returns the code of a correction, without the limits of the range. correction: any. realtime.
+  /// Returns the code of a correction, without the limits of the range. correction: any. Real-time safe.
   std::int64_t wanted_code(AxisTravel correction) const noexcept {
     const std::int64_t off = ratio_.of(correction.count);
     return scale_.zero + (scale_.inverted ? -off : off);
   }
-  /// Returns the code that is written. realtime.
+  /// Returns the code that is written. Real-time safe.
   std::int64_t code_for(AxisTravel correction) const noexcept {
     return clamp(wanted_code(correction), scale_.low, scale_.high);
   }

@@ -15,7 +15,7 @@ class EdgeQueue {
   static constexpr std::uint32_t kNoNumber = 0;
 
   /// Adds an edge. number: increases by one with each edge, from 1; kNoNumber if the device gives no numbers.
-  /// If the queue is full, the edge is dropped and reported as lost. realtime.
+  /// If the queue is full, the edge is dropped and reported as lost. Real-time safe.
   void put(const ProbeEdge& edge, std::uint32_t number = kNoNumber) noexcept {
     if (count_ == kRoom) return put_loss();
     const bool out_of_turn = known_ && edge.made == last_made_;
@@ -27,13 +27,13 @@ class EdgeQueue {
     last_made_ = edge.made;
     last_number_ = number;
   }
-  /// Records that edges were lost after the last edge in the queue. realtime.
+  /// Records that edges were lost after the last edge in the queue. Real-time safe.
   void put_loss() noexcept {
     loss_ = true;
     known_ = false;
   }
   /// Oldest edge. kNoReading: the queue is empty; kRefused: edges are missing here, the next call continues.
-  /// realtime.
+  /// Real-time safe.
   HalFault take(ProbeEdge& edge) noexcept {
     bool& missing = count_ > 0 ? entries_[first_].after_loss : loss_;
     if (missing) {

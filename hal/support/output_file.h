@@ -14,11 +14,10 @@ namespace vernier {
 /// A device, pipe or terminal is written to and never replaced. This also applies to an open file of this
 /// process (/dev/stdout, /dev/fd/N). Waits for the reader of a named pipe, as > of a shell does. Returns the
 /// reason of a failure (a folder, a socket, no right, a full medium); an ordinary file is then unchanged.
-/// setup, tool.
 std::error_code write_output(const std::string& path, std::string_view text);
 
 /// Makes an output folder and the folders above it. A link to a folder that does not exist is followed and
-/// kept. A folder that already exists is no error. Returns the reason of a failure. setup, tool.
+/// kept. A folder that already exists is no error. Returns the reason of a failure.
 std::error_code make_output_folder(const std::string& path);
 
 }  // namespace vernier

@@ -14,7 +14,7 @@ class RoundedRatio {
  public:
   static constexpr std::int64_t kMost = std::int64_t{1} << 50;
 
-  /// numerator, denominator: 1 .. kMost. setup.
+  /// numerator, denominator: 1 .. kMost. Not real-time safe.
   constexpr RoundedRatio(std::int64_t numerator, std::int64_t denominator) noexcept
       : numerator_(static_cast<std::uint64_t>(numerator)),
         denominator_(static_cast<std::uint64_t>(denominator)),
@@ -29,7 +29,7 @@ class RoundedRatio {
     }
   }
 
-  /// value: limited to +-kMost; the result is limited too. realtime.
+  /// value: limited to +-kMost; the result is limited too. Real-time safe.
   constexpr std::int64_t of(std::int64_t value) const noexcept {
     const bool beyond = value >= kMost || value <= -kMost;
     const auto size = static_cast<std::uint64_t>(beyond ? kMost : magnitude_of(value));

@@ -11,10 +11,10 @@ namespace vernier {
 /// counter. The first count decides where the counter begins: a count in the upper half is negative.
 class WrappedCount {
  public:
-  /// range: number of different counts, 2 .. 2^40; a count is 0 .. range - 1. setup.
+  /// range: number of different counts, 2 .. 2^40; a count is 0 .. range - 1. Not real-time safe.
   explicit constexpr WrappedCount(std::int64_t range) noexcept : range_(range) {}
 
-  /// Takes the newest count. False: the count is not in the range, and is not taken. realtime.
+  /// Takes the newest count. False: the count is not in the range, and is not taken. Real-time safe.
   constexpr bool take(std::int64_t count) noexcept {
     if (count < 0 || count >= range_) return false;
     std::int64_t step = count - last_;
@@ -40,7 +40,7 @@ struct PositionScale {
   bool inverted = false;              // a larger number is a smaller position
 };
 
-/// A scale at work. realtime.
+/// A scale at work. Real-time safe.
 class PositionConverter {
  public:
   explicit constexpr PositionConverter(const PositionScale& scale) noexcept

@@ -38,7 +38,7 @@ bool is_unmeasured(const model::Machine& machine, const Suspect& suspect);
 /// instrument is fitted again, with any rotation. The sensitivities are computed at the new set-up. Tested
 /// parameters are the free parameters. Further tested parameters, unless the chain has the same ones as free
 /// parameters: reversal and scale of every axis, a tilt and an offset of every transform, a drift of the
-/// instrument along each direction that it reads. Throws InputError if the machine was never fitted. tool.
+/// instrument along each direction that it reads. Throws InputError if the machine was never fitted.
 CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
                       std::string label);
 

@@ -41,7 +41,7 @@ struct CheckAnswer {
 /// none). A parameter that an earlier check did not test has a ratio of 1 for that check. The weights of a
 /// parameter are fixed before its first reading. A check whose readings scatter more than stated is excluded
 /// from the evidence. checks: in the order of time, of one machine, at least one check. Throws
-/// std::logic_error if a number that the decision needs is not finite. tool.
+/// std::logic_error if a number that the decision needs is not finite.
 CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms);
 
 }  // namespace vernier::check

@@ -17,7 +17,7 @@ struct CheckHistory {
 std::string identity_of(const model::Machine& machine);
 
 /// Converts a history to the text of its file, and back. A file of version 1 has no usable record and is read
-/// as the file of no machine. Throws InputError with the file and the error in the file. tool.
+/// as the file of no machine. Throws InputError with the file and the error in the file.
 std::string history_text(const CheckHistory& history);
 CheckHistory parse_history(const std::string& text, const std::string& file);
 

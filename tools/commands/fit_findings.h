@@ -9,7 +9,7 @@ namespace vernier::commands {
 /// Prints the findings of the last fit of a machine file on standard error, one line each.
 void repeat_findings(const model::Machine& machine);
 
-/// Reads a machine file and repeats the findings of its last fit. Throws InputError. tool.
+/// Reads a machine file and repeats the findings of its last fit. Throws InputError.
 model::Machine read_model(const std::string& path);
 
 }  // namespace vernier::commands

@@ -26,7 +26,7 @@ struct Survey {
   model::Machine machine;
   model::Measurement rows;
 };
-/// prepare: changes the machine after each reading of the file; may be empty. Throws InputError. tool.
+/// prepare: changes the machine after each reading of the file; may be empty. Throws InputError.
 Survey read_survey(const SurveyArguments& arguments,
                    const std::function<model::Machine(model::Machine)>& prepare = {});
 

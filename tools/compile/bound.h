@@ -10,11 +10,10 @@ namespace vernier::compile {
 /// Returns `rounding`, `table`, `function`, `input`, `lag`.
 const char* name_of(ErrorSource source);
 
-/// Returns the bounds of all outputs. tool.
+/// Returns the bounds of all outputs.
 std::vector<OutputBound> bounds_of(const model::Machine& machine, const Derivation& derivation,
                                    const LoweredProgram& program);
 /// Returns the proved bound of the error of the tool's direction; nullopt if the direction is not corrected.
-/// tool.
 std::optional<TiltBound> tilt_bound_of(const Derivation& derivation, const LoweredProgram& program);
 
 }  // namespace vernier::compile

@@ -12,7 +12,6 @@ namespace vernier::compile {
 /// statement per output. Assumptions of the script (its hypotheses): the declared ranges; the error of a
 /// channel's format; the error and the slope of each table and function. Not in the script: the neglected
 /// terms of the error equation, the second order of the correction, the conversion of an output to counts.
-/// tool.
 std::string print_certificate(const model::Machine& machine, const CompiledMachine& compiled);
 
 }  // namespace vernier::compile

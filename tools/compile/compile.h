@@ -13,7 +13,7 @@ namespace vernier::compile {
 
 /// Compiles a machine (FORMATS section 1). Throws InputError in one line if the machine cannot be compiled.
 /// Throws LimitNotMet, which names the dominant term, if the bound exceeds the budget. machine_text: the
-/// bytes of the machine file, for its hash. tool.
+/// bytes of the machine file, for its hash.
 CompiledMachine compile_machine(const model::Machine& machine, const std::string& machine_text,
                                 const CompileOptions& options);
 
@@ -26,7 +26,7 @@ struct LoadedImage {
   ImageWorkspace workspace;
 };
 /// Throws InputError if a file is missing, if the image is refused (with the cause), or if the image does not
-/// belong to the machine.xml of the directory. tool.
+/// belong to the machine.xml of the directory.
 std::unique_ptr<LoadedImage> load_image_dir(const std::string& directory);
 /// Loads an image from bytes instead of a directory. Throws InputError with the cause.
 std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image,

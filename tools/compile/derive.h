@@ -12,7 +12,7 @@ namespace vernier::compile {
 /// the machine corrects orientation, the rotary axes first correct the direction. The linear axes then
 /// correct the point, including the influence of the rotary axes. Throws InputError in one line if the
 /// machine cannot be compiled: a free static without nominal, an axis without range, an axis whose nominal
-/// motion has a step, an expression that the program has no operation for. tool.
+/// motion has a step, an expression that the program has no operation for.
 Derivation derive(const model::Machine& machine, double neglect_mm, int evaluations = 1);
 
 }  // namespace vernier::compile

@@ -19,7 +19,7 @@ struct Dual {
 /// the nominal chain at the command.
 using Additions = std::map<std::size_t, NodeId>;
 
-/// Converts expressions of the machine file into duals. tool.
+/// Converts expressions of the machine file into duals.
 class Translator {
  public:
   Translator(const model::Machine& machine, Derivation& derivation, Additions added = {})

@@ -24,7 +24,7 @@ struct Tilting {
 /// derivation.orientation. Damped least squares: near a pose in which both axes tilt the tool in the same
 /// direction, the component that they cannot reach decreases to 0; the other component remains (Nakamura and
 /// Hanafusa, ASME J. Dyn. Sys. 108 (1986) 163). Returns nullopt if no rotary axis tilts the tool. neglect:
-/// rad. tool.
+/// rad.
 std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation& derivation, double neglect);
 
 /// Returns a value as a separate node that is limited to +-limit. A correction that depends on the limited
@@ -32,7 +32,7 @@ std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation
 NodeId held_within(Graph& graph, NodeId value, double limit);
 
 /// For each state: true if two axes tilt the tool in nearly the same direction there, so that the correction
-/// of its direction is damped. All values are false if no direction is corrected. tool.
+/// of its direction is damped. All values are false if no direction is corrected.
 std::vector<bool> damped_poses(const model::Machine& machine, const model::States& states);
 
 }  // namespace vernier::compile

@@ -18,7 +18,7 @@ Segment make_segment(std::int64_t start, std::int64_t end);
 std::vector<Segment> make_segments(const std::vector<std::int64_t>& positions);
 
 /// Returns a table from its segments and the coefficients of each column, piece after piece (degree + 1
-/// coefficients per piece). The table has a grid if its stations are evenly spaced. tool.
+/// coefficients per piece). The table has a grid if its stations are evenly spaced.
 LoweredTable make_table(const std::string& name, const std::vector<Segment>& segments, std::uint16_t degree,
                         const std::vector<std::vector<std::int32_t>>& columns);
 
@@ -37,7 +37,7 @@ struct FunctionPieces {
 
 /// low, high: counts of the argument's register, both reachable; argument_bits: fraction bits of the
 /// argument. Piece lengths halve until the 4th-derivative bound h^4/384 * max|f''''| (de Boor, cubic Hermite)
-/// is below 2^-26 of the result's magnitude. tool.
+/// is below 2^-26 of the result's magnitude.
 FunctionPieces make_pieces(Function f, std::int64_t low, std::int64_t high, int argument_bits);
 
 /// Value, slopes and their quantised form of one cubic piece. Computed from the end values and end slopes

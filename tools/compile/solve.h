@@ -39,7 +39,7 @@ using Solver = std::function<Solved(Graph&, const NodeVector& v)>;
 /// the squares of the motions, J' (J J')^-1. If there are fewer axes than directions that they reach
 /// anywhere, solve_axes minimises the squares of the residual, (J'J)^-1 J'. The determinant has a lower
 /// limit, so that the correction decreases to 0 where the axes no longer reach every direction. The solver is
-/// also used for a second evaluation of the deviation. tool.
+/// also used for a second evaluation of the deviation.
 Solver solve_axes(Derivation& derivation);
 
 }  // namespace vernier::compile

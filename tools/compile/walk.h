@@ -32,7 +32,7 @@ std::vector<Step> all_steps(const model::Machine& machine, Translator& translate
 /// motion has a step.
 NodeVector motion_of(Graph& graph, NodeId axis, const NodeVector& point, const Step* last_turn);
 
-/// Moves a point through the chain: its nominal position, and the addition that the actual chain makes. tool.
+/// Moves a point through the chain: its nominal position, and the addition that the actual chain makes.
 class Walk {
  public:
   /// neglect_mm: a higher-order term smaller than neglect_mm is omitted and entered in `neglected`.

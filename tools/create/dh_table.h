@@ -22,10 +22,10 @@ const std::vector<DhRow>& default_arm();
 
 /// Reads a table of rows: a header of `theta[deg] d[mm] a[mm] alpha[deg]` in any order (optional `type` of R
 /// or P), then one row per joint. Without a theta column, theta is 0. Throws InputError with file, line and
-/// word. tool.
+/// word.
 std::vector<DhRow> parse_dh_table(const std::string& text, const std::string& file);
 
-/// Reads one joint from "theta,d,a,alpha" or "P,theta,d,a,alpha". Throws InputError with the word. tool.
+/// Reads one joint from "theta,d,a,alpha" or "P,theta,d,a,alpha". Throws InputError with the word.
 DhRow parse_dh_row(const std::string& words);
 
 }  // namespace vernier::create

@@ -45,25 +45,24 @@ struct MachineType {
   std::array<const char*, 3> slides;  // what X, Y and Z are called
 };
 
-/// Returns the machine types of `vernier new`, including the robot. tool.
+/// Returns the machine types of `vernier new`, including the robot.
 const std::vector<MachineType>& machine_types();
 
-/// "X:0:600", "U:0:300:X" (along X), "C:0:360:wrap". Throws InputError with the word. tool.
+/// "X:0:600", "U:0:300:X" (along X), "C:0:360:wrap". Throws InputError with the word.
 PlannedAxis parse_planned_axis(const std::string& words);
 
 /// Assigns the axes to the sides as the type defines them. tool_order, work_order: axis names from the bed
 /// outwards, if the order differs from the type. Throws InputError: an unknown type (with the reason for a
-/// delta), no axis, a name twice, an axis on no side. tool.
+/// delta), no axis, a name twice, an axis on no side.
 MachinePlan plan_machine(const std::string& type, std::vector<PlannedAxis> axes,
                          const std::optional<std::vector<std::string>>& tool_order,
                          const std::optional<std::vector<std::string>>& work_order);
 
 /// Returns the plan of a robot from its rows and the same number of axes. Empty axes: J1, J2 … of ±180 deg,
-/// prismatic 0 to 500 mm. Throws InputError if the numbers of rows and axes differ. tool.
+/// prismatic 0 to 500 mm. Throws InputError if the numbers of rows and axes differ.
 MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& rows);
 
 /// Returns positions that divide a range at round numbers into four to seven parts: the stations of a table.
-/// tool.
 std::vector<double> round_stations(double min, double max, bool rotary);
 
 }  // namespace vernier::create

@@ -27,7 +27,7 @@ struct UrdfArm {
 /// tip: name of a link; empty: the only end of the chain with most moving joints. Joints that do not move
 /// (`fixed`) become part of the links. Throws InputError with file, line and word: no URDF, an xacro that is
 /// not expanded, a joint type that an arm does not have (floating, planar, mimic), a link that does not
-/// exist, several ends. tool.
+/// exist, several ends.
 UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::string& tip);
 
 }  // namespace vernier::create

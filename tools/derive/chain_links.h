@@ -40,7 +40,7 @@ SymbolicVector unit_vector(int axis);
 
 /// Returns the chain as elementary motions from the workpiece to the tool: the workpiece branch in
 /// reverse order with opposite signs, then the tool branch. Throws InputError naming the
-/// expression that cannot be expressed. tool.
+/// expression that cannot be expressed.
 std::vector<ElementaryMotion> elementary_motions(const model::Machine& machine, SymbolBook& book);
 
 }  // namespace vernier::derive

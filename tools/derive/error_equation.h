@@ -14,7 +14,7 @@ const model::Transform& transform_of(const model::Machine& machine, const Elemen
 /// statics with `nominal` or free statics, and non-zero scale factors. Other statics stay symbols. If such a
 /// static rotates a frame, its nominal angle is inserted as a number. BaseShift is not included. Throws
 /// InputError in one line with the expression that has no first order (an error inside a comparison, min,
-/// max, abs, sign, lag; a pole). tool. Source of the definition of the chain: tools/docs/formats.md. Each
+/// max, abs, sign, lag; a pole). Source of the definition of the chain: tools/docs/formats.md. Each
 /// error moves the tool like a small screw motion.
 ErrorEquation derive(const model::Machine& machine, const ErrorSizes& sizes = {});
 

@@ -21,7 +21,7 @@ class NoRange : public std::runtime_error {
 
 /// Returns an interval that contains every value of the expression over the ranges. Every operation widens
 /// its result by 1e-12 of the result, far above the rounding of a double. Throws NoRange if the expression
-/// has no range. tool.
+/// has no range.
 compile::Interval range_of(const GiNaC::ex& expr, const Ranges& ranges);
 
 /// Returns the range of sin and cos over an interval of angles in rad.

@@ -5,7 +5,7 @@
 namespace vernier::derive {
 
 /// Returns the exact rational of the shortest decimal of `value` (0.1 is 1/10). Decimals of pi, 180/pi and
-/// pi/180 with eleven digits or more become the exact constants. tool.
+/// pi/180 with eleven digits or more become the exact constants.
 GiNaC::ex exact_number(double value);
 
 /// Returns radians of an angle in degrees, and the inverse; exact.

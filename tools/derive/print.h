@@ -9,7 +9,7 @@ namespace vernier::derive {
 enum class Notation { kText, kLatex };
 
 /// Prints the expression with terms and factors in a fixed order. Every run gives the same text (GiNaC's own
-/// order depends on addresses). GiNaC's parser can read the text form if all names are identifiers. tool.
+/// order depends on addresses). GiNaC's parser can read the text form if all names are identifiers.
 std::string print(const GiNaC::ex& expr, Notation notation);
 
 /// Returns a name in LaTeX: EXX is E_{XX}, d_lAx is \Delta \mathrm{lAx}.

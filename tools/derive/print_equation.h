@@ -19,7 +19,7 @@ struct DerivedMachine {
 
 /// Prints one component of the deviation: 0..2 tool point (mm), 3..5 rotation vector (rad), 6..8 direction of
 /// the tool's z. The component is printed as a sum over the errors with their sensitivities in factored form.
-/// The text is "0" if there is no term. tool.
+/// The text is "0" if there is no term.
 std::string print_component(const ErrorEquation& equation, std::size_t component, Notation notation,
                             const std::string& separator = " ");
 

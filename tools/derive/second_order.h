@@ -29,7 +29,7 @@ SecondOrderBound bound_second_order(const ErrorEquation& equation);
 
 /// Returns the largest remainder in `count` random poses with all errors at plus or minus their magnitude.
 /// The result is a lower limit, which shows how tight the bound is; the result is no proof. nullopt if a
-/// linear axis has no range. tool.
+/// linear axis has no range.
 std::optional<SecondOrder> sample_second_order(const ErrorEquation& equation, std::size_t count,
                                                std::uint64_t seed);
 

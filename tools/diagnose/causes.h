@@ -14,10 +14,10 @@ inline constexpr double kLevelOfCauses = 0.95;
 /// Returns the causes of the first step that the data do not reject, most likely first: the accepted cause,
 /// its alternatives, each period that the positions do not distinguish, and the error of the instrument.
 /// Empty if nothing is missing, or if no cause of the catalogue explains the residual. `answer`: with its
-/// verdict. tool.
+/// verdict.
 std::vector<Cause> causes_not_rejected(const Findings& found, const Diagnosis& answer);
 
-/// Returns the error of the instrument as a cause. kind: Cause::kind. tool.
+/// Returns the error of the instrument as a cause. kind: Cause::kind.
 Cause instrument_cause(const std::string& kind, double evidence);
 
 }  // namespace vernier::diagnose

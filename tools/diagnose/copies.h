@@ -16,7 +16,7 @@ struct WithoutCopies {
 
 /// Excludes rows that repeat the readings of the row before at the same position, digit for digit, if the
 /// file repeats nearly all readings of its stays like that. Such rows are copies, and not independent
-/// readings. Returns nullopt for other files: readings of a coarse resolution agree now and then. tool.
+/// readings. Returns nullopt for other files: readings of a coarse resolution agree now and then.
 std::optional<WithoutCopies> without_copies(const model::Measurement& rows);
 
 }  // namespace vernier::diagnose

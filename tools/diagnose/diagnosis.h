@@ -12,7 +12,7 @@ namespace vernier::diagnose {
 /// candidates that pass all tests, and returns one of the five verdicts (FORMATS section 3). Readings that
 /// `fit` refuses by name (FitResult::mistake) are not searched: kInstrument, with `end` = `base`. `text`: of
 /// the machine file. Check rows are used only for the figures that test the result. The candidates point into
-/// options.effects: options.effects must outlive them. Throws InputError. tool.
+/// options.effects: options.effects must outlive them. Throws InputError.
 Diagnosis diagnose(const std::string& text, const model::Machine& given,
                    const model::Measurement& measurement, const DiagnoseOptions& options = {});
 

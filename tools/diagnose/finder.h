@@ -30,7 +30,7 @@ struct Alternatives {
 };
 
 /// Searches the candidates of one fitted machine for the set that explains its residual. Keeps the items that
-/// pass every acceptance test. Finder works on the linearised problem and makes no new fit. tool.
+/// pass every acceptance test. Finder works on the linearised problem and makes no new fit.
 class Finder {
  public:
   /// `fitted`: the machine at its best fit. `progress`: share of the whole diagnosis, and the

@@ -15,7 +15,7 @@ namespace vernier::diagnose {
 /// target). The machine is fitted again without the rows of these readings, and the residual must then be
 /// noise. Returns a sentence with the line numbers of these readings. Returns nullopt if outliers are not the
 /// cause, or if no uncertainty defines the noise. `of_all`: residual of the machine's fit to all rows, mm or
-/// deg. tool.
+/// deg.
 std::optional<std::string> outliers_to_blame(const model::Machine& machine,
                                              const model::Measurement& measurement,
                                              const Eigen::VectorXd& of_all,
@@ -29,7 +29,7 @@ struct WithoutOutliers {
 
 /// Excludes the rows with a reading far from the model with the effects found so far. At most a share of the
 /// rows is excluded. Returns nullopt if there are no such rows, or more rows than this share. `machine`,
-/// `of_all`: with the effects found so far. tool.
+/// `of_all`: with the effects found so far.
 std::optional<WithoutOutliers> without_gross_outliers(const model::Machine& machine,
                                                       const model::Measurement& measurement,
                                                       const Eigen::VectorXd& of_all,

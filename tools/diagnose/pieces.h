@@ -14,7 +14,7 @@ namespace vernier::diagnose {
 /// then a fourth function of position, a third beside a curve (three coefficients or more), or a second
 /// curve. On a circle all such functions are functions of the angle, and two curves span every function of
 /// the angle. Periods that are harmonics of each other count once. Two periods that beat less than once over
-/// the measured range are one cyclic error that changes along the range, not two causes. tool.
+/// the measured range are one cyclic error that changes along the range, not two causes.
 std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
                                                 const std::vector<std::size_t>& items);
 

@@ -22,7 +22,7 @@ struct Proof {
 
 /// Evaluates the check rows under two models. before, after: residuals (measured - model) of all
 /// observations; noise: correlation of the readings' errors. variance: of the independent noise of a weighted
-/// reading, if the stated u is too small, at least 1 (with u); without u its square in mm. tool.
+/// reading, if the stated u is too small, at least 1 (with u); without u its square in mm.
 Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
                           const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance);
 

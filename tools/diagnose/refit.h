@@ -23,7 +23,7 @@ struct DecisionFits {
 /// decides. Alternatives beyond `distance_of_fits`, those after the first `most`, and those whose fit does
 /// not converge keep the distance of the estimate. A form with more unknowns that the fit brings to the
 /// readings of the accepted form is not an alternative. accepted: items, not empty. A negative distance means
-/// that the fit prefers the alternative. Cost: one fit for each alternative. tool.
+/// that the fit prefers the alternative. Cost: one fit for each alternative.
 Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
                                   std::size_t most, const DecisionFits& fits);
 

@@ -20,20 +20,20 @@ struct AxisFunction {
 /// function_of_axis uses the readings, not the selected form. It compares half-waves down to an eighth of the
 /// measured range with half-waves of half that length. With fewer than 17 positions the half-waves are
 /// longer: two positions for each. `beside`: other effects, as any columns after projection on the complement
-/// of what the model absorbs. tool.
+/// of what the model absorbs.
 AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,
                               const Eigen::MatrixXd& beside);
 
 /// Returns the logarithm of the probability that noise alone makes an accepted term appear to change along
 /// the axes. The test adds the term times the position of every axis, and times its square, beside all
-/// accepted items. A curve of one axis may change along that axis. tool.
+/// accepted items. A curve of one axis may change along that axis.
 double log_p_of_change(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                        std::size_t item);
 
 /// Returns one sentence with the reason why an accepted effect cannot be what its name states; empty if there
 /// is no doubt. A curve of an axis must be smooth at the spacing of its stations. The readings must show more
 /// functions of the axis than the curve has coefficients. If the uncertainty is given, a term must not change
-/// along the axes in ways that its form does not contain. tool.
+/// along the axes in ways that its form does not contain.
 std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                            std::size_t item);
 

@@ -30,7 +30,7 @@ struct Findings {
 /// Sets the verdict, its explanation and its details (`left`, `remaining`, `time_base`, `instrument`,
 /// `runner_up`, aliases and confusions of candidates). The first rule that applies determines the verdict;
 /// the table in the source gives the order of the rules. `answer`: with base, end, stepwise model and
-/// candidates. tool.
+/// candidates.
 void set_verdict(const Findings& found, Diagnosis& answer);
 
 }  // namespace vernier::diagnose

@@ -75,7 +75,7 @@ struct EffectForm {
   }
 };
 
-/// Parses form.term and fills the other members of the form from it. Throws ExpressionError. tool.
+/// Parses form.term and fills the other members of the form from it. Throws ExpressionError.
 void read_term(EffectForm& form);
 /// Returns the placeholders in a name of a term: dir{q} has q, {hats 5} has "hats 5".
 std::vector<std::string> marks_in(const std::string& name);
@@ -106,7 +106,7 @@ struct Effect {
 };
 
 /// Parses effects from a text in the format of tools/docs/effects.md. `file` is for messages.
-/// Throws InputError with file, line and word. tool.
+/// Throws InputError with file, line and word.
 std::vector<Effect> parse_effects(const std::string& text, const std::string& file);
 
 /// Returns the catalogue that comes with the program.

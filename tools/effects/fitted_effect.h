@@ -18,14 +18,14 @@ struct MachineText {
   model::Machine machine;
 };
 
-/// Reads a machine to which effects may be added. `file` is for messages. Throws InputError. tool.
+/// Reads a machine to which effects may be added. `file` is for messages. Throws InputError.
 MachineText machine_text(const std::string& text, const std::string& file);
 
-/// Returns the machine at its best fit and the text of the machine file with the fitted values. tool.
+/// Returns the machine at its best fit and the text of the machine file with the fitted values.
 MachineText fitted_text(const std::string& text, const fit::FitResult& fit);
 
 /// Adds one more effect to the machine and to the text. put_in returns the effect with the final names of its
-/// unknowns. Throws InputError. tool.
+/// unknowns. Throws InputError.
 Candidate put_in(MachineText& into, const Choice& choice);
 
 /// An effect to add and fit, with the start values of its unknowns.
@@ -50,11 +50,11 @@ struct FittedEffects {
 
 /// Adds effects to a machine and fits it; no other function does this. fit_with_effects writes the effects
 /// into the text one after another, binds the rows to the new inputs and fits all free parameters. For a term
-/// that was learned on features, the text also states the domain of validity. Throws InputError. tool.
+/// that was learned on features, the text also states the domain of validity. Throws InputError.
 FittedEffects fit_with_effects(const MachineText& base, const model::Measurement& rows,
                                const std::vector<EffectToFit>& effects, const fit::FitOptions& options = {});
 
-/// Marks the scanned unknowns of an effect as held or as free. tool.
+/// Marks the scanned unknowns of an effect as held or as free.
 void hold_scanned(model::Machine& machine, const Candidate& effect, bool held);
 
 }  // namespace vernier::effects

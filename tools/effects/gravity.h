@@ -37,7 +37,7 @@ class Wave {
   std::set<std::vector<double>> phases() const;
   std::size_t terms() const { return terms_.size(); }
   /// Returns the sum as an expression with the names of the machine's axes. Numbers of the expression have
-  /// six digits. tool.
+  /// six digits.
   model::ExprPtr expression(const model::Machine& machine) const;
 
  private:
@@ -48,7 +48,7 @@ class Wave {
 /// chain is a product of turns about fixed directions (Brockett's product of exponentials). Successive turns
 /// about one direction are combined into one turn by the sum of their angles. Both branches of the chain
 /// start at the same base. A transform whose degrees of freedom are not sums of axis positions makes all
-/// later frames unknown. tool.
+/// later frames unknown.
 class GravityChain {
  public:
   explicit GravityChain(const model::Machine& machine);
@@ -99,7 +99,7 @@ class GravityChain {
   std::vector<Motion> motions_;
 };
 
-/// Returns the local axis of a degree of freedom: 0 to 2 for x to z. tool.
+/// Returns the local axis of a degree of freedom: 0 to 2 for x to z.
 std::size_t local_axis(const model::Machine& machine, const DofPlace& place);
 
 }  // namespace vernier::effects

@@ -14,11 +14,11 @@ enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kSetpoint,
 InputClass class_of_input(const model::Input& input);
 
 /// Returns the value at which the terms of an input are 0, if the machine file states no reference. The
-/// reference is the standard temperature, or the mean of the readings to two digits. tool.
+/// reference is the standard temperature, or the mean of the readings to two digits.
 double usual_reference(const model::Input& input, double mean);
 
 /// Returns the temperature at which dimensions are specified (ISO 1), in a unit of temperature: 20
-/// degC or 293.15 K. tool.
+/// degC or 293.15 K.
 double standard_reference(std::string_view unit);
 
 }  // namespace vernier::effects

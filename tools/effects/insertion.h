@@ -11,7 +11,7 @@ namespace vernier::effects {
 std::size_t offset_of(const pugi::xml_node& node);
 
 /// Inserts `lines` at the end of an element's content. If the closing tag is on a separate line, the lines
-/// are inserted before that line. An empty element is opened. tool.
+/// are inserted before that line. An empty element is opened.
 text::TextEdit at_end_of(const std::string& text, const pugi::xml_node& node, const std::string& lines);
 
 }  // namespace vernier::effects

@@ -21,7 +21,7 @@ const char* dof_name(const model::Machine& machine, const DofPlace& place);
 /// True if the degree of freedom is an angle (deg), false if it is a length (mm).
 bool is_angle(const model::Machine& machine, const DofPlace& place);
 /// The degree of freedom that every axis moves in the nominal chain. The constructor evaluates the chain for
-/// every degree of freedom: construct AxisPlaces once per machine. tool.
+/// every degree of freedom: construct AxisPlaces once per machine.
 class AxisPlaces {
  public:
   explicit AxisPlaces(const model::Machine& machine);
@@ -47,7 +47,7 @@ std::vector<DofPlace> base_places(const model::Machine& machine);
 /// base_places because the row there rotates (a DH row, a table), an identity sixdof is added at that end of
 /// the chain. The number of the added row is one below the first row or one above the last row. The added row
 /// does not change predictions. add_to_machine_text writes the row into the file when the row gets a term.
-/// The locations of diagnose, plan and `add` refer to the machine of with_base_row. tool.
+/// The locations of diagnose, plan and `add` refer to the machine of with_base_row.
 model::Machine with_base_row(model::Machine machine);
 /// True if with_base_row added the transform of this location. Such a transform is on no line of the machine
 /// file.

@@ -20,7 +20,7 @@ ColumnRole parse_column_role(const std::string& statement);
 
 /// Returns the text of the machine file with these columns of `rows` declared as inputs of their roles.
 /// Ignored columns are not declared. Throws InputError for a column that is not in `rows`, or that the
-/// machine file declares already. tool.
+/// machine file declares already.
 std::string with_declared_columns(const std::string& text, const model::Machine& machine,
                                   const model::Measurement& rows, const std::vector<ColumnRole>& roles);
 

@@ -8,11 +8,11 @@
 namespace vernier::effects {
 
 /// Returns the shop name of the machine part at a location: "Z carriage", "C table", "B head",
-/// "joint J3", "frame", "tool", "workpiece". tool.
+/// "joint J3", "frame", "tool", "workpiece".
 std::string part_name(const model::Machine& machine, const AxisPlaces& axes, const DofPlace& place);
 
 /// Returns the shop name of a candidate: "Z carriage: lag", "X carriage: play along Y", "X and Y: unequal
-/// lag". The shop name is made from the choice and terms of the candidate. tool.
+/// lag". The shop name is made from the choice and terms of the candidate.
 std::string spoken_name(const model::Machine& machine, const AxisPlaces& axes, const Candidate& candidate);
 
 /// A fitted unknown of a candidate; the name is that of the machine file.
@@ -25,7 +25,7 @@ struct SpokenValue {
 /// arcsec, ms, um/m). The text includes the period if the effect has one: "Z carriage: lag 0.137 +- 0.007
 /// ms", "X carriage: cyclic error 4.2 +- 0.2 um, period 10.0 +- 0.2 mm", "X carriage: backlash 3.2 +- 0.2 um
 /// at position 0, and 40.9 +- 0.7 um/m along the axis". For an effect without such a number (a table, a
-/// curve), spoken_with_size returns only the name. tool.
+/// curve), spoken_with_size returns only the name.
 std::string spoken_with_size(const Candidate& candidate, const std::vector<SpokenValue>& values);
 
 }  // namespace vernier::effects

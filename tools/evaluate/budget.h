@@ -22,7 +22,7 @@ struct PositioningBudget {
 };
 
 /// Adds "device=0.8" (also misalignment, thermometer, expansion, expansion-range, away, drift), in the units
-/// above. Throws InputError. tool.
+/// above. Throws InputError.
 void add_to_budget(PositioningBudget& budget, const std::string& words);
 
 struct BudgetPart {
@@ -31,13 +31,13 @@ struct BudgetPart {
 };
 
 /// Returns the components of a budget over a length: the component in proportion to the distance, and the
-/// drift. tool.
+/// drift.
 std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double length_mm);
 
 /// U (k = 2) of A, E, M, R, B in mm, of tests with `runs` readings in each approach direction. A, E and M are
 /// differences over the length: all components count. Components proportional to the distance are equal for
 /// both approach directions of a target and for all runs. In B and R only the drift remains: in B of two
-/// means of `runs`, in R of both ends of a range. tool. Components as in public descriptions of ISO/TR 230-9;
+/// means of `runs`, in R of both ends of a range. Components as in public descriptions of ISO/TR 230-9;
 /// combined by the GUM.
 std::map<std::string, double> budget_uncertainty(const PositioningBudget& budget, double length_mm,
                                                  double runs);

@@ -20,7 +20,7 @@ struct DiagonalFile {
 /// positions), and `reading`. `reading` is the displacement measured along the diagonal, with any zero and
 /// either sign. Rows on one straight line in space are a diagonal. The approach direction of a row is that of
 /// the motion from the previous row. Throws InputError with file and line: a row on no line with its
-/// neighbours, a line along an axis, fewer than two targets. tool.
+/// neighbours, a line along an axis, fewer than two targets.
 std::vector<DiagonalFile> read_diagonals(const std::string& text, const std::string& file,
                                          const std::string& reading);
 

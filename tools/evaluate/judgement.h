@@ -36,7 +36,7 @@ struct JudgedText {
 /// the printed numbers would not agree with the verdict. A missing value is "–".
 JudgedText judged_text(const JudgedValue& one, int least);
 
-/// Holds if every given tolerance is met. unit: of the numbers, for the sentences. tool.
+/// Holds if every given tolerance is met. unit: of the numbers, for the sentences.
 text::Assurance assurance_of(const std::vector<JudgedValue>& all, const std::string& unit);
 
 }  // namespace vernier::evaluate

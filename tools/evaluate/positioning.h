@@ -35,13 +35,13 @@ struct PositioningResult {
 };
 
 /// Evaluates readings. A target that was approached in a direction needs at least two readings in this
-/// direction. Throws InputError: fewer than two targets, a single reading. tool.
+/// direction. Throws InputError: fewer than two targets, a single reading.
 PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readings);
 
 /// Readings of one axis from a measurement file. Deviation = `reading` − position of the axis; for a tracker
 /// or interferometer, its own coordinate along the axis is the reading. A constant between reading and
 /// position does not affect any result. The approach direction comes from `dirX`, else from the motion from
-/// the previous row. Check rows are included. tool.
+/// the previous row. Check rows are included.
 struct PositioningFile {
   std::vector<TargetReadings> readings;
   std::string unit;  // of all values: mm or deg

@@ -28,11 +28,11 @@ std::optional<double> characteristic(const PositioningResult& result, const std:
 std::optional<JudgedValue> judged_of(const nlohmann::ordered_json& characteristic);
 
 /// {axis, unit, factor, targets[…], characteristics[{name, value, tolerance, uncertainty, conformity}],
-/// assurance, …}; values in um (linear) or arcsec (rotary), as `unit` states. tool.
+/// assurance, …}; values in um (linear) or arcsec (rotary), as `unit` states.
 nlohmann::ordered_json positioning_json(const PositioningResult& result, const PositioningFile& file,
                                         const PositioningWords& words);
 
-/// Returns the report page of a positioning test, for improvement_report_html. tool.
+/// Returns the report page of a positioning test, for improvement_report_html.
 nlohmann::ordered_json positioning_page(const nlohmann::ordered_json& json, const PositioningWords& words);
 
 }  // namespace vernier::evaluate

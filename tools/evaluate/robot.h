@@ -37,23 +37,22 @@ struct PoseResult {
 };
 
 /// Returns the visits of each pose. Poses and visits are in the order of the readings. The pointers refer to
-/// `readings`. tool.
+/// `readings`.
 std::vector<std::vector<const PoseReading*>> visits_by_pose(const std::vector<PoseReading>& readings);
 
 /// Returns the 95 % interval of a standard deviation, or of a multiple of one. freedom: degrees of freedom.
-/// tool.
 std::pair<double, double> spread_interval(double spread, double freedom);
 
 /// Returns the poses of a test in the order of their first visit. Readings with one commanded pose (within 1
 /// nm and 1 nrad) belong together. Throws InputError: a pose with fewer than two readings. The interval
 /// assumes normal scatter with the observed covariance. Its degrees of freedom are those at which chi square
-/// has the same variance as RP_l. tool. Source: ISO 9283:1998, 7.2.1, 7.2.2; the interval by the delta
+/// has the same variance as RP_l. Source: ISO 9283:1998, 7.2.1, 7.2.2; the interval by the delta
 /// method.
 std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings);
 
 /// Rotates and shifts the measured poses until their barycentres are nearest to the commanded poses (least
 /// squares, Kabsch 1976). Used for an instrument whose frame is not that of the robot. Throws InputError if
-/// the poses do not determine a frame (fewer than three poses, or all on one line). tool.
+/// the poses do not determine a frame (fewer than three poses, or all on one line).
 void align_to_commanded(std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate

@@ -22,7 +22,7 @@ struct DistanceResult {
 /// Returns the distances between each pose and the next pose, in the order of their first visit (two poses:
 /// one distance). The first visits are compared, then the second visits, and so on: D_j = |P1_j - P2_j|,
 /// along an axis |x1_j - x2_j|; AD = mean of D_j - D_c, RD = 3 sqrt(sum of (D_j - mean)^2 / (n - 1)). Throws
-/// InputError: fewer than two poses or visits, poses that are not visited equally often. tool. Source: ISO
+/// InputError: fewer than two poses or visits, poses that are not visited equally often. Source: ISO
 /// 9283:1998, 7.3.2, 7.3.3. AD has a sign: a positive AD is a too long distance. The interval assumes normal
 /// distances.
 std::vector<DistanceResult> evaluate_distances(const std::vector<PoseReading>& readings);

@@ -26,7 +26,7 @@ struct DriftResult {
 /// Returns the drift of the characteristics of each pose; the run of a reading is its block of cycles. dAP =
 /// |AP of the first block - AP of this block|, dRP = |RP of the first block - RP of this block|. The largest
 /// drifts are returned. Throws InputError: a block with fewer than two readings of a pose, a pose in one
-/// block only, blocks that go back in time. tool. Source: ISO 9283:1998, 7.6. The shift of the barycentre is
+/// block only, blocks that go back in time. Source: ISO 9283:1998, 7.6. The shift of the barycentre is
 /// not in the standard. An instrument error that is equal in both blocks is no drift: the uncertainties
 /// contain only the scatter. A drift of the instrument cannot be distinguished from a drift of the robot.
 std::vector<DriftResult> evaluate_drift(const std::vector<PoseReading>& readings);

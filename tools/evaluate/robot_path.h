@@ -18,11 +18,11 @@ struct PathResult {
 /// the same positions. Stations are equally spaced along the commanded path of the first cycle. A cycle is
 /// evaluated where its measured path crosses the plane perpendicular to the commanded path. Between samples
 /// the path is linear. The ends of the path are excluded, because no sample is beyond them. Throws
-/// InputError: fewer than two cycles, a path without length, a station that a cycle does not cross. tool.
+/// InputError: fewer than two cycles, a path without length, a station that a cycle does not cross.
 PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations);
 
 /// Reads the rows of a measurement file with columns px py pz (commanded) and x y z (measured), mm; run, u, t
-/// if present. Check rows are included; a row without a reading is skipped. Throws InputError. tool.
+/// if present. Check rows are included; a row without a reading is skipped. Throws InputError.
 std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file);
 
 }  // namespace vernier::evaluate

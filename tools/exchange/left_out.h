@@ -20,12 +20,12 @@ inline constexpr double kNothing_um = 0.01;
 /// Finds the variables, other than the position and direction of `axis`, on which the first-order offset of
 /// `axis` depends. The result has one entry for each significant variable (other axes, inputs, speed, travel
 /// since reversal …): the largest change at random states (fixed seed) within the axis ranges. `at`: the
-/// fixed state (count 1). tool.
+/// fixed state (count 1).
 std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t axis,
                                      const model::States& at);
 
 /// Deviations that stay when all tables are zero (position errors, scale factors, user terms): the largest at
-/// random states. tool.
+/// random states.
 std::vector<LeftOut> beyond_tables(const model::Machine& machine, const model::States& at);
 
 /// Refuses with all reasons unless `allowed`. Throws InputError.

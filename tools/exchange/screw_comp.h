@@ -35,7 +35,7 @@ struct ScrewTable {
 /// inputs. The trims are first-order offsets, as if measured at the commanded positions. An axis that carries
 /// the workpiece therefore has the correct sign. The error between positions is tested at 4096 or more uneven
 /// positions: 32 in each period, 8 between stations, 65536 at most. Throws InputError: no min and max;
-/// LimitNotMet, with the error reached: more lines than the controller accepts. tool.
+/// LimitNotMet, with the error reached: more lines than the controller accepts.
 ScrewTable screw_table(const model::Machine& machine, std::size_t axis, const model::States& at,
                        double tolerance_um);
 
@@ -43,13 +43,13 @@ ScrewTable screw_table(const model::Machine& machine, std::size_t axis, const mo
 std::string screw_text(const std::vector<ScrewPoint>& points, ScrewType type);
 
 /// Reads a screw-compensation file. Throws InputError with file, line and word: a line without three numbers,
-/// positions that do not increase, too many lines. tool.
+/// positions that do not increase, too many lines.
 std::vector<ScrewPoint> parse_screw(const std::string& text, const std::string& file, ScrewType type);
 
 /// Returns the machine text with the points as the column of the axis in its table: minus the mean of both
 /// trims. Half their difference becomes the static `reversal` (empty: a reversal is not allowed). The
 /// function verifies that the resulting machine has the same trims. Throws InputError if the trims differ, or
-/// if the reversal is not equal at all points. tool.
+/// if the reversal is not equal at all points.
 std::string screw_into_machine(const std::string& text, const model::Machine& machine, std::size_t axis,
                                const std::vector<ScrewPoint>& points, const std::string& reversal);
 

@@ -20,7 +20,7 @@ struct UrdfFile {
 /// without zero. Links: base_link, then one for each axis, then tool. Each frame is parallel to the base
 /// there. URDF has ideal joints: errors that change with the joints, inputs or direction remain; worst_um
 /// states their size at 1000 poses within the ranges (fixed seed). `at` (count 1): inputs, motion. Throws
-/// InputError if an axis moves the workpiece, or moves nothing. tool.
+/// InputError if an axis moves the workpiece, or moves nothing.
 UrdfFile urdf_arm(const model::Machine& machine, const model::States& at);
 
 }  // namespace vernier::exchange

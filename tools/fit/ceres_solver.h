@@ -16,12 +16,12 @@ struct CeresOutcome {
 
 /// Returns the factors by which a robust loss weights readings with these weighted residuals. The factor is 1
 /// within the scale of the loss. The weighted square of an outlier is then the square of the scale: this is
-/// its influence on a robust fit (Huber 1981, 6.7). tool.
+/// its influence on a robust fit (Huber 1981, 6.7).
 Eigen::VectorXd robust_shares(const Eigen::VectorXd& residual, Loss loss, double scale);
 
 /// Solves the fit problem with Ceres, for robust losses and as a cross-check of Vernier's own solver. The
 /// Ceres problem has one residual block per observation. The analytic derivatives of all observations are
-/// evaluated in one step. tool.
+/// evaluated in one step.
 CeresOutcome solve_with_ceres(const FitProblem& problem, const Eigen::VectorXd& start,
                               const FitOptions& options);
 

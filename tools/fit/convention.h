@@ -17,7 +17,7 @@ Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const
 /// because they contain the rigid motion. Scale of periods and time constants (in a divisor, an exponent or a
 /// lag): their own nominal value. Scale of coefficients with any other unit: the value that moves their
 /// degree of freedom by 3 x misfit. A `scale` of the machine file replaces the computed scale. The scales are
-/// evaluated at the nominal machine, so they do not depend on the start of the fit. tool.
+/// evaluated at the nominal machine, so they do not depend on the start of the fit.
 Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
                          const model::ParameterSet& parameters);
 

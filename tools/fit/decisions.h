@@ -16,7 +16,7 @@ struct Decision {
 };
 
 /// Returns the decisions of the convention, largest reach first, at most `most`. Set-ups are
-/// excluded, because the position of the measuring frame is not an error of the machine. tool.
+/// excluded, because the position of the measuring frame is not an error of the machine.
 std::vector<Decision> decisions_of(const FitResult& result, std::size_t most = 10);
 
 }  // namespace vernier::fit

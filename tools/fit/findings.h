@@ -15,7 +15,7 @@ namespace vernier::fit {
 /// and for check rows. The larger of both discrepancies is used. A direction is included only if chance
 /// explains its residual one time in a thousand at most. A direction without readings gets the mean of the
 /// other directions. A reading belongs to the axis direction that is nearest to its own direction. The result
-/// is zero if the noise is not known. tool.
+/// is zero if the noise is not known.
 Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurement& measurement);
 
 /// Returns the findings that every later command repeats. Codes of the findings: `something-missing` (value:
@@ -24,7 +24,7 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// `check-not-independent` (share of the check rows at poses of fit rows), `not-varied` (number of
 /// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`,
 /// `size-unknown` (no reading has a known length; value: the plausible share). record: with all
-/// other entries filled. tool.
+/// other entries filled.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);
 

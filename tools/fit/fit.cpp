@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <ranges>
 
 #include "tools/fit/convention.h"
 #include "tools/fit/coverage/alternatives.h"
@@ -97,19 +98,21 @@ StatedPriors stated_priors(FitResult& result, const FitOptions& options, const C
   return stated;
 }
 
-/// Holds each rotation of a set-up that no reading shows and that the fit turned far away: such a turn only
-/// rotates errors of the machine into another direction. Returns true if a rotation is held now.
+/// Holds the rotations of the set-ups that no reading shows, if the fit turned one of them far away: such a
+/// turn only rotates errors of the machine into another direction. One turn takes the others with it, so all
+/// are held. Returns true if rotations are held now.
 bool hold_turned_away(const Settled& end, Convention& convention) {
   constexpr double kAligned_deg = 5;  // an instrument that is aligned to a machine by eye
-  bool held = false;
-  for (std::size_t i = 0; i < convention.unseen_turn.size(); ++i) {
+  const auto unseen = [&](std::size_t i) { return convention.unseen_turn[i]; };
+  const auto away = [&](std::size_t i) {
     const auto at = static_cast<Eigen::Index>(i);
-    if (!convention.unseen_turn[i] || std::abs(end.point[at] - convention.centre[at]) < kAligned_deg)
-      continue;
-    convention.scale[at] = kHeldTurn_deg;
-    held = true;
-  }
-  return held;
+    return unseen(i) && std::abs(end.point[at] - convention.centre[at]) >= kAligned_deg;
+  };
+  const auto all = std::views::iota(std::size_t{0}, convention.unseen_turn.size());
+  if (std::ranges::none_of(all, away)) return false;
+  for (const std::size_t i : all | std::views::filter(unseen))
+    convention.scale[static_cast<Eigen::Index>(i)] = kHeldTurn_deg;
+  return true;
 }
 
 /// A model without free parameters: only its residual is computed.

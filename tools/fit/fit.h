@@ -14,7 +14,7 @@ const char* origin_name(Origin origin);
 /// rows or the stages. `observability` names the combinations that the data cannot distinguish. Standard
 /// uncertainty of a parameter: from u, times sqrt(chi^2 / dof) if that exceeds 1; without u from the residual
 /// (GUM 5.2); from the scale if the data give little information. Throws InputError if the fit has no
-/// parameter or no reading. tool.
+/// parameter or no reading.
 FitResult fit(const model::Machine& machine, const model::Measurement& measurement,
               const FitOptions& options = {});
 

@@ -22,7 +22,7 @@ struct Move {
 /// shifts and rotations of tool point and set-up are fitted beside the model (linearised at `fitted`). scale:
 /// of the model's parameters, which hold them near `centre`. The move is accepted if it explains most of the
 /// excess residual and chance does not explain that. nominal: residual of the nominal machine after its
-/// set-up. Returns nullopt if no row is accepted. tool.
+/// set-up. Returns nullopt if no row is accepted.
 std::optional<Move> find_move(const model::Machine& fitted, const model::Measurement& rows,
                               const model::ParameterSet& parameters, const Eigen::VectorXd& centre,
                               const Eigen::VectorXd& scale, const Eigen::VectorXd& nominal);

@@ -30,7 +30,7 @@ struct LikelyMistake {
 /// columns swapped, a unit, a sign. Each of these mistakes is tried. A mistake is accepted if its correction
 /// reduces the misfit of the nominal machine fivefold. `plausible`: a machine may have a residual of this
 /// size. The correction must then also leave readings that the nominal machine explains: a unit that makes a
-/// deflection small explains nothing. tool.
+/// deflection small explains nothing.
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                              const WorstReading& worst, bool plausible);
 

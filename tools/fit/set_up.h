@@ -13,14 +13,14 @@ namespace vernier::fit {
 double reach_of(const model::Machine& machine, const model::Measurement& rows);
 
 /// Returns the machine with its free BaseShifts fitted to the fit rows. No other value of the machine
-/// changes. tool.
+/// changes.
 model::Machine set_up(const model::Machine& machine, const model::Measurement& rows);
 
 /// Fits the BaseShifts of the machine to all rows, for any orientation of the instrument. Starts are the
 /// measuring frame, the file's own set-up and the best rigid motion of the measured points. If the residuals
 /// still exceed ten times their uncertainty, all 24 orientations of the axes are tried. Use set_up_anywhere
 /// for readings of a known machine. A survey that will be fitted uses set_up(), because a rotated set-up can
-/// hide swapped columns of a flat survey. tool.
+/// hide swapped columns of a flat survey.
 model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& measured);
 
 /// A file whose set-up the machine does not know: the residual of its rows in the set-up of the machine, and
@@ -33,7 +33,7 @@ struct OtherSetUp {
 };
 
 /// Returns the files whose residual falls to a twentieth or less in a set-up of their own, and is above half
-/// a millimetre before. machine: as fitted or as given; check rows count as well. Lengths only. tool.
+/// a millimetre before. machine: as fitted or as given; check rows count as well. Lengths only.
 std::vector<OtherSetUp> files_set_up_elsewhere(const model::Machine& machine, const model::Measurement& m);
 
 }  // namespace vernier::fit

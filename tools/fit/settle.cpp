@@ -33,6 +33,11 @@ constexpr int kPasses = 3;
 constexpr double kSettled = 1e-14;
 /// Below this share the result counts as converged.
 constexpr double kConverged = 1e-6;
+/// Damping of a step, relative to the diagonal of the normal matrix.
+constexpr double kFirstDamping = 1e-9, kTimesDamping = 10, kMostDamping = 1e3;
+/// A damped step that lowers the cost by less than this share of the variance of a reading is the last one
+/// (solve.cpp has the same limit).
+constexpr double kLastDecrease = 1e-3;
 /// Lower limit of the noise as a share of the residual of the nominal machine. Below it the
 /// convention would be lost in rounding (readings written with six decimals, simulations without
 /// noise).
@@ -184,23 +189,29 @@ class Settler {
            stated_unit() * stated_.weight.dot((result_.point - stated_.centre).cwiseAbs2());
   }
 
-  /// Makes one Gauss-Newton step, shortened until it does not raise the cost. Returns its size in
-  /// standard deviations, squared.
+  /// Makes one Gauss-Newton step. If the step raises the cost, it is damped (Levenberg) until it does not:
+  /// along a direction that the readings show only in second order, the quadratic model is far too flat.
+  /// Returns the size of the step in standard deviations, squared.
   double step_to(const VectorXd& centre) {
-    const VectorXd gradient = gradient_with_priors(centre);
-    VectorXd step = solution_of(normal_with_priors(), gradient);
-    const double size = step.dot(gradient) / std::max(result_.variance, floor_of_variance());
-    const VectorXd from = result_.point;
-    const double before = cost(centre);
-    for (int halved = 0; halved < 8; ++halved, step *= 0.5) {
+    const VectorXd gradient = gradient_with_priors(centre), from = result_.point;
+    const MatrixXd normal = normal_with_priors();
+    const double unit = std::max(result_.variance, floor_of_variance()), before = cost(centre);
+    const auto next = [](double damping) { return std::max(kFirstDamping, kTimesDamping * damping); };
+    for (double damping = 0; damping < kMostDamping; damping = next(damping)) {
+      MatrixXd damped = normal;
+      damped.diagonal() *= 1 + damping;
+      const VectorXd step = solution_of(damped, gradient);
       result_.point = from + step;
       try {
         linearise();
       } catch (const text::InputError&) {
         continue;  // the model is undefined there
       }
+      const double after = cost(centre);
       // A millionth of a reading's variance is the rounding error of a large sum.
-      if (cost(centre) <= before + 1e-6 * result_.variance + 1e-9 * before) return size;
+      if (!(after <= before + 1e-6 * result_.variance + 1e-9 * before)) continue;
+      if (damping == 0) return step.dot(gradient) / unit;
+      return before - after < kLastDecrease * unit ? 0 : (before - after) / unit;
     }
     result_.point = from;
     linearise();

@@ -38,13 +38,13 @@ struct Settled {
 /// (iterated Tikhonov). A value that the data determine to a fifth of its scale then moves by less than 1 %
 /// of its standard deviation. The result converges to rounding. `with_u`: weights are 1 / u. noise:
 /// correlation of the readings' errors, for the covariance (the point is that of independent readings);
-/// nullopt: the correlation is estimated from the residual. tool.
+/// nullopt: the correlation is estimated from the residual.
 Settled settle(FitProblem& problem, const Eigen::VectorXd& point, const Convention& convention,
                const StatedPriors& stated, std::size_t observations, bool with_u,
                const std::optional<NoiseModel>& noise);
 
 /// Returns the result of settle() without moving the point, for a point that another solver found (robust
-/// losses). The point does not move. tool.
+/// losses). The point does not move.
 Settled describe(FitProblem& problem, const Eigen::VectorXd& point, const Convention& convention,
                  const StatedPriors& stated, std::size_t observations, bool with_u,
                  const std::optional<NoiseModel>& noise);

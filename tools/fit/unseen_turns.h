@@ -14,7 +14,7 @@ namespace vernier::fit {
 /// order. The first-order effect of such a rotation is zero, or equals the effect of the shift's lengths.
 /// Example: one coordinate along one line (a laser interferometer, a dial gauge). The cosine error of such a
 /// rotation cannot be distinguished from the scale of the axis, and a fit of both does not converge.
-/// reach_mm: size of the machine (convention.cpp). tool.
+/// reach_mm: size of the machine (convention.cpp).
 std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measurement& rows,
                                const model::ParameterSet& parameters, double reach_mm);
 
@@ -22,7 +22,6 @@ std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measu
 inline constexpr double kHeldTurn_deg = 1e-6;
 
 /// Holds these parameters at their values in `at`, as if the values were known to a millionth of a degree.
-/// tool.
 void hold_at(FitProblem& problem, const std::vector<bool>& held, const Eigen::VectorXd& at);
 
 }  // namespace vernier::fit

@@ -12,7 +12,7 @@
 
 namespace vernier::fleet {
 
-/// Reads one board and returns its values as metrics. tool.
+/// Reads one board and returns its values as metrics.
 class BoardReader {
  public:
   /// Opens the board. Throws InputError if the board is not available, LimitNotMet if it is not the requested

@@ -8,12 +8,12 @@
 
 namespace vernier::fleet {
 
-/// Reads the output of `vernier check --json`, without machine and time. Throws InputError. tool.
+/// Reads the output of `vernier check --json`, without machine and time. Throws InputError.
 registry::FleetCheck parse_check(const std::string& json, const std::string& file);
 
 /// Returns the result of one check for each tested parameter of a machine. A result is the change that
 /// explains the readings best if only this parameter changed, with its standard uncertainty. Parameters of
-/// the instrument and parameters that the check does not see are excluded. tool.
+/// the instrument and parameters that the check does not see are excluded.
 std::vector<registry::FleetReading> readings_of(const check::CheckRecord& record, const std::string& machine,
                                                 std::int64_t at_us);
 

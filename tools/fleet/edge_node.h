@@ -11,7 +11,7 @@ namespace vernier::fleet {
 
 /// One connection of a Sparkplug edge node: births before data, sequence numbers without a gap, the death
 /// certificate as the MQTT will (Sparkplug 3.0.0, chapter 5). Every call of EdgeNode returns false once the
-/// connection is lost. tool.
+/// connection is lost.
 class EdgeNode {
  public:
   /// Connects with the MQTT will, and subscribes to commands and to the state of `host`. Throws InputError.

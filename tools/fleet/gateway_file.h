@@ -25,7 +25,7 @@ struct GatewayFile {
 };
 
 /// Throws InputError with file, line and word. Relative paths in the gateway file refer to the folder of the
-/// file. tool.
+/// file.
 GatewayFile parse_gateway_file(const std::string& text, const std::string& path);
 
 }  // namespace vernier::fleet

@@ -33,7 +33,7 @@ const char* name_of(TrialEnd::Kind kind);
 /// Steps of a rollout for one machine: put its image on trial, watch that the image is in effect, evaluate
 /// it, then confirm or revert it. No data are signed or sent before the board has proved that it is the board
 /// of the machine. The board repeats this proof before each look, before the image is confirmed and before it
-/// is reverted. tool.
+/// is reverted.
 class ImageTrial {
  public:
   /// Opens the board. Throws InputError if the board does not answer, LimitNotMet if it is another board. All
@@ -41,7 +41,7 @@ class ImageTrial {
   ImageTrial(const RolloutMachine& machine, const RolloutOptions& options, RolloutBook& book,
              registry::MachineLocks& locks, const std::atomic<bool>& stop);
   /// Runs the trial. own_issued: RolloutState::issued; it distinguishes a trial of this rollout from a trial
-  /// of another caller. Throws LockLost if the lock was lost; the board is not changed after that. tool.
+  /// of another caller. Throws LockLost if the lock was lost; the board is not changed after that.
   TrialEnd run(std::uint64_t own_issued);
 
  private:
@@ -76,7 +76,7 @@ struct KeptLook {
   std::string why;  // why not; empty: it is
   bool away = false;
 };
-/// Throws LockLost. tool.
+/// Throws LockLost.
 KeptLook look_at_kept(const RolloutMachine& machine, const RolloutOptions& options,
                       registry::MachineLocks& locks, const std::atomic<bool>& stop);
 

@@ -17,7 +17,7 @@ struct IngestOptions {
 /// The host application, which runs until `stop`. run_ingest receives the messages of all edge nodes of a
 /// group and writes their data into the registry, each sample once. run_ingest reports to the gateways which
 /// samples are stored. Broker and database may be unavailable at any time. Throws InputError if the registry
-/// is not valid at the beginning. tool.
+/// is not valid at the beginning.
 void run_ingest(const IngestOptions& options, const std::atomic<bool>& stop, const Say& say);
 
 }  // namespace vernier::fleet

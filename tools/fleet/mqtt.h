@@ -31,7 +31,7 @@ struct MqttWill {
 };
 
 /// A connection to a broker (MQTT 3.1.1, clean session). A thread of the library keeps received messages
-/// until take() returns them. tool.
+/// until take() returns them.
 class MqttConnection {
  public:
   /// Connects. Throws InputError naming the address.

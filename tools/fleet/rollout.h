@@ -31,12 +31,11 @@ struct RolloutEnd {
 /// registry records the steps: an interrupted rollout continues where it stopped. A board whose trial is not
 /// confirmed returns to its previous image by itself. kept: called for each machine whose image was
 /// confirmed. Throws LimitNotMet if another caller has locked one of the machines; then no step was done.
-/// tool.
 RolloutEnd roll_out(registry::Registry& registry, std::vector<RolloutMachine> machines,
                     const RolloutOptions& options, const std::atomic<bool>& stop, const Say& say,
                     const std::function<void(const RolloutMachine&)>& kept);
 
-/// Converts "1,10%,100%" to the position (from 1) of the last machine of each stage. Throws InputError. tool.
+/// Converts "1,10%,100%" to the position (from 1) of the last machine of each stage. Throws InputError.
 std::vector<std::size_t> stage_ends(const std::string& stages, std::size_t machines);
 
 }  // namespace vernier::fleet

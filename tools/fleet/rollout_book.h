@@ -31,7 +31,7 @@ struct RolloutState {
 };
 
 /// A rollout's rows of the registry. The rows are written only while the caller has the lock of the machine.
-/// All calls of RolloutBook throw DatabaseError; calls that write throw LockLost. tool.
+/// All calls of RolloutBook throw DatabaseError; calls that write throw LockLost.
 class RolloutBook {
  public:
   RolloutBook(registry::Registry& registry, std::string name, const registry::MachineLocks& locks)

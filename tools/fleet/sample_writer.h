@@ -28,7 +28,7 @@ struct Receipt {
 /// numbers. The last number is updated in the same transaction as the records, and earlier records are
 /// ignored. Two writers may run at the same time. Only samples of machines that are in the registry are
 /// stored. The samples of another machine are counted (Registry::not_entered), and the gateway may forget
-/// them. tool.
+/// them.
 class SampleWriter {
  public:
   explicit SampleWriter(registry::Registry& registry) : registry_(registry) {}

@@ -31,7 +31,7 @@ struct SparkplugPayload {
 };
 
 /// Converts a payload to bytes, and back; `nullopt` if the bytes are not a payload. A metric is skipped if
-/// its type is not supported here, if it is null, or if its text is not UTF-8 without NUL. tool.
+/// its type is not supported here, if it is null, or if its text is not UTF-8 without NUL.
 std::string encode(const SparkplugPayload& payload);
 std::optional<SparkplugPayload> decode(std::string_view bytes);
 

@@ -20,7 +20,7 @@ struct SpoolRecord {
 
 /// A file with the data that a gateway has read and no registry has confirmed yet: bounded, durable,
 /// numbered. A record leaves the spool when the registry has stored it. A record is also removed, and
-/// counted, when the file is full. tool.
+/// counted, when the file is full.
 class Spool {
  public:
   /// owner: the gateway; the file of another gateway (a copied medium) gets a new id. most: number of records

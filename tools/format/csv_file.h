@@ -23,7 +23,7 @@ struct CsvFile {
 
 /// Splits `text`; every row has as many fields as the header has columns. Fields may be in double quotes.
 /// Throws InputError: wrong number of fields, a name that occurs twice or is not valid, an unknown unit, no
-/// header. tool.
+/// header.
 CsvFile parse_csv(const std::string& text, const std::string& file);
 
 }  // namespace vernier::format

@@ -5,7 +5,7 @@
 namespace vernier::format {
 
 /// Returns the page tools/docs/measurement_columns.md: every column, kind of reading, unit and reserved name,
-/// from the tables of tools/format. tool.
+/// from the tables of tools/format.
 std::string reference_page();
 
 }  // namespace vernier::format

@@ -42,10 +42,10 @@ struct Unit {
 std::optional<Unit> find_unit(std::string_view name);
 
 /// Replaces special signs by signs of the keyboard: µ (both of Unicode's) by u, °C by degC, ° by deg, ″ by
-/// arcsec, ² by ^2; a middle dot is removed. tool.
+/// arcsec, ² by ^2; a middle dot is removed.
 std::string usual_spelling(std::string_view unit);
 
-/// Returns the name that find_unit has for a unit; the text unchanged if find_unit does not know it. tool.
+/// Returns the name that find_unit has for a unit; the text unchanged if find_unit does not know it.
 std::string canonical_unit(std::string_view unit);
 
 /// Returns the names of all units, for messages.

@@ -32,7 +32,7 @@ struct Connection {
 };
 
 /// The connection as the library reads and writes it during one request: no wait is longer than `pause`, and
-/// none goes beyond `end`. tool.
+/// none goes beyond `end`.
 class RequestStream : public httplib::Stream {
  public:
   RequestStream(Connection& connection, Clock::duration pause, Clock::time_point end)

@@ -21,7 +21,7 @@ namespace vernier::http {
 using Answer = std::function<bool(httplib::Stream& stream, bool last)>;
 
 /// The connections of a GatedServer: one thread waits for headers, several threads answer. As the library's
-/// task queue it runs a task immediately, because a task only brings a connection (`enter`). tool.
+/// task queue it runs a task immediately, because a task only brings a connection (`enter`).
 class WaitingRoom : public httplib::TaskQueue {
  public:
   WaitingRoom(const ServerLimits& limits, Answer answer);

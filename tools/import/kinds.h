@@ -12,9 +12,9 @@ struct ImportKind {
   const char* ending;  // of files that this kind reads without further options; "": none
 };
 
-/// All kinds, in the order of the help. tool.
+/// All kinds, in the order of the help.
 std::span<const ImportKind> import_kinds();
-/// The kind that reads a file by the ending of its name, in small or capital letters; null: no kind. tool.
+/// The kind that reads a file by the ending of its name, in small or capital letters; null: no kind.
 const ImportKind* import_kind_of(std::string_view file);
 
 }  // namespace vernier::importer

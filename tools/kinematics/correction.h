@@ -21,21 +21,21 @@ struct CorrectionResult {
 };
 
 /// Returns the angle between the tool directions (the z axes of the last frame) of two lists of
-/// poses, deg. tool.
+/// poses, deg.
 model::Column tilt_between(const model::Poses& actual, const model::Poses& nominal);
 
 /// Computes the axis offsets that bring the actual tool point (and direction) of `machine` to the position of
 /// its nominal chain at the same commands. correct() uses the forward kinematics of the whole chain: an axis
 /// on the workpiece side gets its sign automatically. Motion and inputs do not change. A component that the
 /// axes cannot reach (the height of an XY table) remains in `after`. If the iteration does not reach the
-/// target, the result is not converged. tool.
+/// target, the result is not converged.
 CorrectionResult correct(const model::Machine& machine, const model::States& states,
                          const CorrectionOptions& options = {});
 
 /// Returns the offsets of the linear axes for a table of deviations that were measured at the commanded
 /// positions. The nominal chain's Jacobian converts the deviations. The offsets differ from those of
 /// correct() by the slope of the deviation times the offset (second order). The result has one column per
-/// axis of the machine, mm; 0 for rotary axes. tool.
+/// axis of the machine, mm; 0 for rotary axes.
 std::vector<model::Column> first_order_offset(const model::Machine& machine, const model::States& states);
 
 }  // namespace vernier::kinematics

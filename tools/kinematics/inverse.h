@@ -17,13 +17,13 @@ const char* name_of(InverseFault fault);
 /// returned values. `target`: one pose per state, workpiece coordinates (rotation unused for kPosition).
 /// `start`: first guess, and unchanged motion, inputs, runs and time. The Jacobian is computed by central
 /// differences and therefore includes every expression of the chain. Throws InputError if the chain is not
-/// finite. tool.
+/// finite.
 InverseResult solve(const model::Machine& machine, const model::Poses& target, const model::States& start,
                     const InverseOptions& options);
 
 /// Solves for one pose from many starts: `start` first, then up to `restarts` starts distributed over the
 /// axis ranges (Halton sequence, equal in every call). solve_anywhere returns the first solution within the
-/// ranges, else the best failure. Axes without min and max keep their start value. tool.
+/// ranges, else the best failure. Axes without min and max keep their start value.
 InverseResult solve_anywhere(const model::Machine& machine, const model::Poses& target,
                              const model::States& start, const InverseOptions& options, int restarts);
 

@@ -11,12 +11,12 @@ namespace vernier::kinematics {
 
 /// Returns target - pose of state i. Three lengths (mm); then, depending on `match`, nothing, two tilts of
 /// the tool's z axis about directions across it, or the rotation vector. Rotations are multiplied by
-/// lever_mm. tool.
+/// lever_mm.
 Eigen::VectorXd pose_error(const model::Poses& poses, const model::Poses& target, std::size_t i, Match match,
                            double lever_mm);
 
 /// Returns the decrease of pose_error per mm or deg of each axis, one matrix per state. axis_jacobian uses
-/// central differences of the forward kinematics. An axis is moved in all states together. tool.
+/// central differences of the forward kinematics. An axis is moved in all states together.
 std::vector<Eigen::MatrixXd> axis_jacobian(const model::Machine& machine, const model::States& states,
                                            const std::vector<std::size_t>& axes, Match match,
                                            double lever_mm);
@@ -28,12 +28,11 @@ Eigen::VectorXd axis_scales(const model::Machine& machine, const std::vector<std
 
 /// Returns the ratio of the largest singular value of the scaled Jacobian to the smallest singular value of a
 /// full rank. The ratio is infinite if the smallest value is 0, or if there are fewer axes than conditions.
-/// tool.
 double condition_of(const Eigen::MatrixXd& jacobian, const model::Machine& machine,
                     const std::vector<std::size_t>& axes, const InverseOptions& options);
 
 /// Returns the length of the part of `residual` that the axes can reach (singular values below 1 /
-/// most_condition of the largest do not count). tool.
+/// most_condition of the largest do not count).
 double reducible(const Eigen::MatrixXd& jacobian, const model::Machine& machine,
                  const std::vector<std::size_t>& axes, const Eigen::VectorXd& residual,
                  const InverseOptions& options);

@@ -26,7 +26,7 @@ struct LintFinding {
   std::string meaning;  // probable meaning, and what to do; may be empty
 };
 
-/// Formats a finding as one line: "file:12: error: "word": what (meaning)". tool.
+/// Formats a finding as one line: "file:12: error: "word": what (meaning)".
 std::string in_one_line(const LintFinding& finding);
 
 /// Lint findings in the order of files and lines. For an equal finding in many rows, only the first is kept,

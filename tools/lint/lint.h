@@ -21,7 +21,7 @@ struct LintedFile {
 };
 
 /// Tests machine and measurement files in any order: first the machines, then each measurement against the
-/// first machine that could be read. Throws InputError for a file that cannot be opened. tool.
+/// first machine that could be read. Throws InputError for a file that cannot be opened.
 std::vector<LintedFile> lint_files(const std::vector<std::string>& paths);
 
 }  // namespace vernier::lint

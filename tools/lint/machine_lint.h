@@ -16,7 +16,7 @@ struct MachineLint {
 
 /// Reads a machine file to its end, past its errors: a wrong word is removed and the rest is read again. Then
 /// lint_machine reports parts that are valid in form but doubtful in meaning: a unit that is unknown or that
-/// does not scale, an axis, static, input or table that no transform uses, a missing range or nominal. tool.
+/// does not scale, an axis, static, input or table that no transform uses, a missing range or nominal.
 MachineLint lint_machine(const std::string& text, const std::string& file);
 
 }  // namespace vernier::lint

@@ -20,7 +20,7 @@ struct ErrorField {
 
 /// Returns the field over the declared ranges of `axes`, `count` nodes along each. Other axes, motion and
 /// inputs are as in `at` (count 1). Throws InputError: an axis without min and max, no axis or more than
-/// three. tool.
+/// three.
 ErrorField error_field(const model::Machine& machine, const model::States& at,
                        const std::vector<std::size_t>& axes, std::size_t count);
 

@@ -25,7 +25,7 @@ constexpr int kLinePositions = 21;  // of a line: every twentieth of it
 
 /// Measures a line of `positions` points between two nominal points, forward then back. Source of E, M, B:
 /// ISO 230-6 (diagonals), ISO 230-2 (single axes). Here each direction has one run, and therefore there is no
-/// repeatability. tool.
+/// repeatability.
 LineResult measure_line(const Bench& bench, const std::string& name, const Eigen::Vector3d& from,
                         const Eigen::Vector3d& to, int positions = kLinePositions);
 
@@ -37,7 +37,7 @@ std::vector<LineResult> diagonals(const model::Machine& machine, const Bench& be
 
 /// Returns ISO 230-4 results of circles in the planes XY, YZ, ZX of the workpiece about the middle
 /// of the volume, in both directions, with the largest possible radius. Planes that the axes
-/// cannot reach are omitted. tool.
+/// cannot reach are omitted.
 nlohmann::ordered_json circles_json(const Bench& bench);
 /// Returns results of squares in the planes XY, YZ, ZX: angle of the sides (um/m from 90 deg), side lengths,
 /// straightness.
@@ -47,7 +47,7 @@ nlohmann::ordered_json squares_json(const Bench& bench);
 nlohmann::ordered_json cylinder_json(const Bench& bench);
 /// Returns results of lines through points of a CSV file `x[mm],y[mm],z[mm],run`, one line per run: length
 /// between the ends of the line, and straightness. Throws InputError: a point outside the volume, fewer than
-/// two points. tool.
+/// two points.
 nlohmann::ordered_json free_lines_json(const Bench& bench, const std::string& path);
 
 nlohmann::ordered_json line_json(const LineResult& line);

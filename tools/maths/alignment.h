@@ -13,7 +13,7 @@ struct RigidMotion {
 /// Returns the rigid motion that brings `from` closest to `to` in the sum of squared distances. from, to: 3 x
 /// N, N >= 1, in correspondence. Points on one line do not determine the rotation about the line: the
 /// smallest rotation is used. For a single point the rotation is zero. Source: Umeyama, IEEE PAMI 13 (1991)
-/// 376, equations 40-43, without scale. tool.
+/// 376, equations 40-43, without scale.
 RigidMotion align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
 /// True if points (3 x N) determine a rigid motion: three of them are not on one line (to 1e-9 of their

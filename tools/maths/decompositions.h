@@ -26,36 +26,35 @@ MatrixXd solve_symmetric(const MatrixXd& a, const MatrixXd& b);
 template <class Right>
 using Solution = Eigen::Matrix<double, Eigen::Dynamic, Right::ColsAtCompileTime == 1 ? 1 : Eigen::Dynamic>;
 
-/// Returns x of least |a x - b|; a: n x p of rank p. Householder QR with column pivoting. tool.
+/// Returns x of least |a x - b|; a: n x p of rank p. Householder QR with column pivoting.
 template <class Right>
 Solution<Right> least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::least_squares(a, Solution<Right>(b));
 }
 /// Returns the shortest x of least |a x - b|; a of any rank. Complete orthogonal decomposition.
-/// tool.
 template <class Right>
 Solution<Right> least_norm(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::least_norm(a, Solution<Right>(b));
 }
-/// Returns x of a x = b; a symmetric, positive definite. Cholesky. tool.
+/// Returns x of a x = b; a symmetric, positive definite. Cholesky.
 template <class Right>
 Solution<Right> solve_positive(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::solve_positive(a, Solution<Right>(b));
 }
 /// Returns x of a x = b; a symmetric and, except for rounding, positive semidefinite. Cholesky
-/// with pivots. tool.
+/// with pivots.
 template <class Right>
 Solution<Right> solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::solve_symmetric(a, Solution<Right>(b));
 }
-/// Returns x of a x = b; a square and regular. Gauss with row pivots. tool.
+/// Returns x of a x = b; a square and regular. Gauss with row pivots.
 Eigen::MatrixXd solve_square(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// Returns an orthonormal basis, n x rank, of the range of a. Columns that depend on other columns to
 /// `threshold` of the largest pivot are excluded (0: the limit of the library, rounding). Householder QR with
-/// column pivoting. tool.
+/// column pivoting.
 Eigen::MatrixXd range_of(const Eigen::MatrixXd& a, double threshold = 0);
-/// Returns n x p, orthonormal: the first p <= n columns of Q of a = Q R, for any rank. tool.
+/// Returns n x p, orthonormal: the first p <= n columns of Q of a = Q R, for any rank.
 Eigen::MatrixXd thin_q(const Eigen::MatrixXd& a);
 
 }  // namespace vernier::maths

@@ -27,23 +27,22 @@ struct Explained {
 
 using FunctionSet = std::vector<Eigen::Index>;
 
-/// First `adjust` is fitted, then `subject`. The result counts only the part that `subject` explains. tool.
+/// First `adjust` is fitted, then `subject`. The result counts only the part that `subject` explains.
 Explained explained(const Moments& moments, const FunctionSet& adjust, const FunctionSet& subject);
 
 /// Returns log p of several kinds together, from the explained sum of each kind in units of its variance. The
-/// result is exact for one kind and conservative for several kinds. tool.
+/// result is exact for one kind and conservative for several kinds.
 double log_p_together(const std::vector<const Moments*>& moments, const std::vector<Explained>& parts);
 
-/// Removes `functions` from all other functions and from the residual. tool.
+/// Removes `functions` from all other functions and from the residual.
 void condition_on(Moments& moments, const FunctionSet& functions);
 
 /// Returns the coefficients of the joint fit of `functions`, in their order; 0 for combinations of earlier
-/// functions. tool.
+/// functions.
 Eigen::VectorXd coefficients(const Moments& moments, const FunctionSet& functions);
 
 /// Returns log p of the F test of the explained part: its mean square divided by the mean square of the rest.
 /// `inflation`: factor by which serial correlation increases the variance of the explained sum, at least 1.
-/// tool.
 double log_p(const Moments& moments, const Explained& part, double inflation = 1);
 
 }  // namespace vernier::maths

@@ -8,7 +8,7 @@ namespace vernier::maths {
 /// Factor L L^T of a positive semidefinite matrix, for the rows and columns that are not (nearly) dependent
 /// on the others. Diagonal pivoting, block by block (Lucas, LAPACK-style codes for level 2 and 3 pivoted
 /// Cholesky factorizations, LAPACK working note 161). The remaining columns define the null space, which is
-/// reported and not damped. tool.
+/// reported and not damped.
 class PivotedCholesky {
  public:
   /// matrix: n x n, the lower triangle is read; the diagonal of the matrix is about 1. A column depends on

@@ -13,7 +13,7 @@ namespace vernier::model {
 
 /// The columns of one measurement file as numbers in their base units. NaN: an empty cell. Every reader of
 /// measurement files uses this class for its numbers. ColumnReader keeps a reference to the file. Except for
-/// has(), the requested names must be in the file. tool.
+/// has(), the requested names must be in the file.
 class ColumnReader {
  public:
   explicit ColumnReader(const format::CsvFile& csv);

@@ -86,11 +86,10 @@ class ExpressionError : public std::runtime_error {
 };
 
 /// Parses an expression of FORMATS (tools/docs/formats.md). Names stay unresolved. Throws ExpressionError.
-/// tool.
 ExprPtr parse_expression(std::string_view text);
 
 /// Parses a term with placeholders. Names may contain text in braces ({q}, dir{q}, {hats 5}). The braces are
-/// a part of the name until substitute() replaces the name. tool.
+/// a part of the name until substitute() replaces the name.
 ExprPtr parse_template(std::string_view text);
 
 /// Returns the expression with some of its names replaced. `replace` is called for every name. `replace`

@@ -21,7 +21,7 @@ struct SetUpsOfFiles {
 /// - has only rows with role check, or only readings that need no set-up,
 /// - has a BaseShift in the machine file.
 /// Nothing is added if the plain BaseShift is absent or hidden. The start values are those of the plain
-/// BaseShift. text: of `machine`. The rows must be read again with the new text. tool.
+/// BaseShift. text: of `machine`. The rows must be read again with the new text.
 SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& machine, const Measurement& rows);
 
 }  // namespace vernier::model

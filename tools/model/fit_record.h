@@ -98,7 +98,7 @@ Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance);
 std::string fit_record_xml(const FitRecord& record);
 
 /// Returns the factor O of a part of a covariance. O has m columns: the directions (pivoted Cholesky) that
-/// are larger than 1e-3 of the covariance's own squares. O is rounded as the machine file stores it. tool.
+/// are larger than 1e-3 of the covariance's own squares. O is rounded as the machine file stores it.
 Eigen::MatrixXd open_factor(const Eigen::MatrixXd& part, const Eigen::MatrixXd& covariance);
 
 /// Reads the numbers of an `open` element: n x columns. Returns false if the text has another
@@ -109,7 +109,7 @@ bool read_open_numbers(std::string_view text, std::size_t n, FitRecord& record);
 /// false if the text has another format.
 bool read_fit_numbers(std::string_view text, std::size_t n, FitRecord& record);
 
-/// Returns the machine text with its `<fitted>` replaced, or inserted before the end of the root. tool.
+/// Returns the machine text with its `<fitted>` replaced, or inserted before the end of the root.
 std::string with_fit_record(const std::string& text, const FitRecord& record);
 
 }  // namespace vernier::model

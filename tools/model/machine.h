@@ -46,7 +46,7 @@ struct Axis {
 enum class InputRole : std::uint8_t { kGuessed, kTemperature, kLoad, kVibration, kSetpoint, kOther };
 inline constexpr std::array<const char*, 6> kInputRoleNames = {"",          "temperature", "load",
                                                                "vibration", "set-point",   "other"};
-/// Returns the role of that name, or nullopt for another word. tool.
+/// Returns the role of that name, or nullopt for another word.
 std::optional<InputRole> input_role_named(std::string_view name);
 
 struct Input {

@@ -6,7 +6,7 @@
 
 namespace vernier::model {
 
-/// Reads a machine file. Throws InputError with file, line and word. tool.
+/// Reads a machine file. Throws InputError with file, line and word.
 Machine read_machine(const std::string& path);
 /// Reads a machine from the text of a machine file. `file` is only used in messages.
 Machine parse_machine(const std::string& text, const std::string& file);

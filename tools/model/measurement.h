@@ -98,11 +98,11 @@ struct Measurement {
 
 /// Name of the set-up of a measurement file: the file name without folder and ending; with_folder: with the
 /// name of the folder ("b/survey"), for two files of one name. The rows of a file without a column `setup`
-/// belong to `<BaseShift setup="NAME">` of the machine file, if there is one. tool.
+/// belong to `<BaseShift setup="NAME">` of the machine file, if there is one.
 std::string set_up_of_file(const std::string& path, bool with_folder = false);
 
 /// Returns the standard uncertainty of a reading. For a rotation the result is ua of its row if given, else
-/// u. The result is 0 if the row has no uncertainty. mm or deg. tool.
+/// u. The result is 0 if the row has no uncertainty. mm or deg.
 double uncertainty_of(const Measurement& measurement, const Observation& observation);
 
 /// True if the set-up of the instrument does not change the reading. A thing without a known place is in
@@ -111,10 +111,10 @@ bool is_free_of_set_up(const Measurement& measurement, const Observation& observ
 
 /// Returns the commanded position of an axis in each row (the read position, if it was logged), mm or deg.
 /// Two rows with the same commanded positions are at one pose. The commanded position is states.axis minus
-/// the correction, rounded to 1e-9 as it was written. tool.
+/// the correction, rounded to 1e-9 as it was written.
 Column commanded(const Measurement& measurement, std::size_t axis);
 double commanded(const Measurement& measurement, std::size_t axis, Eigen::Index row);
-/// Returns the rows at their commanded positions, without a correction. tool.
+/// Returns the rows at their commanded positions, without a correction.
 States commanded_states(const Measurement& measurement);
 
 /// Computes `correction` in the rows of one file where `corrected` names an image. `correction` is 0 in all
@@ -125,16 +125,16 @@ using ImageCorrection =
 /// Reads measurement files for a machine. Columns may be in any order. Units are converted to the base units
 /// (an input to the unit that the machine declares). images: for files that name an image but have no
 /// correction column. Without `images` a file that names an image is refused. Throws InputError with file,
-/// line and word. tool.
+/// line and word.
 Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine,
                              const ImageCorrection& images = {});
 
 /// Throws InputError with file and line if `t` decreases from one row of a run to the next. In rows without
-/// time order, time-dependent terms and lags have no meaning. tool.
+/// time order, time-dependent terms and lags have no meaning.
 void require_time_order(const Measurement& measurement);
 
 /// Throws InputError with file, line and label if a row meets a thing (`same`, `on`). command: the command
-/// that cannot use such rows, as its user types it. tool.
+/// that cannot use such rows, as its user types it.
 void refuse_things(const Measurement& measurement, const std::string& command);
 
 /// Returns the rows `keep` of a measurement with their observations. `keep` may contain a row several times.
@@ -143,7 +143,6 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
 
 /// Appends rows that are bound to the same machine. Runs (and set-ups ...) with the same name are merged. If
 /// `apart`, a run of `next` is never merged with a run of `all`. Throws InputError if a column has two units.
-/// tool.
 void append_measurement(Measurement& all, Measurement next, bool apart = false);
 
 /// Reads one measurement file from a text, for tests and imports.

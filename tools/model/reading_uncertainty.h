@@ -16,7 +16,7 @@ struct ReadingUncertainty {
 
 /// Parses "15um + 6um/m", or the form of ISO 10360-2 "2.5 + L/300" (um; L in mm). The terms are
 /// joined by +. Each term is a length, a length per metre, or L/K. Throws InputError with the
-/// offending word. tool.
+/// offending word.
 ReadingUncertainty parse_reading_uncertainty(const std::string& text);
 
 }  // namespace vernier::model

@@ -6,7 +6,7 @@
 namespace vernier::model {
 
 /// Returns the same rows for a machine that declares more of their columns as inputs. Rows with an
-/// empty cell in a new input column are excluded and counted. tool.
+/// empty cell in a new input column are excluded and counted.
 Measurement rebind(const Measurement& measurement, const Machine& from, const Machine& to);
 
 }  // namespace vernier::model

@@ -11,7 +11,7 @@ namespace vernier::model {
 
 /// Interpolation in a station table: linear or cubic (natural, or periodic). Beyond both ends of the table
 /// the last value is used. If the axis rolls over, the table is periodic. The result is linear in the values
-/// at the stations; weights() gives the weight of each station. tool.
+/// at the stations; weights() gives the weight of each station.
 class StationTable {
  public:
   explicit StationTable(const Table& table);

@@ -38,7 +38,7 @@ class Corrector {
 
   const model::Machine& machine() const { return machine_; }
   /// Axis positions (axes x states) to command for states of an ideal machine; motion and inputs are used as
-  /// given. Throws InputError if the chain is not finite. tool.
+  /// given. Throws InputError if the chain is not finite.
   Eigen::MatrixXd commands(const model::States& states);
   /// Adds positions to the summary.
   void count(const model::States& states, const Eigen::MatrixXd& commands);
@@ -54,7 +54,7 @@ class Corrector {
 /// First words of the output, by which a file that was corrected before is recognised.
 inline constexpr const char* kCorrectedMark = "corrected by vernier";
 
-/// Throws InputError with the line if a text states that the text was already corrected. tool.
+/// Throws InputError with the line if a text states that the text was already corrected.
 void refuse_corrected(const std::string& text, const std::string& file);
 
 }  // namespace vernier::offline

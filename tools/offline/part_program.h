@@ -43,7 +43,7 @@ struct PartProgram {
 /// are those of the move and its F word. Words without motion are not changed. `at`: positions of the axes
 /// before the first block, and inputs. Throws InputError with file, line and word for words that would be
 /// wrong in the output. Such words: cycles, cutter compensation, other zeros and rotations, parameters,
-/// loops, an axis that was never commanded and that `at` does not name. tool.
+/// loops, an axis that was never commanded and that `at` does not name.
 PartProgram corrected_program(const std::string& text, const std::string& file, const model::States& at,
                               const std::vector<char>& known, const PartProgramOptions& options,
                               Corrector& corrector);

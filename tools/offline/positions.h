@@ -11,7 +11,7 @@ namespace vernier::offline {
 /// given). A file without axis columns may contain targets in workpiece coordinates: x y z, optionally with
 /// rx ry rz (rotation vector) or i j k (tool direction). For such targets the inverse kinematics of the
 /// nominal chain gives the axes; their columns are written first. Throws InputError with file, line and word;
-/// LimitNotMet if a target cannot be reached. tool.
+/// LimitNotMet if a target cannot be reached.
 std::string corrected_positions(const std::string& text, const std::string& file, const model::States& at,
                                 Corrector& corrector);
 

@@ -37,7 +37,7 @@ struct ProgramArc {
 std::array<char, 2> plane_letters(int plane);
 
 /// Returns the arc of a block from R, or from I J K. Ends that coincide are a whole turn. Throws InputError:
-/// no such arc, a centre whose distances from both ends differ, several turns (P). tool.
+/// no such arc, a centre whose distances from both ends differ, several turns (P).
 ProgramArc arc_of(const std::vector<Word>& words, const ArcReading& reading, const Eigen::VectorXd& from,
                   const Eigen::VectorXd& to, const text::Place& place);
 

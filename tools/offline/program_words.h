@@ -16,7 +16,7 @@ struct Word {
 };
 
 /// Returns the words of a block. Throws InputError for a remark without an end, and for text that is neither
-/// a word nor a remark: parameters, expressions, loops. tool.
+/// a word nor a remark: parameters, expressions, loops.
 std::vector<Word> words_of(const std::string& line, const text::Place& place);
 
 /// Returns the value of the first word with this letter; nullopt if the block has no such word.

@@ -23,7 +23,7 @@ struct BHeadMachine {
 };
 
 /// Checks the nominal chain against the closed forward kinematics at poses over the ranges of the axes.
-/// Throws InputError if an axis is missing or the chain is another. tool.
+/// Throws InputError if an axis is missing or the chain is another.
 BHeadMachine b_head_machine(model::Machine machine);
 
 /// Returns tables/machines/five_axis_bhead_ctable.xml as it was when the program was built: the machine of
@@ -36,7 +36,7 @@ inline constexpr std::array<const char*, 8> kLocationErrors = {"EC0Y", "EA0Z", "
 
 /// Sets statics from "EA0B=3.2419e-4rad, EX0B=0.0294": comma or blank between; a unit behind the number is
 /// converted to the static's, no unit means the static's own. Throws InputError for an unknown or hidden
-/// name, a malformed number or a unit of another dimension. tool.
+/// name, a malformed number or a unit of another dimension.
 void set_errors(model::Machine& machine, const std::string& text);
 
 }  // namespace vernier::part

@@ -34,7 +34,7 @@ struct ToolDisplacement {
 };
 
 /// Returns the displacements at joint poses, for the point of the tool axis `height_mm` above the tip (one
-/// height per joint pose). tool.
+/// height per joint pose).
 std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
                                             const std::vector<double>& height_mm);
 
@@ -54,7 +54,7 @@ struct PartDefect {
 /// Mdef(u) = n . (displacement of the tool at the point - displacement at the origin of the work coordinates,
 /// where the offsets were set); displacement = actual - nominal chain. The part is clamped on the table where
 /// it was cut; the part is not aligned. The point counts as cut at its parameter u. The true contact of the
-/// envelope is up to 0.55 mm further along the surface at 11 mm height. tool.
+/// envelope is up to 0.55 mm further along the surface at 11 mm height.
 PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>& points,
                        const DefectOptions& options = {});
 

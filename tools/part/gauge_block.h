@@ -15,7 +15,7 @@ struct GaugeBlockEstimate {
 };
 
 /// y_mm: readings at C = 0, 90, 180, 270 deg, workpiece coordinates. pivot_mm: L0, above 0. A shift of the
-/// block along Y cancels only within each pair. tool.
+/// block along Y cancels only within each pair.
 GaugeBlockEstimate estimate_gauge_block(const std::array<double, 4>& y_mm, double pivot_mm);
 
 }  // namespace vernier::part

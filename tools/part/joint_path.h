@@ -31,7 +31,7 @@ JointPose joints_for(const ToolPose& pose, double pivot_mm, double b_deg, double
 /// Returns the back solution along a path. Where the tool is vertical, C is free: C changes evenly between
 /// its values at both ends of the vertical part. There are two continuous solutions, which differ by a half
 /// turn; the solution with the smaller |C| is used. poses: in the order of the path, close enough that C
-/// turns less than 90 deg between two poses. tool.
+/// turns less than 90 deg between two poses.
 std::vector<JointPose> back_solution(const std::vector<ToolPose>& poses, double pivot_mm,
                                      RotarySolution solution = RotarySolution::kContinuous);
 

@@ -24,7 +24,7 @@ struct MeasuredPart {
 /// Reads `sx[mm],sy[mm],sz[mm]` (nominal surface point, workpiece coordinates), `defect[mm]` and, if present,
 /// `u[mm]`; other columns are ignored. Each point is assigned to the nearest flank. Throws InputError with
 /// file, line and word: a missing column, not a number, a point farther than 0.05 mm from both flanks, u not
-/// positive or given for some rows only. tool.
+/// positive or given for some rows only.
 MeasuredPart read_measured_part(const std::string& text, const std::string& file);
 
 }  // namespace vernier::part

@@ -11,10 +11,10 @@ namespace vernier::part {
 /// One column of a file, in mm or deg. The file must outlive the PartColumn.
 class PartColumn {
  public:
-  /// Throws InputError if the column is required and missing, or has a unit of another dimension. tool.
+  /// Throws InputError if the column is required and missing, or has a unit of another dimension.
   PartColumn(const format::CsvFile& csv, const std::string& name, format::Dimension dimension, bool required);
   bool present() const { return index_.has_value(); }
-  /// Throws InputError if the cell is not a number. tool.
+  /// Throws InputError if the cell is not a number.
   double at(std::size_t row) const;
 
  private:

@@ -25,7 +25,7 @@ struct PathOptions {
   RotarySolution solution = RotarySolution::kContinuous;
 };
 
-/// Even steps of u, short enough; t starts at 0 and runs with the feed. tool.
+/// Even steps of u, short enough; t starts at 0 and runs with the feed.
 PartPath part_path(const BHeadMachine& machine, std::size_t flank, const PathOptions& options);
 
 /// `t[s]` and the axes of the machine (path columns of `vernier simulate`).

@@ -16,7 +16,7 @@ struct RecordedPath {
 
 /// Reads the columns of the axes X Y Z B C as `vernier record` writes them; other columns are ignored.
 /// `zero`: the recorded values at which the part's axis positions are 0. Throws InputError with file, line
-/// and word. tool.
+/// and word.
 RecordedPath read_recorded(const std::string& text, const std::string& file, const JointPose& zero = {});
 
 /// Material that a recorded path leaves on the part at a point, along the surface's normal, positive:
@@ -38,7 +38,7 @@ struct RecordedDeviations {
 /// the cylinder of the flank at recorded poses, and at poses on the straight path of the axes between two
 /// recorded poses; the deepest cut counts. Poses are evaluated with the nominal machine: the results are
 /// deviations of the positions, not of the machine. Throws InputError if no pose comes within 1 mm of a
-/// point. tool.
+/// point.
 RecordedDeviations recorded_deviations(const BHeadMachine& machine, const RecordedPath& recorded,
                                        const std::vector<PartPoint>& points, const Cutter& cutter);
 

@@ -11,7 +11,7 @@ namespace vernier::plan {
 
 /// Returns advice for the next measurement if the first candidate of an ambiguous diagnosis and an
 /// alternative explain the rows equally well. Empty if no effects need to be distinguished. text: of the
-/// machine file. tool.
+/// machine file.
 std::vector<std::string> advice_for(const std::string& text, const model::Machine& machine,
                                     const model::Measurement& measurement,
                                     const diagnose::Diagnosis& diagnosis,

@@ -35,7 +35,7 @@ struct CheckPlan {
 /// information). The information is about a change that moves the tool point by `expected_um`, with a free
 /// set-up and the uncertainty of the fit. A change is detected from five standard deviations on: an evidence
 /// of 100 with about thirty parameters of six sizes needs this. Throws InputError: never fitted, an axis
-/// without range. tool.
+/// without range.
 CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options = {});
 
 /// Describes for a person what the poses show: the largest changes, a count of the others, and parameters

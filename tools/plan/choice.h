@@ -19,11 +19,11 @@ struct Sides {
 
 /// Adds offered rows (with repeats) to `chosen`; each time the row that improves the worst comparison most.
 /// Ends in three cases: `least` rows are chosen and `reached()` is at least `goal`; `most` rows are chosen;
-/// no offered row improves the worst comparison. tool.
+/// no offered row improves the worst comparison.
 void choose_rows(Sides& sides, std::vector<std::size_t>& chosen, std::size_t least, std::size_t most,
                  double goal);
 
-/// Makes one pass of exchanges: replaces each chosen row by the offered row that gives a better result. tool.
+/// Makes one pass of exchanges: replaces each chosen row by the offered row that gives a better result.
 void exchange_rows(Sides& sides, std::vector<std::size_t>& chosen);
 
 }  // namespace vernier::plan

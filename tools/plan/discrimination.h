@@ -14,7 +14,7 @@ class Discrimination {
  public:
   /// `jacobian`, `difference`: weighted, one row per observation. `first`: the first observation of each row
   /// of the measurement, and one past the last. The first `existing` rows are measured; the other rows are
-  /// offers. tool.
+  /// offers.
   Discrimination(Eigen::MatrixXd jacobian, Eigen::VectorXd difference, std::vector<Eigen::Index> first,
                  std::size_t existing);
 
@@ -40,7 +40,7 @@ class Discrimination {
 
 /// Returns the non-centrality at which a chi^2 difference has the right sign with this confidence. The
 /// difference of the two fits is distributed as lambda + 2 sqrt(lambda) z and must exceed `lead`. Therefore
-/// sqrt(lambda) = z + sqrt(z^2 + lead). confidence: 0.5 to 1, both exclusive. tool.
+/// sqrt(lambda) = z + sqrt(z^2 + lead). confidence: 0.5 to 1, both exclusive.
 double needed_non_centrality(double confidence, double lead);
 
 /// Returns the quantile of the standard normal distribution (bisection of erfc). p: 0 to 1, exclusive.

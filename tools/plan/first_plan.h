@@ -33,11 +33,11 @@ struct FirstPlan {
 /// volume with all its tools, for the free parameters of the machine file (I-optimal, without exchange:
 /// Fedorov 1972, 2.5). A rigid motion belongs to the set-up and does not count. The poses are in the order of
 /// a path through the axes' travels; the first pose is repeated, check poses are in between. Throws
-/// InputError for an axis without a range, or without a free parameter. tool.
+/// InputError for an axis without a range, or without a free parameter.
 FirstPlan first_plan(const model::Machine& machine, const FirstPlanOptions& options = {});
 
 /// Returns the expanded uncertainty (k = 2) of the tool point over the work volume, um, after readings at any
-/// poses, computed like `after_um`. tool.
+/// poses, computed like `after_um`.
 double planned_uncertainty_um(const model::Machine& machine, const model::States& poses,
                               const FirstPlanOptions& options = {});
 

@@ -11,7 +11,7 @@ namespace vernier::plan {
 /// Returns poses from which a plan may choose, distributed over the working ranges of the machine (Halton's
 /// sequence, from its member `from` on). A third of the poses are at the ends of an axis, where errors are
 /// largest. In these poses the inputs are at their reference. The poses contain both approach directions.
-/// Throws InputError for an axis without a range. tool.
+/// Throws InputError for an axis without a range.
 model::States offered_poses(const model::Machine& machine, std::size_t count, std::size_t from);
 
 /// Returns the chosen poses as a path: always to the nearest remaining pose, in shares of the

@@ -13,11 +13,11 @@ namespace vernier::plan {
 inline constexpr const char* kPlanRun = "plan";
 
 /// Returns the rows of `first`, followed by those of `second`. Both measurements must be bound to the same
-/// machine and have the same columns. tool.
+/// machine and have the same columns.
 model::Measurement append_rows(const model::Measurement& first, const model::Measurement& second);
 
 /// Returns the rows that the plan extends: fit rows with every input of the two effects, at most
-/// `most` of them, evenly distributed. tool.
+/// `most` of them, evenly distributed.
 model::Measurement rows_to_build_on(const model::Measurement& all, const Drivers& drivers, std::size_t most);
 
 /// Existing rows, followed by rows that could be measured next.
@@ -34,7 +34,7 @@ struct Offers {
 /// offered at half, once and twice its speed. Travel since the reversal, time and inputs are as the effects
 /// need them. Temperatures extend 5 K beyond the recorded range, loads from 0 to 1.5 times the largest. Each
 /// offered row is a separate run, labelled kPlanRun, so that a lag has reached its final value. u: the median
-/// of the existing rows. tool.
+/// of the existing rows.
 Offers offer_rows(const model::Machine& machine, const model::Measurement& existing, const Drivers& drivers,
                   std::size_t count);
 

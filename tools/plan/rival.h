@@ -26,7 +26,7 @@ struct FittedRival {
 
 /// `name`: an effect id (the candidate of that effect which fits the rows best) or a complete `add` string.
 /// The effects must outlive the result. Throws InputError: unknown effect, no candidate of the effect in
-/// these rows. tool.
+/// these rows.
 FittedRival fit_rival(const effects::MachineText& model, const model::Measurement& measurement,
                       const std::string& name, const std::vector<effects::Effect>& effects);
 
@@ -39,7 +39,7 @@ FittedRival fit_rival(const effects::MachineText& model, const diagnose::Evidenc
 double value_of(const diagnose::Scored& scored, const diagnose::Evidence& evidence);
 
 /// Splits the text of `--separate` at commas. A comma separates only if the text after it begins with the id
-/// of an effect. Throws InputError if the number of parts is not two. tool.
+/// of an effect. Throws InputError if the number of parts is not two.
 std::vector<std::string> split_rivals(const std::vector<std::string>& arguments,
                                       const std::vector<effects::Effect>& effects);
 

@@ -10,7 +10,7 @@
 namespace vernier::plan {
 
 /// Explains in one sentence why the planned rows distinguish the two effects: the state that the existing
-/// rows lack, and the influence of this state on each effect. Keeps references. tool.
+/// rows lack, and the influence of this state on each effect. Keeps references.
 class Explanation {
  public:
   /// `existing`: the rows that the plan builds on, bound to the plan's machine.

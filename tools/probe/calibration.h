@@ -58,7 +58,7 @@ struct ProbeCalibration {
 /// upper, lower (mm: recorded position of the stylus at the upper and the lower face), angle[deg] (of the
 /// probe about its axis, optional). Ring, sphere: x, y, z (no z for a ring; a sphere without z was touched in
 /// the plane through its centre), a[mm/s^2] along the approach (optional, negative while braking), u
-/// (optional). Throws InputError. tool. Source of the block's form: NISTIR 6415, 1999, equations 1 and 2. A
+/// (optional). Throws InputError. Source of the block's form: NISTIR 6415, 1999, equations 1 and 2. A
 /// result that no probe can have (a delay outside -1..100 ms, a tip larger than the artefact) also throws
 /// InputError.
 ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setup);
@@ -76,7 +76,7 @@ struct GroupComparison {
 };
 
 /// Calibrates the touches of each value of a column separately and compares with a calibration of all. Throws
-/// InputError: a column that does not exist, only one group, or a group that is too small. tool.
+/// InputError: a column that does not exist, only one group, or a group that is too small.
 GroupComparison compare_groups(const TouchTable& table, const CalibrationSetup& setup,
                                const std::string& column, const ProbeCalibration& all);
 

@@ -30,7 +30,7 @@ struct CirclePath {
 };
 
 /// Returns the program. The operator mounts the bar when the program stops at the start point.
-/// Throws InputError if the path is not possible. tool. The ISO dialect writes the blocks of the
+/// Throws InputError if the path is not possible. The ISO dialect writes the blocks of the
 /// published programs byte for byte (Walker, PhD thesis, Strathclyde 2026, figure 4-8, figure 6-5,
 /// appendix 16.1).
 std::string circle_program(const CirclePath& path, CircleDialect dialect);

@@ -16,8 +16,7 @@ struct TouchConditions {
   double stylus_mm = 6;                    // allowed deflection of the probe
 };
 
-/// Returns speed divided by the gain of the position loop, mm. feed: mm/min. following_error and the
-/// functions below: tool.
+/// Returns speed divided by the gain of the position loop, mm. feed: mm/min.
 double following_error(const TouchConditions& conditions, double feed);
 /// Returns the approach after which the speed is constant to 2 %: the published 5.1 mm over 1.78
 /// mm times the following error, mm.
@@ -31,7 +30,7 @@ double stopping_way(const TouchConditions& conditions, double feed);
 
 /// Returns the violated conditions of an approach at a feed, one sentence each. The approach is from
 /// `clearance` (mm before the surface) to `overtravel` (mm beyond the surface; no value: the size of the
-/// probe defines the target). tool.
+/// probe defines the target).
 std::vector<std::string> broken_conditions(const TouchConditions& conditions, double feed, double clearance,
                                            std::optional<double> overtravel);
 

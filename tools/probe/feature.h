@@ -47,11 +47,11 @@ struct MeasuredFeature {
 /// angle (deg from X, in the plane); circle, sphere, cylinder: centre (for a cylinder nearest to the
 /// centroid; and axis), radius; block: centre, angle. A block needs two or more points on a face across X and
 /// on a face across Y. The centre of the block is half its size inside both faces, along their common angle.
-/// Throws InputError. tool.
+/// Throws InputError.
 MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup);
 
 /// Returns the touches as a measurement file: `d` along `nx ny nz` from the fitted feature at `px
-/// py pz` (FORMATS section 2). The other columns are unchanged, without the recorded point. tool.
+/// py pz` (FORMATS section 2). The other columns are unchanged, without the recorded point.
 std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature);
 
 }  // namespace vernier::probe

@@ -36,7 +36,7 @@ struct ProbePath {
 };
 
 /// Returns the program. Throws InputError if the path is not possible (no step, no feed, elevations in two
-/// axes). Throws LimitNotMet if a touch would not be valid (broken_conditions), each reason on a line. tool.
+/// axes). Throws LimitNotMet if a touch would not be valid (broken_conditions), each reason on a line.
 /// Turning dialect: blocks 210, 215, 225, 240, then 50 more for each point. Coordinates are in single
 /// precision from points of six decimals, as in the published program. The function reproduces the 324 blocks
 /// of the published program exactly (NISTIR 6415, appendices A1, B).

@@ -44,14 +44,13 @@ struct TouchFitOptions {
 /// whose deleted residual is least probable, if its probability (Student's t, Bonferroni) is below the level.
 /// Covariance: from u, times chi^2/dof if that exceeds 1; without u from the residual. Throws InputError:
 /// fewer observations than parameters plus one, or parameters that the touches do not determine (`names` of
-/// the weakest). tool. Source of the test: R. D. Cook, S. Weisberg, Residuals and Influence in Regression,
+/// the weakest). Source of the test: R. D. Cook, S. Weisberg, Residuals and Influence in Regression,
 /// 1982, 2.2.
 TouchFit fit_touches(const TouchModel& model, const Eigen::VectorXd& start, const TouchFitOptions& options,
                      const std::vector<std::string>& names);
 
 /// Returns the circle or sphere that solves |m|^2 = 2 m c + k best, by normal equations: the start of a fit.
 /// points: one per row, two or three columns, about their middle. The result is the centre, then the radius.
-/// tool.
 Eigen::VectorXd algebraic_centre(const Eigen::MatrixXd& points);
 
 }  // namespace vernier::probe

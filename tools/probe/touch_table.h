@@ -13,7 +13,7 @@ namespace vernier::probe {
 class TouchTable {
  public:
   /// renames: "column=name" or "column=name[unit]"; where: "column=value" rows to keep. Throws InputError
-  /// with file, line and word. tool.
+  /// with file, line and word.
   TouchTable(const std::string& text, const std::string& file, const std::vector<std::string>& renames,
              const std::vector<std::string>& where);
 

@@ -31,11 +31,11 @@ struct ResultOfPython {
   std::shared_ptr<const MachineOfPython> machine;  // as fitted, or as the ladder of a diagnosis ends
 };
 
-/// Throws InputError as parse_machine does. tool.
+/// Throws InputError as parse_machine does.
 std::shared_ptr<const MachineOfPython> machine_of_text(const std::string& path, std::string text);
 
 /// Each function of the module does what the command of the same name does. Throw InputError and LimitNotMet
-/// as the command does. tool.
+/// as the command does.
 ResultOfPython fit_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements);
 ResultOfPython compare_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements);
 ResultOfPython diagnose_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements,

@@ -42,7 +42,6 @@ struct Drift {
 /// quantities). A change of most machines is therefore common. Scatter beyond the stated uncertainty
 /// increases all uncertainties, as does the wander of the machines (wander.h): a drift is a change larger
 /// than the wander of the others. A rate that is not significant without one of its readings is not reported.
-/// tool.
 std::vector<Drift> drifts(const std::vector<FleetReading>& readings, const AlikeOptions& options);
 
 }  // namespace vernier::registry

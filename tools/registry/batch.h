@@ -47,23 +47,22 @@ struct BookedAnswer {
 
 /// Writes batch.json and machines into a new folder, and returns the batch with its id. Throws InputError for
 /// a folder that holds a batch already, for a machine's name that is not allowed, and for a machine that
-/// occurs twice. tool.
+/// occurs twice.
 Batch write_batch(const std::string& folder, Batch batch);
-/// Throws InputError if the folder holds no batch. tool.
+/// Throws InputError if the folder holds no batch.
 Batch read_batch(const std::string& folder);
-/// The words of one machine. Throws InputError if the machine is not in the batch. tool.
+/// The words of one machine. Throws InputError if the machine is not in the batch.
 std::vector<std::string> command_of(const Batch& batch, const std::string& machine);
-/// Writes the answer of a machine as a whole or not at all; `message`: the last line of a failure. tool.
+/// Writes the answer of a machine as a whole or not at all; `message`: the last line of a failure.
 void write_answer(const std::string& folder, const Batch& batch, const BatchAnswer& answer,
                   const std::string& message);
-/// True if the folder has the answer of a machine (exit status 0 or 2). tool.
+/// True if the folder has the answer of a machine (exit status 0 or 2).
 bool has_answer(const std::string& folder, const Batch& batch, const std::string& machine);
 
 /// Books the answer of each machine in the registry, once. An answer that is missing, incomplete, failed, of
 /// another machine or of another batch is listed and not booked. Throws DatabaseError: no answer was booked.
-/// tool.
 Collected collect(Registry& registry, const std::string& folder, const Batch& batch);
-/// The booked answers, by batch and machine; of all batches if `name` is empty. tool.
+/// The booked answers, by batch and machine; of all batches if `name` is empty.
 std::vector<BookedAnswer> booked_answers(Registry& registry, const std::string& name);
 
 }  // namespace vernier::registry

@@ -19,7 +19,7 @@ class DatabaseError : public std::runtime_error {
 };
 
 /// A database that contains the registry. Statements are written once, in the common syntax of SQLite (3.35
-/// on) and PostgreSQL. tool.
+/// on) and PostgreSQL.
 class Database {
  public:
   virtual ~Database() = default;

@@ -17,7 +17,6 @@ struct DueMachine {
 
 /// Returns all machines, the most overdue first. A check is due in four cases: its time has come, no check
 /// was ever made, the last check was not conclusive, or the running image was loaded after the last check.
-/// tool.
 std::vector<DueMachine> due_machines(Registry& registry, std::int64_t at_us);
 
 }  // namespace vernier::registry

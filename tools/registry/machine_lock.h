@@ -17,7 +17,7 @@ class LockLost : public text::LimitNotMet {
 
 /// Locks of machines in the registry: only one caller at a time works on a machine, from any computer. A lock
 /// is a lease by the database's clock. The holder renews the lease. The lease of a caller that was killed
-/// ends by itself; then the next caller may take the machine. tool.
+/// ends by itself; then the next caller may take the machine.
 class MachineLocks {
  public:
   /// Takes the locks of all machines, or of none. purpose: for people, e.g. "rollout spring". lease_s: 1 s at

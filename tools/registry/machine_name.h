@@ -6,11 +6,11 @@
 namespace vernier::registry {
 
 /// True for a name that a machine may have: letters, digits, `.`, `_` and `-`, the first a letter or a digit,
-/// 1 to 200 bytes. Such a name is safe in a file name, a topic, a list of lines and a shell. tool.
+/// 1 to 200 bytes. Such a name is safe in a file name, a topic, a list of lines and a shell.
 bool is_machine_name(std::string_view name);
-/// Throws InputError for another name. tool.
+/// Throws InputError for another name.
 void require_machine_name(const std::string& name);
-/// `text` with each {machine} replaced by the name. tool.
+/// `text` with each {machine} replaced by the name.
 std::string for_machine(std::string text, const std::string& machine);
 
 }  // namespace vernier::registry

@@ -62,7 +62,7 @@ struct LiveAge {
   bool clock_off = false;
 };
 /// now_us: of the registry's clock (Database::now_us); stale_s: an older state is not accepted. The clock of
-/// a gateway has an error if its time is more than 2 s ahead or 10 s behind. tool.
+/// a gateway has an error if its time is more than 2 s ahead or 10 s behind.
 LiveAge live_age(const LiveState& live, std::int64_t now_us, double stale_s);
 /// "online", "stale" or "away".
 const char* name_of(LiveAge::State state);
@@ -76,7 +76,7 @@ struct NotEntered {
 };
 
 /// The registry of a fleet: machines, their images, their states. A registry on a server and a registry in a
-/// file have the same contents. All calls of Registry throw DatabaseError. tool.
+/// file have the same contents. All calls of Registry throw DatabaseError.
 class Registry {
  public:
   /// Opens a registry; creates the tables if they do not exist. Throws InputError for a registry of a newer

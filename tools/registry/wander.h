@@ -24,11 +24,11 @@ struct Wander {
 /// Estimates the wander by restricted maximum likelihood (Patterson and Thompson 1971) of the residual of the
 /// readings, in units of their uncertainty, with a level and a steady rate for each machine. Evaluates ratios
 /// and times on a grid of factors of two. Among the values that the readings do not exclude at 95 %, the
-/// function returns the value for which rates have the largest uncertainty. tool.
+/// function returns the value for which rates have the largest uncertainty.
 Wander estimated_wander(const std::vector<WanderSeries>& machines, const Eigen::VectorXd& left);
 
 /// Multiplies the rows of each machine by the inverse root of their covariance: the rows are then
-/// independent. tool.
+/// independent.
 void whiten(const std::vector<WanderSeries>& machines, const Wander& wander, Eigen::MatrixXd& columns);
 
 }  // namespace vernier::registry

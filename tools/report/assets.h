@@ -5,7 +5,7 @@
 namespace vernier::report {
 
 /// report_script: the bundled plots (tools/report/web, one script). report_style: the style sheet of the
-/// reports. tool.
+/// reports.
 std::string_view report_script();
 std::string_view report_style();
 

@@ -8,19 +8,19 @@
 
 namespace vernier::report {
 
-/// Base64 (RFC 4648, padded) of some bytes. tool.
+/// Base64 (RFC 4648, padded) of some bytes.
 std::string base64(std::string_view bytes);
 
-/// Returns the text for an HTML document: & < > " ' written as entities. tool.
+/// Returns the text for an HTML document: & < > " ' written as entities.
 std::string escape_html(std::string_view text);
 
 /// Returns `value` with long rows of numbers packed: {"u8": base64} for small whole numbers, else {"f32":
 /// base64} of little-endian floats. null and values that are not finite become NaN. Short rows are not
-/// changed. tool.
+/// changed.
 nlohmann::ordered_json packed(const nlohmann::ordered_json& value);
 
 /// Returns JSON that is valid inside a <script> element: no '<' and '>', ASCII only; bytes that are no UTF-8
-/// are replaced. tool.
+/// are replaced.
 std::string script_json(const nlohmann::ordered_json& value);
 
 }  // namespace vernier::report

@@ -23,7 +23,7 @@ namespace vernier::report {
 /// Any of these pages may have header[[key, value]…]: person, subject, date and instrument of the
 /// measurement; "company" is at the top. If a kind has more observations than kMostDrawn, only every n-th and
 /// the worst are drawn, and the page reports this. Texts are shown unchanged, never read as markup. Throws
-/// std::invalid_argument if `detail` contradicts itself. tool.
+/// std::invalid_argument if `detail` contradicts itself.
 std::string compare_report_html(const nlohmann::ordered_json& result);
 
 /// Makes a page like compare_report_html for a job of several steps:
@@ -32,7 +32,6 @@ std::string compare_report_html(const nlohmann::ordered_json& result);
 ///     field: {axes[], counts[], point_mm[][3], deviation_um[][3], max_um} (arrows over a volume),
 ///     plots[{x: {name, unit, values[]}, y[{name, unit, values[], colour, style}], bars, log, caption}],
 ///     detail (as above), notes[]}]
-/// tool.
 std::string improvement_report_html(const nlohmann::ordered_json& result);
 
 /// Makes the page of `diagnose`: verdict in words, stepwise model, candidates, next measurements, locations
@@ -40,13 +39,13 @@ std::string improvement_report_html(const nlohmann::ordered_json& result);
 /// explanation, rms_um, check_rms_um, noise_um, candidates[], runner_up, ladder[], next_measurement[] of
 /// texts or objects with `sentence`) and, if present, findings[] and structure{}
 /// (tools/results/structure_json.h), notes[], detail (as above). Candidates may also have score, signature,
-/// impostors[], why_not. tool.
+/// impostors[], why_not.
 std::string diagnose_report_html(const nlohmann::ordered_json& result);
 
 /// Makes the page of `improve`: the error after each step. ladder[{effect, add, label, rms_um,
 /// check_rms_um}], noise_um, and all keys of the page of diagnose; simulation{rms_before_um, rms_after_um,
 /// max_before_um, max_after_um, ticks}; pictures[] (tools/results/detail.h: before_after_pictures);
-/// steps[{title, prose[], findings[], explanation}]. tool.
+/// steps[{title, prose[], findings[], explanation}].
 std::string improve_report_html(const nlohmann::ordered_json& result);
 
 /// Largest number of observations of one kind that a page draws.

@@ -59,7 +59,7 @@ struct BeforeAfterOptions {
 /// whole poses are resampled, both files together. Otherwise blocks of neighbouring rows of each file are
 /// resampled. The interval of the reduction is that of the logarithm of the ratio, studentised with the
 /// linearised standard uncertainty (bootstrap-t: Efron and Tibshirani, section 12.5). Throws InputError if a
-/// file has no length reading. tool.
+/// file has no length reading.
 BeforeAfter compare_before_after(const model::Machine& machine, const model::Measurement& before,
                                  const model::Measurement& after, const BeforeAfterOptions& options = {});
 

@@ -14,12 +14,12 @@ struct FindingContext {
   double least_p = 0.01;  // corrected; a finding must be below it
 };
 
-/// Returns the number of terms and frequencies that a search over this sample tries. tool.
+/// Returns the number of terms and frequencies that a search over this sample tries.
 std::size_t count_tried(const KindSample& sample, const std::vector<RecordedColumn>& columns);
 
 /// Selects the most significant term, then the most significant term beside it, and so on. Then
 /// find_structure removes terms that the others make superfluous. Sentences are filled in. Shares of every
-/// column are added to `shares`. tool.
+/// column are added to `shares`.
 std::vector<Finding> find_structure(const KindSample& sample, const FindingContext& context,
                                     std::vector<ColumnShare>& shares);
 

@@ -19,7 +19,7 @@ struct Omnibus {
 /// each with its share of the probability of a false alarm (weighted Bonferroni). The p-value is valid for
 /// any dependence between the tests. The tests are made for each kind separately and for all kinds together:
 /// constant; every column as a line, parabola, curve; all columns together; products of pairs; sines over the
-/// axes; neighbours in order and in position; repeats against lack of fit. tool.
+/// axes; neighbours in order and in position; repeats against lack of fit.
 Omnibus omnibus_test(const std::vector<KindSample>& samples, const std::vector<RecordedColumn>& columns,
                      const model::Measurement& measurement, const Repeats& repeats);
 

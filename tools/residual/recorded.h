@@ -30,7 +30,7 @@ struct RecordedColumn {
 };
 
 /// Returns the columns that vary over the rows `rows`: axes, recorded motion, t, visit, run,
-/// inputs, candidate inputs, normal. tool.
+/// inputs, candidate inputs, normal.
 std::vector<RecordedColumn> recorded_columns(const model::Machine& machine,
                                              const model::Measurement& measurement,
                                              const std::vector<std::size_t>& rows);
@@ -54,7 +54,7 @@ struct Basis {
   std::vector<BasisTerm> terms;  // the tested terms, in a fixed order
 };
 
-/// Returns the basis of some rows. At most kMostPairs pairs of columns have products. tool.
+/// Returns the basis of some rows. At most kMostPairs pairs of columns have products.
 Basis make_basis(const std::vector<RecordedColumn>& columns, const std::vector<std::size_t>& rows);
 // 22 columns in pairs. More pairs than readings are not significant.
 inline constexpr std::size_t kMostPairs = 250;

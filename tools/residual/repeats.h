@@ -19,11 +19,11 @@ struct Repeats {
   std::vector<std::size_t> files;                       // whose repeats count, by their index
 };
 
-/// tool.
+/// Compares the residuals of rows that measure the same state again. samples: one for each kind of reading.
 Repeats compare_repeats(const std::vector<KindSample>& samples, const model::Measurement& measurement);
 
 /// Scatter of the residual from the nearest pairs of rows in all columns but time and order, um:
-/// an upper bound of the noise. Lengths only; nullopt with fewer than 10 pairs. tool.
+/// an upper bound of the noise. Lengths only; nullopt with fewer than 10 pairs.
 std::optional<double> neighbour_error_um(const std::vector<KindSample>& samples,
                                          const std::vector<RecordedColumn>& columns);
 

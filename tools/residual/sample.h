@@ -38,10 +38,10 @@ struct KindSample {
 };
 
 /// Limits values to 4 robust standard deviations and counts the values beyond 5. If more than a tenth of the
-/// values are beyond 5, they are not outliers: no value is limited and 0 is returned. tool.
+/// values are beyond 5, they are not outliers: no value is limited and 0 is returned.
 std::size_t hold_outliers(Eigen::VectorXd& values);
 
-/// Returns one sample for each kind with at least 8 fit rows and a residual that is not always zero. tool.
+/// Returns one sample for each kind with at least 8 fit rows and a residual that is not always zero.
 std::vector<KindSample> kind_samples(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                      const std::vector<RecordedColumn>& columns,
                                      const StructureOptions& options);
@@ -56,7 +56,7 @@ struct Period {
 
 /// Tests sines of the column with periods from its range down to the shortest that its values allow.
 /// strongest_period returns nullopt for a column with few values. residual: weighted, one per row of the
-/// sample. tool.
+/// sample.
 std::optional<Period> strongest_period(const KindSample& sample, const RecordedColumn& column,
                                        const Eigen::VectorXd& residual);
 
@@ -71,7 +71,7 @@ PairTest serial_pairs(const KindSample& sample, const model::Measurement& measur
                       const Eigen::VectorXd& residual, std::size_t phase);
 
 /// Returns separate pairs of neighbouring rows in `columns` (each scaled to its range), closest first. At
-/// most 3000 rows are paired. tool.
+/// most 3000 rows are paired.
 std::vector<std::pair<std::size_t, std::size_t>> neighbour_pairs(
     const KindSample& sample, const std::vector<const RecordedColumn*>& columns);
 PairTest correlate(const Eigen::VectorXd& residual,

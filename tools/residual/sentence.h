@@ -18,7 +18,7 @@ struct SentenceFacts {
   std::vector<std::string> disagreeing;  // runs in which the effect would be visible, but is not
 };
 
-/// Returns one sentence in plain English for a finding. tool.
+/// Returns one sentence in plain English for a finding.
 std::string sentence_of(const Finding& finding, const SentenceFacts& facts);
 
 }  // namespace vernier::residual

@@ -29,7 +29,7 @@ struct Circle {
 
 /// Finds the circular tests (ball bar) in a measurement. In such a run, lengths are measured while the
 /// nominal tool point moves over at least 90 degrees on a circle in a coordinate plane about the length's
-/// centre. tool.
+/// centre.
 std::vector<Circle> find_circles(const model::Machine& machine, const model::Measurement& measurement);
 
 /// ISO 230-4 analysis of a circle's fit rows (check rows are overshoot or held out). Throws

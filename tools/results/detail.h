@@ -33,7 +33,7 @@ nlohmann::ordered_json circular_json(const model::Machine& machine, const model:
 
 /// Residuals of two models against the columns of the strongest findings (findings_json): [{observation, unit
 /// (um or urad), column, column_unit, x[], before[], after[], check[]}], at most three pictures of 4000
-/// readings. Without findings against the row. `before`, `after`: one per observation, mm or deg. tool.
+/// readings. Without findings against the row. `before`, `after`: one per observation, mm or deg.
 nlohmann::ordered_json before_after_pictures(const nlohmann::ordered_json& findings,
                                              const model::Machine& machine,
                                              const model::Measurement& measurement,

@@ -15,7 +15,7 @@ namespace vernier::results {
 /// Each column has one entry {column, differ_p, each:
 /// [{value, readings: [{reading, unit, n, mean, rms}]}]}; um, urad for rotations. differ_p: one-way F test of
 /// the means, the smallest over the kinds of readings times their number (null: too few readings). residual:
-/// mm or deg, one per observation. Throws InputError for a column that no file has. tool.
+/// mm or deg, one per observation. Throws InputError for a column that no file has.
 nlohmann::ordered_json group_table(const model::Machine& machine, const model::Measurement& measurement,
                                    const Eigen::VectorXd& residual, const std::vector<std::string>& columns);
 

@@ -8,13 +8,13 @@ namespace vernier::results {
 
 /// Returns the findings as JSON: [{observation, column, second_column, shape, share_alone, share_after,
 /// p_value, rms_um, low_um, high_um, period, runs, runs_agreeing, in_all_runs, alike[], sentence}], strongest
-/// first; null if a field does not apply. tool.
+/// first; null if a field does not apply.
 nlohmann::ordered_json findings_json(const residual::FailurePicture& picture);
 
 /// Adds two keys to a result: `findings` (findings_json) and `structure` {omnibus_p, omnibus_by, chi_p,
 /// pure_error_um, lack_of_fit_um, lack_of_fit_p, repeat_freedom, neighbour_error_um, tried, outliers,
 /// shares[{observation, column, share_alone, share_after, p_value}], cells[{point_mm, mean_um, noise_um,
-/// count}]}. tool.
+/// count}]}.
 void add_failure(nlohmann::ordered_json& result, const residual::FailurePicture& picture);
 
 }  // namespace vernier::results

@@ -59,7 +59,7 @@ struct SafetySheet {
 
 /// Evaluates a machine over its <volume> (else the ranges of its axes) and with its <tools>, at the
 /// references of its inputs. The uncertainty is also evaluated at both ends of the measured range of each
-/// input. `accepted`: rules that the user overrides. Throws InputError for an axis without a range. tool.
+/// input. `accepted`: rules that the user overrides. Throws InputError for an axis without a range.
 SafetySheet safety_sheet(const model::Machine& machine, const std::vector<SafetyRule>& accepted = {});
 
 /// Converts names of rules to rules. Throws InputError for a rule that does not exist; the error lists the

@@ -19,7 +19,7 @@ struct Source {
 };
 
 /// Returns the effect of each source alone, with the other sources at nominal. Sources without effect are not
-/// listed. tool.
+/// listed.
 std::vector<Source> error_sources(const model::Machine& machine, const model::States& states);
 
 /// True if the symbol is used anywhere in the chain (tables of an axis count).

@@ -15,7 +15,7 @@ bool is_date_format(unsigned id);
 /// Converts a serial number of days to "2026-03-04", "2026-03-04T12:30:00", below one day "12:30:00".
 /// from_1904: day 0 of the workbook is 1904-01-01, else 1899-12-30. Returns the number as text outside the
 /// years 1 to
-/// 9999. tool.
+/// 9999.
 std::string date_text(double serial, bool from_1904);
 
 /// True if a cell has a form that `date_text` writes.

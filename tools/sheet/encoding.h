@@ -15,7 +15,7 @@ const char* encoding_name(Encoding encoding);
 /// beside ASCII, UTF-8 if all bytes are valid UTF-8, else the code page of Western spreadsheets.
 Encoding encoding_of(std::string_view bytes);
 
-/// The text as UTF-8 without a mark. Invalid bytes become U+FFFD. tool.
+/// The text as UTF-8 without a mark. Invalid bytes become U+FFFD.
 std::string utf8_of(std::string_view bytes, Encoding encoding);
 
 }  // namespace vernier::sheet

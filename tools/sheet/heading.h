@@ -11,10 +11,10 @@
 namespace vernier::sheet {
 
 /// Converts a word in any usual spelling to a unit of the formats: "µm", "micron", "(°C)", "Grad", "inch",
-/// "mm/Min.", "U/min"; brackets around the word are ignored. `nullopt` if the word is not a unit. tool.
+/// "mm/Min.", "U/min"; brackets around the word are ignored. `nullopt` if the word is not a unit.
 std::optional<std::string> unit_meant(std::string_view word);
 
-/// Number and unit of a cell that has both: "0,5 mm", "12.5°". `nullopt` for any other cell. tool.
+/// Number and unit of a cell that has both: "0,5 mm", "12.5°". `nullopt` for any other cell.
 std::optional<std::pair<std::string, std::string>> number_and_unit(std::string_view cell, bool decimal_comma);
 
 /// A heading: its words without the unit, and its unit: "X [mm]", "X(mm)", "X / mm", "Temp. in °C".
@@ -40,10 +40,9 @@ struct SheetTable {
 bool is_row_of_data(const Sheet& sheet, std::size_t row);
 
 /// Finds the parts: the first row that is mostly numbers begins the data. Throws InputError if no row does.
-/// tool.
 SheetTable parts_of_sheet(const Sheet& sheet);
 
-/// "X ist" → "X_ist": a name of the formats from any words, umlauts and signs spelled out. tool.
+/// "X ist" → "X_ist": a name of the formats from any words, umlauts and signs spelled out.
 std::string name_from_words(std::string_view words);
 
 }  // namespace vernier::sheet

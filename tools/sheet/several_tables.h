@@ -9,11 +9,11 @@
 namespace vernier::sheet {
 
 /// Index of the first row of each table of a sheet, its titles included. A table begins where a line of
-/// headings follows rows of data, and has data itself. One entry for a sheet of one table. tool.
+/// headings follows rows of data, and has data itself. One entry for a sheet of one table.
 std::vector<std::size_t> tables_of(const Sheet& sheet);
 
 /// Keeps the rows of one table, from 1. Without a number the sheet must have one table. Throws InputError
-/// that names the lines of the tables. tool.
+/// that names the lines of the tables.
 void keep_table(Sheet& sheet, std::optional<std::size_t> number);
 
 }  // namespace vernier::sheet

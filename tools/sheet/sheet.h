@@ -46,10 +46,10 @@ bool begins_with_error_value(const std::string& line);
 bool is_workbook(std::string_view bytes);
 
 /// Reads text or workbook. Throws InputError with file, line and word: an open quote, no rows, a sheet that
-/// does not exist, a workbook of another kind (.xls), decimal signs of both kinds. tool.
+/// does not exist, a workbook of another kind (.xls), decimal signs of both kinds.
 Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetFormat& format = {});
 
-/// The separator that most lines of a text agree on. tool.
+/// The separator that most lines of a text agree on.
 char guess_separator(const std::string& text, const std::string& comment);
 
 /// "comma", "semicolon", "tab", "blanks".

@@ -8,7 +8,7 @@ namespace vernier::sheet {
 
 /// Converts a cell to number text with a decimal point only ("-1234.5"). Thousands ("1.234,5", "1'234.5", "1
 /// 234,5") and the long minus sign are accepted. `nullopt` if the cell is not a number with this decimal
-/// sign. tool.
+/// sign.
 std::optional<std::string> plain_number(std::string_view cell, bool decimal_comma);
 
 /// Decimal sign that a cell shows: a comma, a point, neither, or either. The cell "1,234" may have either

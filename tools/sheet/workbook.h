@@ -21,7 +21,6 @@ struct WorkbookSheet {
 /// Reads the sheet with this name or number (from 1). Empty: the first sheet with two rows of two numbers,
 /// not a cover sheet; in a workbook without such a sheet the first that contains cells. Throws InputError:
 /// not a workbook, a sheet that does not exist (the error lists the sheets), a part of more than 256 MB.
-/// tool.
 WorkbookSheet read_workbook(const std::string& bytes, const std::string& file, const std::string& sheet);
 
 }  // namespace vernier::sheet

@@ -12,7 +12,7 @@ struct SheetToWrite {
 };
 
 /// The bytes of a workbook (.xlsx). The same sheets give the same bytes. Throws std::runtime_error if the
-/// workbook cannot be written. tool.
+/// workbook cannot be written.
 std::string workbook_of(const std::vector<SheetToWrite>& sheets);
 
 }  // namespace vernier::sheet

@@ -54,7 +54,7 @@ struct LoopResult {
 /// machine of these states, which is that of the image). At rest, the motion state of the machine is that of
 /// the first tick, as if it had arrived on the path. A path from the middle of a longer motion therefore
 /// starts without a transient. Plausibility limits of readings are off, because the path is recorded motion.
-/// Throws LimitNotMet if the firmware never becomes Active. tool.
+/// Throws LimitNotMet if the firmware never becomes Active.
 LoopResult run_loop(const ImageView& image, const model::Machine& machine, const model::States& states,
                     const LoopOptions& options);
 /// Runs the firmware cycle like run_loop() with states, along a path that is computed during the run.

@@ -15,7 +15,7 @@ namespace vernier::simulate {
 ///   dir    sign of the last motion, held at rest; 0 before the first
 ///   since  travel since the last reversal; a long way before the first
 ///   feed   speed over the linear axes; curv  |v x a| / |v|^3 over the linear axes
-/// Throws InputError if an axis is missing. tool.
+/// Throws InputError if an axis is missing.
 model::States path_states(const Path& path, const model::Machine& machine, const Ticks& ticks);
 
 }  // namespace vernier::simulate

@@ -17,7 +17,7 @@ namespace vernier::simulate {
 /// different inputs. A column that no machine asks for is ignored.
 class Path {
  public:
-  /// Throws InputError: no column t, a malformed or empty time, times that do not increase. tool.
+  /// Throws InputError: no column t, a malformed or empty time, times that do not increase.
   Path(const std::string& text, const std::string& file);
 
   std::size_t rows() const { return csv_.rows.size(); }
@@ -41,7 +41,7 @@ class Path {
   model::Column time_;
 };
 
-/// Reads a path file. tool.
+/// Reads a path file.
 Path read_path(const std::string& file);
 
 /// Times of the ticks of a path: tick k is at time()[0] + k * period, from the first row to the

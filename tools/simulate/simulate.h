@@ -28,7 +28,7 @@ struct SimulateResult {
 /// Runs the firmware with `image` on the true machine along a path. Axes and inputs of the two
 /// machines are matched by name. Throws InputError if the image corrects an axis that the true
 /// machine does not have, or if the path lacks an axis. Throws LimitNotMet if the firmware never
-/// becomes Active. tool.
+/// becomes Active.
 SimulateResult simulate(const model::Machine& truth, const compile::LoadedImage& image, const Path& path,
                         const LoopOptions& options);
 

@@ -10,7 +10,7 @@ namespace vernier::text {
 
 /// Returns the value if it is finite. Every comparison for a verdict reads its numbers through decisive().
 /// what: name of the number, for the message. Throws std::logic_error for NaN and infinity (exit status 70:
-/// no verdict is better than a wrong verdict). tool.
+/// no verdict is better than a wrong verdict).
 double decisive(double value, std::string_view what);
 
 /// Kind of an assurance; the names are those of tools/docs/assurances.md.
@@ -39,7 +39,7 @@ struct AssuranceRule {
 };
 
 /// The assurance of a result: the result is assured if every tested rule is met. An assurance without a rule
-/// does not hold. tool.
+/// does not hold.
 class Assurance {
  public:
   explicit Assurance(AssuranceKind kind) : kind_(kind) {}

@@ -13,10 +13,10 @@ struct FieldRules {
 };
 
 /// Returns the fields of one line, without blanks around them. A field may be in double quotes; a doubled
-/// quote in it is one quote. Throws InputError. tool.
+/// quote in it is one quote. Throws InputError.
 std::vector<std::string> fields_of(const std::string& line, const FieldRules& rules, const Place& place);
 
-/// Returns a field as CSV: in quotes if the text contains a character with a meaning in CSV. tool.
+/// Returns a field as CSV: in quotes if the text contains a character with a meaning in CSV.
 std::string csv_cell(const std::string& text);
 
 }  // namespace vernier::text

@@ -14,7 +14,7 @@ struct Place {
 
 /// Invalid input of the user: file, line and the offending word, in one message. Commands convert an
 /// InputError into exit status 1. The message is valid UTF-8: other bytes of the input become "?". Message
-/// form: `machine.xml:12: "alhpa": unknown name`. tool.
+/// form: `machine.xml:12: "alhpa": unknown name`.
 class InputError : public std::runtime_error {
  public:
   InputError(const Place& place, const std::string& word, const std::string& what);
@@ -22,7 +22,6 @@ class InputError : public std::runtime_error {
 };
 
 /// The job was executed and its result is negative: a limit of the user is not met. Exit status 2.
-/// tool.
 class LimitNotMet : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -27,7 +27,7 @@ std::string fingerprint_text(std::uint64_t fingerprint);
 std::string number_text(double value);
 
 /// Returns a finite number without exponent, with at most `decimals` decimals, no zeros at its end and no
-/// negative zero: "0.0006", "0". tool.
+/// negative zero: "0.0006", "0".
 std::string fixed_text(double value, int decimals);
 
 }  // namespace vernier::text

@@ -27,7 +27,7 @@ struct RunningProcess {
 /// Runs `program` with `arguments` in `directory` and waits for its end. The program has no standard input
 /// and a separate process group, and ends together with this program. `on_line`: called with each line of the
 /// program's standard error. Output beyond `most_bytes` ends the program with exit 70. Throws InputError if
-/// the program cannot be started. tool.
+/// the program cannot be started.
 ProcessResult run_process(const std::string& program, const std::vector<std::string>& arguments,
                           const std::string& directory, std::size_t most_bytes,
                           const std::function<void(std::string_view)>& on_line, RunningProcess& running);
@@ -38,11 +38,11 @@ struct StandardStreams {
 };
 /// Starts a program in a separate process group; the program ends together with the thread that started it.
 /// Returns the process number of the program; -1 with errno set. All files except `streams` are closed in the
-/// program. tool.
+/// program.
 pid_t start_process(const std::string& program, const std::vector<std::string>& arguments,
                     const std::string& directory, const StandardStreams& streams);
 
-/// The last line of a program's output that is not empty, without blanks around it, 400 bytes at most. tool.
+/// The last line of a program's output that is not empty, without blanks around it, 400 bytes at most.
 std::string last_line(std::string_view output);
 
 /// A command for a shell: words are quoted if necessary.

@@ -6,38 +6,38 @@
 
 namespace vernier::text {
 
-/// Returns the text without blanks, tabs and line ends around it. tool.
+/// Returns the text without blanks, tabs and line ends around it.
 std::string trimmed(std::string_view text);
 
-/// Returns the text with A to Z as a to z; other characters do not change. tool.
+/// Returns the text with A to Z as a to z; other characters do not change.
 std::string in_small_letters(std::string_view text);
 
-/// The words between any of the separators; several in a row count once. tool.
+/// The words between any of the separators; several in a row count once.
 std::vector<std::string> words_in(std::string_view text, std::string_view separators);
 
-/// Returns the parts between single separators, without blanks around them; parts may be empty. tool.
+/// Returns the parts between single separators, without blanks around them; parts may be empty.
 std::vector<std::string> parts_of(std::string_view text, char separator);
 
-/// Returns the words in one text with a separator between them: "a,b". tool.
+/// Returns the words in one text with a separator between them: "a,b".
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
 
 /// Returns a text from outside as it may be shown on a terminal and written to JSON. Control characters,
 /// marks that change the writing direction and bytes that are not UTF-8 become "?". upload::Client passes all
-/// texts of a board through this function. tool.
+/// texts of a board through this function.
 std::string printable(std::string_view text);
 
 /// Returns a word of a file as a message quotes it: printable, and shortened if it is longer than
-/// kMostQuotedBytes. tool.
+/// kMostQuotedBytes.
 std::string quotable(std::string_view word);
 constexpr std::size_t kMostQuotedBytes = 200;
 
 /// Returns a message as a terminal shows it: each line printable, and shortened if it is longer than
 /// kMostMessageBytes. For the place that prints the messages of all commands: a name of a file may have any
-/// characters. tool.
+/// characters.
 std::string shown_message(std::string_view message);
 constexpr std::size_t kMostMessageBytes = 4000;
 
-/// Returns the text with "?" in place of each byte that is not UTF-8. tool.
+/// Returns the text with "?" in place of each byte that is not UTF-8.
 std::string utf8_only(std::string_view text);
 
 /// True if the brackets of a JSON text nest deeper than `most`. Text in strings does not count. Call

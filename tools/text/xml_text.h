@@ -16,7 +16,7 @@ struct AttributeSpan {
 };
 
 /// Returns the attributes of the start tag whose element name begins at `offset`. The text must be
-/// well-formed at `offset` (a parser has accepted it). tool.
+/// well-formed at `offset` (a parser has accepted it).
 std::vector<AttributeSpan> attribute_spans(std::string_view text, std::size_t offset);
 
 /// Offset just after the last attribute (or the name) of that start tag: place for another attribute.

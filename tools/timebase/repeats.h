@@ -31,13 +31,13 @@ struct RepeatOptions {
 /// Compares each block of a series with later rows, at all lags about the implied lag. `series`:
 /// rows x channels of one unit, NaN if not measured. `implied_lag`: per row, NaN if the pose does
 /// not return. Blocks follow one another without overlap. A block without a whole implied lag is
-/// excluded. tool. Source: Lin, Biometrics 45 (1989) for the concordance; Bartlett's effective
+/// excluded. Source: Lin, Biometrics 45 (1989) for the concordance; Bartlett's effective
 /// number of rows.
 std::vector<RepeatBlock> compare_repeats(const Eigen::MatrixXd& series, const Eigen::VectorXd& implied_lag,
                                          const RepeatOptions& options = {});
 
 /// Returns the blocks with a reliable lag, shifted or not: each agrees with a neighbouring block within the
-/// tolerance (the lag of an isolated block may be due to chance). tool.
+/// tolerance (the lag of an isolated block may be due to chance).
 std::vector<std::size_t> trusted_blocks(const std::vector<RepeatBlock>& blocks,
                                         const RepeatOptions& options = {});
 
@@ -52,7 +52,7 @@ struct RepeatLevel {
 };
 
 /// Returns the levels in order of their rows. The probability of a level combines those of its blocks
-/// (Stouffer), multiplied by the number of lags and blocks that were available. tool.
+/// (Stouffer), multiplied by the number of lags and blocks that were available.
 std::vector<RepeatLevel> repeat_levels(const std::vector<RepeatBlock>& blocks,
                                        const RepeatOptions& options = {});
 
@@ -75,7 +75,7 @@ struct LagJump {
 };
 
 /// Returns jumps larger than the tolerance. Each jump is at the row that minimises the sum of squares on both
-/// sides. Rows of the earlier pass whose repetition is missing count on neither side. tool.
+/// sides. Rows of the earlier pass whose repetition is missing count on neither side.
 std::vector<LagJump> lag_jumps(const Eigen::MatrixXd& series, const std::vector<RepeatBlock>& blocks,
                                const RepeatOptions& options = {});
 

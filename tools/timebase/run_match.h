@@ -31,7 +31,7 @@ struct RunMatchOptions {
 /// phases, the same phases for all channels. A Gumbel law gives the tail beyond the number of surrogates.
 /// Runs of opposite direction are distinguished only if the implied rate is not one row per row. Otherwise an
 /// error that depends on the direction may look like a constant shift. Returns nullopt if a run is shorter
-/// than 150 rows or without residual. tool. Source: Theiler et al., Physica D 58 (1992), surrogate data.
+/// than 150 rows or without residual. Source: Theiler et al., Physica D 58 (1992), surrogate data.
 std::optional<RunMatch> match_runs(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second,
                                    const PathMap& implied, const RunMatchOptions& options = {});
 

@@ -70,7 +70,7 @@ struct TimeBaseOptions {
 /// probabilities of the last two cases are combined (the last case alone is no proof). A residual that is
 /// zero, white, smooth, periodic or that really repeats (hysteresis, cyclic errors, drift) gives no finding.
 /// Poses that occur only once, or a second pass at another speed, give no information. `residual`: measured -
-/// model per observation, mm. Lengths only, rotations are not tested. tool.
+/// model per observation, mm. Lengths only, rotations are not tested.
 TimeBaseFinding examine_time_base(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                   const TimeBaseOptions& options = {});
 

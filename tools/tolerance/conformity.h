@@ -89,7 +89,7 @@ struct PartConformity {
 
 /// Computes the distribution of every characteristic of the part, with and without the machine's correction.
 /// Method: Monte Carlo over the covariance of the last fit in the machine file (JCGM 101:2008). Throws
-/// InputError if the machine was never fitted. tool.
+/// InputError if the machine was never fitted.
 PartConformity part_conformity(const model::Machine& machine, const PlacedPart& part, const std::string& file,
                                const std::vector<effects::Effect>& catalogue,
                                const ConformityOptions& options = {});

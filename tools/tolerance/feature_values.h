@@ -33,7 +33,7 @@ struct PartValues {
   Eigen::MatrixXd map;  // rows x 3 N: of deviations of the tool point, workpiece coordinates, mm
 };
 
-/// Throws InputError if the frame absorbs all directions that a position tolerance needs. tool.
+/// Throws InputError if the frame absorbs all directions that a position tolerance needs.
 PartValues part_values(const PlacedPart& part, PartFrame frame, const std::string& file);
 
 }  // namespace vernier::tolerance

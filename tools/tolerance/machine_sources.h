@@ -24,12 +24,12 @@ struct MachineSource {
 
 /// Returns the free or non-nominal errors of a machine. A static gets the name of its term. machine_sources
 /// searches the forms of the catalogue in order for the term's quantities, its functions and the degree of
-/// freedom on which it acts. tool.
+/// freedom on which it acts.
 std::vector<MachineSource> machine_sources(const model::Machine& machine,
                                            const model::ParameterSet& parameters,
                                            const std::vector<effects::Effect>& catalogue);
 
-/// Returns the machine with this source at nominal. tool.
+/// Returns the machine with this source at nominal.
 model::Machine without_source(const model::Machine& machine, const MachineSource& source);
 
 }  // namespace vernier::tolerance

@@ -49,10 +49,10 @@ struct PartDrawing {
 /// Reads a part from CSV. Columns: feature, kind (point plane cylinder), x y z, and if needed nx ny nz, i j k
 /// (direction of the tool), diameter, length, width, position, size (plus and minus) or size_low and
 /// size_high, form, datum (yes). The header gives the unit of a column; without a unit it is mm. Throws
-/// InputError with file, line and word. tool.
+/// InputError with file, line and word.
 PartDrawing parse_part(const std::string& text, const std::string& file);
 
-/// Returns the part after a motion: turned about the workpiece's z by `turn_deg`, then shifted, mm. tool.
+/// Returns the part after a motion: turned about the workpiece's z by `turn_deg`, then shifted, mm.
 PartDrawing placed_at(const PartDrawing& part, const Eigen::Vector3d& shift_mm, double turn_deg);
 
 }  // namespace vernier::tolerance

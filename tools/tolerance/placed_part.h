@@ -40,7 +40,6 @@ std::size_t points_on_circle(
 /// 5) and computes the axis positions at which the nominal chain has its tool at each point. Directions of
 /// motion are those from point to point, a circle counter-clockwise about its axis. `at`: inputs, and the
 /// positions of axes that are not needed. Throws LimitNotMet if a point is out of reach, naming the line.
-/// tool.
 PlacedPart place_part(const model::Machine& machine, const PartDrawing& part, const model::States& at);
 
 }  // namespace vernier::tolerance

@@ -18,7 +18,7 @@ struct ProgramOptions {
 
 /// Returns the features that a part program cuts (RS-274, as tools/offline reads it). Whole circles are
 /// circles; other moves between two rapid moves are a path, which is not evaluated along its direction. `at`,
-/// `known`: positions of the axes before the first block. Throws InputError with file, line and word. tool.
+/// `known`: positions of the axes before the first block. Throws InputError with file, line and word.
 PlacedPart program_part(const model::Machine& machine, const std::string& text, const std::string& file,
                         const model::States& at, const std::vector<char>& known,
                         const ProgramOptions& options);

@@ -113,7 +113,7 @@ struct BoardClaim {
 };
 
 /// Communicates with a board. Every call of Client throws InputError without a valid reply, and LimitNotMet
-/// with the board's reason if the board refuses. tool.
+/// with the board's reason if the board refuses.
 class Client {
  public:
   explicit Client(std::unique_ptr<Transport> transport);

@@ -7,20 +7,18 @@
 
 namespace vernier::upload {
 
-/// Present state of a board, for programs: mode, fault, axes, inputs, counters, latency, slots. tool.
+/// Present state of a board, for programs: mode, fault, axes, inputs, counters, latency, slots.
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
                                  const SlotsReply& slots, const std::vector<BoardShare>& shares,
                                  const BoardState& state);
 /// True if a board has a confirmed image: in its store, or given to it at its start (vernier-hal --image).
-/// tool.
 bool has_confirmed(const SlotsReply& slots);
 /// Returns the text "0123456789abcdef is confirmed" with the state of the image in the store, or that no
-/// image is confirmed. tool.
+/// image is confirmed.
 std::string confirmed_text(const SlotsReply& slots);
 /// Returns the fingerprint of the confirmed image (16 hexadecimal digits); null if no image is confirmed.
-/// tool.
 nlohmann::ordered_json confirmed_json(const SlotsReply& slots);
-/// Returns the live state for people, several lines, each with its line end. tool.
+/// Returns the live state for people, several lines, each with its line end.
 std::string live_text(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
                       const SlotsReply& slots, const std::vector<BoardShare>& shares,
                       const BoardState& state);

@@ -15,7 +15,7 @@ inline constexpr std::chrono::milliseconds kReplyDeadline{15'000}, kSerialReplyD
 
 /// Opens the way to a board. wait: longest time until an answer is complete, however its bytes come (without
 /// a value: one of the deadlines above); over Modbus a request has two answers. Throws InputError naming the
-/// address. tool.
+/// address.
 std::unique_ptr<Transport> open_transport(const BoardUrl& url,
                                           std::optional<std::chrono::milliseconds> wait = std::nullopt);
 

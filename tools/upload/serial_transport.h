@@ -9,7 +9,7 @@
 namespace vernier::upload {
 
 /// A board at a serial line of bytes (tables/serial_frame.h): serial://DEVICE[?baud=115200], 8N1, raw. wait:
-/// longest time until a reply is complete. Throws InputError naming the device. tool.
+/// longest time until a reply is complete. Throws InputError naming the device.
 std::unique_ptr<Transport> open_serial_transport(const BoardUrl& url, std::chrono::milliseconds wait);
 
 }  // namespace vernier::upload

@@ -19,7 +19,7 @@ struct BoardUrl {
   std::uint32_t number(const std::string& name, std::uint32_t otherwise) const;
 };
 
-/// Throws InputError naming the word. `HOST:PORT` without a scheme is TCP. tool.
+/// Throws InputError naming the word. `HOST:PORT` without a scheme is TCP.
 BoardUrl parse_url(const std::string& text);
 
 }  // namespace vernier::upload

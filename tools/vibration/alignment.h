@@ -23,7 +23,7 @@ struct ClockFit {
 /// accelerations; encoder and ball bar, both as lengths). The cross-correlation of the resampled records
 /// gives the lag. Least squares then give offset, rate, gain and mean in windows that grow from the middle to
 /// the whole overlap. A rate error of 1e-3 is therefore found. Throws InputError: records shorter than 16
-/// samples, times that do not increase, no common motion (correlation below 0.5). tool.
+/// samples, times that do not increase, no common motion (correlation below 0.5).
 ClockFit align_clocks(const Series& reference, const Series& other);
 
 /// Position on a sampled path: between samples `sample` and `sample` + 1, at the share `fraction`
@@ -37,7 +37,7 @@ struct PathPlace {
 /// without a common clock. Points are in the order of the motion. The search starts at the position of the
 /// previous point and ends at most `reach` of the path's length further (mm). A second pass over the same
 /// positions is therefore not taken for the first pass. The first point is searched on the first `reach`.
-/// Throws InputError for a path of less than two samples. tool.
+/// Throws InputError for a path of less than two samples.
 std::vector<PathPlace> nearest_places(const Eigen::MatrixXd& path, const Eigen::MatrixXd& points,
                                       double reach);
 

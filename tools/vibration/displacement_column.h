@@ -37,11 +37,11 @@ struct DisplacementSeries {
   std::uint32_t held = 0;  // samples beyond the range of the board's filter (kCorner)
 };
 
-/// True if the signal is an acceleration (unit g, m/s^2, mm/s^2). tool.
+/// True if the signal is an acceleration (unit g, m/s^2, mm/s^2).
 bool is_acceleration(const Signal& signal);
 
 /// Returns the displacement of an acceleration. Throws InputError for a signal of another unit,
-/// and for a corner or a resolution that comp/vibration/displacement.h refuses. tool.
+/// and for a corner or a resolution that comp/vibration/displacement.h refuses.
 DisplacementSeries displacement_of(const Signal& signal, double rate_Hz, const DisplacementChoice& choice);
 
 /// A signal whose displacement is known from another measurement at some of its samples, um; NaN:
@@ -55,7 +55,7 @@ struct KnownDisplacement {
 /// difference over all signals together, after removal of the mean difference of each signal. kCorner: 60
 /// corners, even in their logarithm, from the lowest for the length of the record (six periods) to rate/64.
 /// kPower: numbers of kept lines by 200 even steps of their logarithm. Throws InputError if fewer than three
-/// rows of a signal have both displacement and measurement. tool.
+/// rows of a signal have both displacement and measurement.
 struct AgreedCut {
   double value = 0, rms_um = 0;  // of the cut; of the remaining difference
   double measured_rms_um =

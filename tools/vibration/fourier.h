@@ -8,7 +8,7 @@
 namespace vernier::vibration {
 
 /// Fourier transform of real series of one length n >= 1 (FFTW). Plans are made once. Use a separate Fourier
-/// for each thread. tool.
+/// for each thread.
 class Fourier {
  public:
   explicit Fourier(std::size_t n);

@@ -21,30 +21,30 @@ enum class Constants {
 };
 
 /// Returns the record without the lines at or below `cutoff`, and without its mean. x: n >= 2
-/// samples. tool.
+/// samples.
 std::vector<double> kept_lines(std::span<const double> x, double cutoff, SpectralCut* cut = nullptr);
 
 /// Returns displacement from acceleration by cumulative trapezoids, twice (equations 4-1, 4-2). x
-/// in unit/s^2; result in that unit. tool.
+/// in unit/s^2; result in that unit.
 std::vector<double> integrate_twice(std::span<const double> x, double rate_Hz, Constants constants);
 
-/// Returns |F|^2/N of the lines above the mean value, lowest frequency first. tool.
+/// Returns |F|^2/N of the lines above the mean value, lowest frequency first.
 std::vector<double> line_powers(std::span<const double> x);
 
 /// Returns displacement from the lines above `cutoff`, each divided by -(2 pi f)^2. The trapezoids of
 /// integrate_twice with Constants::kCentred are an approximation of integrate_lines, with a loss towards half
 /// the rate (25 % at 200 Hz of 1 kHz). Both functions assume a periodic record. x in unit/s^2; result in that
-/// unit. tool.
+/// unit.
 std::vector<double> integrate_lines(std::span<const double> x, double rate_Hz, double cutoff,
                                     SpectralCut* cut = nullptr);
 
 /// Returns cut-offs between lines of these powers, at most `steps`. The cut-offs keep 1, ..., all but one of
-/// the lines, even in the logarithm of their number. tool.
+/// the lines, even in the logarithm of their number.
 std::vector<double> cuts_between_lines(std::vector<double> powers, std::size_t steps);
 
 /// Returns the cut-off that lines of white noise alone exceed once in `records` records. The floor
 /// is the median line over ln 2 (lines of noise are exponentially distributed), times ln(lines *
-/// records). At most half the lines may be signal. tool.
+/// records). At most half the lines may be signal.
 double noise_floor_cutoff(std::span<const double> x, double records = 20);
 
 /// One pass of a ball bar with an accelerometer at the tool: accelerations in mm/s^2, angle of the
@@ -63,7 +63,7 @@ double mean_radial_um(const AcceleratedPass& pass, double cutoff, Constants cons
 /// counter-clockwise) of |mean(ball bar) - mean(accelerometer)|. The objective changes only if a
 /// line is removed. The search therefore uses `steps` cut-offs between the lines of all passes in
 /// order of power. Returns cut-off and objective (um). Throws InputError for records of unequal
-/// length or no records. tool.
+/// length or no records.
 struct FittedCut {
   double cutoff = 0, objective_um = 0;
 };

@@ -22,7 +22,7 @@ using SignalFeatures = std::array<double, kFeatureNames.size()>;
 bool in_signal_unit(std::size_t feature);
 
 /// Returns the features of the samples x (n samples, the length of `fourier`) at a rate in Hz. A feature is
-/// not finite if it is 0/0. The central moments need two passes over the samples. tool.
+/// not finite if it is 0/0. The central moments need two passes over the samples.
 SignalFeatures signal_features(std::span<const double> x, double rate_Hz, Fourier& fourier);
 
 }  // namespace vernier::vibration

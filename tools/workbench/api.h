@@ -13,12 +13,11 @@ namespace vernier::workbench {
 
 /// The requests of the page, without a network: files, commands, rows, predictions, terms, history, a board.
 /// A request that needs a file is answered by a separate process (FileReader), or by a command. May be called
-/// from several threads. tool.
+/// from several threads.
 class Api {
  public:
   /// directory: of the project. program: the `vernier` that runs commands. version: shown on the page.
   /// commands: of that program, as CommandTable reads them. Throws InputError if the folder does not exist.
-  /// tool.
   Api(const std::string& directory, const std::string& program, std::string version,
       const nlohmann::ordered_json& commands);
 

@@ -5,7 +5,7 @@
 namespace vernier::workbench {
 
 /// workbench_page: the page of the workbench. The functions after it: its script (tools/workbench/web, one
-/// bundle) and its style sheet. tool.
+/// bundle) and its style sheet.
 std::string_view workbench_page();
 std::string_view workbench_script();
 std::string_view workbench_style();

@@ -12,7 +12,7 @@ namespace vernier::workbench {
 
 /// The server's side of a FileDesk in a separate process (`vernier workbench DIR --reader`). FileReader
 /// starts the process when needed, sends requests one by one, and starts a new process if one has ended. May
-/// be called from several threads. tool.
+/// be called from several threads.
 class FileReader {
  public:
   /// patience_s: the process is ended if it gives no answer for this time.
@@ -30,7 +30,7 @@ class FileReader {
   std::unique_ptr<Conversation> reader_;
 };
 
-/// The reading process: answers requests on `stream` until the stream ends. tool.
+/// The reading process: answers requests on `stream` until the stream ends.
 void serve_files(const Project& project, int stream);
 
 }  // namespace vernier::workbench

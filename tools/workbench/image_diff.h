@@ -11,7 +11,7 @@ namespace vernier::workbench {
 /// "corrections": [{axis, unit, rms, max, at: {axis: position}}] or "why_not"}. The corrections are those of
 /// both equations before limits, at the same quasi-random poses of the declared ranges, at rest with either
 /// direction, inputs within their ranges; um or mdeg. a: the new image; b: the running image. Throws
-/// InputError for data that are not an image. tool.
+/// InputError for data that are not an image.
 nlohmann::ordered_json image_diff(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b);
 
 }  // namespace vernier::workbench

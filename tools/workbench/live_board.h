@@ -10,7 +10,7 @@
 namespace vernier::workbench {
 
 /// Watches one board at a time, like `vernier watch`. A thread asks the board kLiveRateHz times a second,
-/// keeps the last pictures, and disconnects after kLetGoS without a request. tool.
+/// keeps the last pictures, and disconnects after kLetGoS without a request.
 class LiveBoard {
  public:
   static constexpr double kLiveRateHz = 20, kLetGoS = 5;

@@ -11,13 +11,13 @@ namespace vernier::workbench {
 /// Largest body of a request, bytes.
 inline constexpr std::size_t kMostBodyBytes = std::size_t{64} << 20;
 
-/// Returns 32 random bytes as hexadecimal digits, from the system's random numbers. tool.
+/// Returns 32 random bytes as hexadecimal digits, from the system's random numbers.
 std::string new_token();
 
 /// Serves the page and its API on 127.0.0.1. A request is answered only under three conditions. The request
 /// names this host and port (no other name for it: DNS rebinding), comes from no other origin, and carries
 /// the session's token as a cookie. The printed address sets the cookie once. A request that writes must also
-/// carry the header X-Vernier. tool.
+/// carry the header X-Vernier.
 class WorkbenchServer {
  public:
   /// port 0: any free port. Throws InputError if the port is in use.

@@ -24,12 +24,12 @@ struct AxisLimits {
 class AxisMonitor {
  public:
   AxisMonitor() = default;
-  /// tick: time between two readings; gives_motion: the readings carry the motion state. setup.
+  /// tick: time between two readings; gives_motion: the readings carry the motion state. Not real-time safe.
   AxisMonitor(const AxisLimits& limits, TimeUs tick, bool gives_motion) noexcept;
 
   /// Takes one reading of the axis; present = false: the reading is missing. Counts faults into health. A
   /// reading that jumps is a fault once; the next readings are compared with it. elapsed: time since the
-  /// previous call; a late tick therefore gives no jump and no wrong speed. realtime.
+  /// previous call; a late tick therefore gives no jump and no wrong speed. Real-time safe.
   Fault take(bool present, const AxisReading& reading, Health& health, TicksQ8 elapsed = kOneTick) noexcept;
 
   bool known() const noexcept { return known_; }

@@ -19,7 +19,7 @@ Wiring wiring_of(const ImageView& view);
 struct BoundProgram {
   /// A program without work: no image.
   BoundProgram() noexcept : compensator(Program{}) {}
-  /// Binds axis i and input i of the image to axis i and input i of the board. setup.
+  /// Binds axis i and input i of the image to axis i and input i of the board. Not real-time safe.
   explicit BoundProgram(const ImageView& view) noexcept;
 
   bool empty() const noexcept { return program.axis_count == 0; }
@@ -35,7 +35,7 @@ struct BoundProgram {
 };
 
 /// Finds the image's axes and inputs among those of the board, by name. bound: made from the same view.
-/// offender: receives the name that does not fit. setup.
+/// offender: receives the name that does not fit. Not real-time safe.
 BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundProgram& bound, Name& offender);
 
 }  // namespace vernier

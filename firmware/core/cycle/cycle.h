@@ -52,27 +52,28 @@ struct TickReport {
 class Cycle {
  public:
   /// Constructs a cycle for a board whose devices are those of the image, in the order of the image. view:
-  /// opened without fault. setup.
+  /// opened without fault. Not real-time safe.
   Cycle(const ImageView& view, const Board& board, const CycleLimits& limits = {}) noexcept;
-  /// A board with wiring but without a program. setup.
+  /// A board with wiring but without a program. Not real-time safe.
   Cycle(const Wiring& wiring, TimeUs tick, const Board& board, const CycleLimits& limits = {}) noexcept;
 
   /// time: since start (the machine file's t); outer: a fault found around the tick (clock, overruns);
-  /// elapsed: since the tick before, by the clock. realtime.
+  /// elapsed: since the tick before, by the clock. Real-time safe.
   TickReport tick(TimeUs time, Command command, Fault outer = Fault::kNone,
                   TicksQ8 elapsed = kOneTick) noexcept;
 
   /// Continues with another program from the next tick, without a step. Corrections move from their present
   /// values, within the limits of their axes. Axes that the new program does not correct go to zero. next:
   /// bound to this board's wiring (bind), lives until the next use() returns. Returns the previous program.
-  /// realtime.
+  /// Real-time safe.
   BoundProgram* use(BoundProgram& next) noexcept;
 
-  /// Share of the correction of a board's axis that is applied, 0..1; changes within the limits. realtime.
+  /// Share of the correction of a board's axis that is applied, 0..1; changes within the limits.
+  /// Real-time safe.
   void set_axis_weight(std::uint32_t axis, WeightQ16 weight) noexcept { axis_weight_[axis] = weight; }
   WeightQ16 axis_weight(std::uint32_t axis) const noexcept { return axis_weight_[axis]; }
 
-  /// Starts with a fault that was latched before the start. Call before the first tick. setup.
+  /// Starts with a fault that was latched before the start. Call before the first tick. Not real-time safe.
   void restore(Fault fault) noexcept { mode_.restore(fault); }
 
   Mode mode() const noexcept { return mode_.mode(); }
@@ -99,7 +100,7 @@ class Cycle {
   InputMicro input_value(std::uint32_t input) const noexcept { return inputs_[input]; }
   const PathReading& path() const noexcept { return path_; }
   const BoundProgram& program() const noexcept { return *now_; }
-  /// Start values of the last tick. realtime.
+  /// Start values of the last tick. Real-time safe.
   void equation_state(EquationState& state) const noexcept { now_->compensator.state(state); }
 
  private:

@@ -22,12 +22,13 @@ constexpr TicksQ8 kMostElapsed{1 << 20};
 class ElapsedTicks {
  public:
   ElapsedTicks() = default;
-  /// tick: 1 us .. 1 s. setup.
+  /// tick: 1 us .. 1 s. Not real-time safe.
   explicit ElapsedTicks(TimeUs tick) noexcept
       : per_ns_(static_cast<std::int64_t>(
             quotient_of((std::uint64_t{256} << kShift) + 500 * static_cast<std::uint64_t>(tick.count),
                         1000 * static_cast<std::uint64_t>(tick.count)))) {}
-  /// Converts a time to ticks, rounded to the nearest; at least one tick, at most kMostElapsed. realtime.
+  /// Converts a time to ticks, rounded to the nearest; at least one tick, at most kMostElapsed.
+  /// Real-time safe.
   TicksQ8 of(InstantNs time) const noexcept {
     // Beyond 2^30 ns the limit holds anyway for ticks below a millisecond; above, a second is few ticks.
     const std::int64_t ns = clamp<std::int64_t>(time.count, 0, std::int64_t{1} << 30);
@@ -41,7 +42,7 @@ class ElapsedTicks {
 };
 
 /// Returns 2^24 / elapsed, rounded down: the factor (Q16) that converts a travel to the travel per tick. Bit
-/// by bit, for targets without a divider. elapsed: 1 .. kMostElapsed. realtime.
+/// by bit, for targets without a divider. elapsed: 1 .. kMostElapsed. Real-time safe.
 constexpr std::int64_t per_tick_q16(TicksQ8 elapsed) noexcept {
   std::uint32_t rest = 0, quotient = 0;
   for (int bit = 24; bit >= 0; --bit) {

@@ -15,7 +15,7 @@
 
 namespace vernier {
 
-/// A value that one thread writes and other threads copy, word by word, without a lock. realtime.
+/// A value that one thread writes and other threads copy, word by word, without a lock. Real-time safe.
 template <class T>
 class AtomicWords {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::uint32_t) == 0);
@@ -42,7 +42,8 @@ class AtomicWords {
 /// sees two different halves reads again, at most once in 2^32 counts.
 class SharedCount {
  public:
-  /// Only one thread may call store(). A reader that sees the count also sees all earlier writes. realtime.
+  /// Only one thread may call store(). A reader that sees the count also sees all earlier writes.
+  /// Real-time safe.
   void store(std::uint64_t count) noexcept {
     const auto high = static_cast<std::uint32_t>(count >> 32);
     after_.store(high, std::memory_order_release);
@@ -66,7 +67,7 @@ class SharedCount {
 template <class T>
 class Published {
  public:
-  /// Only one thread may call publish(). realtime.
+  /// Only one thread may call publish(). Real-time safe.
   void publish(const T& value) noexcept {
     const std::uint32_t turn = turn_.load(std::memory_order_relaxed);
     turn_.store(turn + 1, std::memory_order_relaxed);
@@ -74,7 +75,7 @@ class Published {
     value_.put(value);
     turn_.store(turn + 2, std::memory_order_release);
   }
-  /// Reads the newest value; false if the writer was faster in each of `tries` attempts. setup.
+  /// Reads the newest value; false if the writer was faster in each of `tries` attempts. Not real-time safe.
   bool read(T& value, int tries = 1000) const noexcept {
     for (int i = 0; i < tries; ++i) {
       const std::uint32_t before = turn_.load(std::memory_order_acquire);
@@ -99,10 +100,10 @@ class Published {
 template <class T>
 class History {
  public:
-  /// size: values that are kept, a power of two. setup.
+  /// size: values that are kept, a power of two. Not real-time safe.
   explicit History(std::uint32_t size) : size_(size), values_(new AtomicWords<T>[size]) {}
 
-  /// Only one thread may call add(). realtime.
+  /// Only one thread may call add(). Real-time safe.
   void add(const T& value) noexcept {
     const std::uint64_t next = count_.load();
     begun_.store(next + 1);
@@ -118,7 +119,8 @@ class History {
     const std::uint64_t count = begun_.load();
     return count > size_ ? count - size_ : 0;
   }
-  /// Reads value `index`; false if the value is not written yet, or is already overwritten. setup.
+  /// Reads value `index`; false if the value is not written yet, or is already overwritten.
+  /// Not real-time safe.
   bool read(std::uint64_t index, T& value) const noexcept {
     if (index >= count()) return false;
     const T copy = values_[static_cast<std::uint32_t>(index) & (size_ - 1)].get();
@@ -162,7 +164,7 @@ struct Exchange {
   std::atomic<BoundProgram*> retired{nullptr};  // was taken out; the owner may free it
 
   /// ticks_kept, touches_kept: how many ticks and touches the Exchange keeps, powers of two. The constructor
-  /// takes all memory. setup.
+  /// takes all memory. Not real-time safe.
   explicit Exchange(std::uint32_t ticks_kept = kHistory, std::uint32_t touches_kept = kTouches)
       : ticks(ticks_kept), touches(touches_kept) {
     for (auto& weight : axis_weight) weight.store(kFullWeight.count);

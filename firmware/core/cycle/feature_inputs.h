@@ -34,7 +34,7 @@ struct FeatureRequest {
 };
 
 /// Converts the name of a feature as `vernier features` writes it ("RMS") to a Feature; false if the name is
-/// not known. setup.
+/// not known. Not real-time safe.
 bool feature_of(std::string_view name, Feature& feature) noexcept;
 
 /// The board's inputs, some of which are features and displacements. In each tick every other input is read
@@ -52,18 +52,19 @@ class FeatureInputs : public InputReader {
  public:
   /// source: reads all inputs that are not features, and outlives this object. inputs: number of inputs of
   /// the board, at most kMaxInputs. tick: of the firmware. A request with an impossible window (length,
-  /// resolution, an `of` that is a feature) is refused: `refused()` then names the request. setup.
+  /// resolution, an `of` that is a feature) is refused: `refused()` then names the request.
+  /// Not real-time safe.
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::span<const FeatureRequest> requests,
                 TimeUs tick);
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::initializer_list<FeatureRequest> requests,
                 TimeUs tick)
       : FeatureInputs(source, inputs, std::span(requests.begin(), requests.size()), tick) {}
 
-  /// Returns the index of the first request that cannot be served, or kNoInput. setup.
+  /// Returns the index of the first request that cannot be served, or kNoInput. Not real-time safe.
   std::uint32_t refused() const noexcept { return refused_; }
   std::size_t windows() const noexcept { return window_count_; }
   /// Returns the number of samples so far that were beyond the range of a window or filter, and of
-  /// displacements beyond +-2.1 m. realtime.
+  /// displacements beyond +-2.1 m. Real-time safe.
   std::uint64_t held() const noexcept;
 
   void begin_tick() noexcept override;

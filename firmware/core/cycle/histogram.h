@@ -10,7 +10,7 @@ namespace vernier {
 template <unsigned kOctaveBits>
 class HistogramOf {
  public:
-  /// ns: negative counts as 0. realtime.
+  /// ns: negative counts as 0. Real-time safe.
   void add(std::int64_t ns) noexcept {
     const auto value = static_cast<std::uint64_t>(ns < 0 ? 0 : ns);
     std::uint32_t& bin = bins_[bin_of(value < kLimit ? value : kLimit - 1)];

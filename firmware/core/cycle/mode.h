@@ -18,14 +18,14 @@ static_assert(kFullWeight.count % kRampTicks == 0);
 /// the weight for the compensator, and calls after() with the result.
 class ModeControl {
  public:
-  /// complete: every device has answered at least once and now. realtime.
+  /// complete: every device has answered at least once and now. Real-time safe.
   void before(Command command, Fault fault, bool complete, Health& health) noexcept;
   /// Ends the tick. at_zero: every correction in the drives is zero; settled: every correction has reached
-  /// its target. realtime.
+  /// its target. Real-time safe.
   void after(Fault fault, bool at_zero, bool settled, Health& health) noexcept;
 
   /// Starts with a fault that was latched before the start; a command clears it. Call before the first tick.
-  /// setup.
+  /// Not real-time safe.
   void restore(Fault fault) noexcept {
     if (fault != Fault::kNone) latched_ = fault, mode_ = Mode::kFaulted;
   }

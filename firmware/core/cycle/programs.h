@@ -23,7 +23,7 @@ struct LoadedProgram {
   std::atomic<bool> taken{false};
 
   std::uint8_t* image() noexcept { return reinterpret_cast<std::uint8_t*>(words.get()); }
-  /// Binds the program again from its image; all state of its execution is new. setup.
+  /// Binds the program again from its image; all state of its execution is new. Not real-time safe.
   void start_anew() noexcept;
 };
 struct GiveBack {
@@ -56,7 +56,7 @@ class Programs {
   static constexpr std::uint32_t kFewest = 3;
 
   /// exchange: outlives this object; image_bytes: size of the largest image. Takes memory for all places.
-  /// setup.
+  /// Not real-time safe.
   Programs(Exchange& exchange, std::uint32_t places, std::uint32_t image_bytes);
 
   // ---- the store

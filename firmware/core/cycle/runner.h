@@ -28,21 +28,23 @@ struct TickTimes {
 /// left out.
 class Runner {
  public:
-  /// Constructs a runner whose first tick is due one period from now. setup.
+  /// Constructs a runner whose first tick is due one period from now. Not real-time safe.
   Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept;
   /// Constructs a runner that starts each tick with a signal of `sync`. A signal earlier than half a period
   /// is ignored. If no signal comes for `patience` after the tick was due, the clock starts the ticks until
-  /// the next signal. setup.
+  /// the next signal. Not real-time safe.
   Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience,
          const OverrunLimits& overruns = {}) noexcept;
 
   /// From now on the controller calls step() in its own cycle. step() then does not wait. Each call of step()
-  /// is then one tick of the controller's time, for any delay of its thread; no tick is skipped. setup.
+  /// is then one tick of the controller's time, for any delay of its thread; no tick is skipped.
+  /// Not real-time safe.
   void follow_caller() noexcept { follows_ = true; }
   /// Sleeps, then runs one tick. found: a fault that was found outside the tick. The time of a tick is
-  /// counted from the construction or set_time(). realtime.
+  /// counted from the construction or set_time(). Real-time safe.
   TickReport step(Command command, Fault found = Fault::kNone) noexcept;
-  /// The machine file's t of the next tick; for a run that starts in the middle of a machine's day. setup.
+  /// The machine file's t of the next tick; for a run that starts in the middle of a machine's day.
+  /// Not real-time safe.
   void set_time(TimeUs time) noexcept { time_ = time; }
   /// The machine file's t of the next tick.
   TimeUs time() const noexcept { return time_; }

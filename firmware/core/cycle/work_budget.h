@@ -20,7 +20,7 @@ struct WorkBudget {
   std::uint64_t of_line = 0;      // work that a line of memory costs which no cache holds (lines_of)
 
   /// True if the board can execute an image: the tick within the budget, the tick with its shares within
-  /// kShareWorkFactor times the budget. setup.
+  /// kShareWorkFactor times the budget. Not real-time safe.
   bool covers(const Program& program, const ShareProgram& shares) const noexcept;
 };
 
@@ -29,7 +29,7 @@ struct WorkBudget {
 /// and jumps through `memory` (its words are overwritten). `memory` must be larger than the caches. Without
 /// `memory`, reading a cache line has no cost, as on a processor without caches. The best of several
 /// measurements counts, because other tasks interrupted the slower ones. Returns kAnyWork if the clock does
-/// not move. Call before the first tick. setup.
+/// not move. Call before the first tick. Not real-time safe.
 WorkBudget measured_work_budget(Clock& clock, TimeUs tick, std::span<std::uint32_t> memory = {}) noexcept;
 
 /// Words of `memory` that exceed the caches of boards: 16 MB.

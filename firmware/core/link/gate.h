@@ -29,7 +29,7 @@ struct Caller {
 class Gate {
  public:
   /// identity, own_key: outlive this object; own_key null: the board has no key; nonce, seed: new
-  /// with each start, from a source of random numbers; the seed must stay secret. setup.
+  /// with each start, from a source of random numbers; the seed must stay secret. Not real-time safe.
   Gate(const BoardIdentity& identity, const Nonce& nonce, const ChallengeSeed& seed,
        IdentityKey* own_key = nullptr) noexcept
       : identity_(identity), nonce_(nonce), seed_(seed), own_key_(own_key) {}
@@ -41,22 +41,23 @@ class Gate {
     std::uint32_t size;
     bool is_signed = false;  // with a valid signature
   };
-  /// Checks a request. from: the caller of the request; now: of the clock that challenge() uses. setup.
+  /// Checks a request. from: the caller of the request; now: of the clock that challenge() uses.
+  /// Not real-time safe.
   Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, const Caller& from,
               TimeUs now) noexcept;
   /// True for a request for a challenge. A challenge can be used once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// Gives the challenge of one connection. The challenge replaces the previous one of the connection. If the
   /// table is full, the oldest challenge of the same link is removed. If the link has no challenge, the
-  /// oldest of all links is removed. setup.
+  /// oldest of all links is removed. Not real-time safe.
   ChallengeReply challenge(LinkAccess access, const Caller& from, TimeUs now) noexcept;
-  /// Removes the challenge of a connection that has ended. setup.
+  /// Removes the challenge of a connection that has ended. Not real-time safe.
   void forget(const Caller& from) noexcept;
   /// True for the request to prove the identity of the board. Every caller may send an identify request.
   static bool is_identify(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// Signs the asker's nonce, the nonce of this start and the board's name with the key of the board.
   /// kUnknownOp: the board has no key; kBadLength: the request has no nonce; kNotReady: the library failed.
-  /// `reply` is filled only with kDone. setup.
+  /// `reply` is filled only with kDone. Not real-time safe.
   LinkStatus identify(const std::uint8_t* request, std::uint32_t size, IdentifyReply& reply) noexcept;
   /// True if a master that uses registers only may give commands over this link.
   bool lets_plain_commands(LinkAccess access, bool trusted_line) const noexcept {

@@ -12,34 +12,35 @@ namespace vernier {
 /// request is untrusted until it is checked.
 class Link {
  public:
-  /// All arguments outlive the link. identity: reported by HelloReply. setup.
+  /// All arguments outlive the link. identity: reported by HelloReply. Not real-time safe.
   Link(Exchange& exchange, Uploader& uploader, const Wiring& wiring, TimeUs tick,
        const BoardIdentity& identity);
 
   /// Answers one request. request: any bytes; reply: room for kMaxReplyBytes. answer() returns the bytes of
-  /// the reply, 0 if the request is too short for an answer. now: of the clock of the uploader. setup.
+  /// the reply, 0 if the request is too short for an answer. now: of the clock of the uploader.
+  /// Not real-time safe.
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
 
   /// True if the request needs the medium. The store then answers the request and may wait for the medium.
-  /// setup.
+  /// Not real-time safe.
   static bool needs_store(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// True if the request is, or may contain (signed), a request for the store or a step of an upload.
-  /// may_need_store() is always false while the store works on a request. setup.
+  /// may_need_store() is always false while the store works on a request. Not real-time safe.
   static bool may_need_store(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// True if the request sets something that a start of the board restores. setup.
+  /// True if the request sets something that a start of the board restores. Not real-time safe.
   static bool is_setting(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// "Ask again": the reply to a request that comes while the store is at work. setup.
+  /// "Ask again": the reply to a request that comes while the store is at work. Not real-time safe.
   static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept {
     return answer_with(LinkStatus::kNotReady, request, reply);
   }
-  /// A reply without payload. request: two bytes at least. setup.
+  /// A reply without payload. request: two bytes at least. Not real-time safe.
   static std::uint32_t answer_with(LinkStatus status, const std::uint8_t* request,
                                    std::uint8_t* reply) noexcept;
 
-  /// The live registers for plain Modbus masters; values: kLiveRegisters. setup.
+  /// The live registers for plain Modbus masters; values: kLiveRegisters. Not real-time safe.
   void fill_registers(std::uint16_t* values);
   /// Gives a command from a plain master. Refused if the number is not a command or if the previous command
-  /// has not been taken. setup.
+  /// has not been taken. Not real-time safe.
   LinkStatus give(std::uint8_t command);
 
  private:

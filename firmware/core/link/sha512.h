@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// SHA-512 (FIPS 180-4) of the added data, piece by piece. setup.
+/// SHA-512 (FIPS 180-4) of the added data, piece by piece. Not real-time safe.
 class Sha512 {
  public:
   static constexpr std::uint32_t kBytes = 64;

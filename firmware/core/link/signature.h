@@ -12,7 +12,7 @@ using PublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
 
 /// Verifies a signature (64 bytes) of the bytes `head` followed by `rest`, made with this key. Ed25519ph, RFC
 /// 8032. A port with a cryptographic library defines this function; a port without a library uses
-/// firmware/core/link/signature.cpp. setup.
+/// firmware/core/link/signature.cpp. Not real-time safe.
 bool signature_fits(std::span<const std::uint8_t> head, std::span<const std::uint8_t> rest,
                     const std::uint8_t* signature, const PublicKey& key);
 

@@ -53,35 +53,36 @@ class Uploader {
     std::uint32_t places = Programs::kFewest;
     WorkBudget budget{};  // measured_work_budget()
   };
-  /// store, wiring, exchange: outlive the uploader. setup.
+  /// store, wiring, exchange: outlive the uploader. Not real-time safe.
   Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, const Options& options);
 
   // ---- the store
   /// Call boot() once after power-on. boot() reverts an image that was on trial, checks the confirmed image,
   /// and starts it. The result gives the reason if no image runs. kNone: also if no image was ever confirmed;
-  /// kStore: no record of the store can be read, so the state is not known. setup.
+  /// kStore: no record of the store can be read, so the state is not known. Not real-time safe.
   UploadResult boot();
   /// Starts like boot(), but runs an image that the operator gives at the start of the board. This image is
-  /// not signed; the medium is not changed. setup.
+  /// not signed; the medium is not changed. Not real-time safe.
   UploadResult boot_with(std::span<const std::uint8_t> image);
-  /// Ends an upload: writes the received data to the medium, checks the image and starts its trial. setup.
+  /// Ends an upload: writes the received data to the medium, checks the image and starts its trial.
+  /// Not real-time safe.
   UploadResult finish();
-  /// Keeps the image on trial. setup.
+  /// Keeps the image on trial. Not real-time safe.
   UploadResult confirm();
-  /// Ends the trial of an image; the guardian stops the image in its next round. setup.
+  /// Ends the trial of an image; the guardian stops the image in its next round. Not real-time safe.
   UploadResult revert();
   /// Records that a trial is over; true if the record is written. If the record cannot be written, the next
-  /// call tries again. Until then a reset gives the same result as the present medium. setup.
+  /// call tries again. Until then a reset gives the same result as the present medium. Not real-time safe.
   bool look_after_store();
   /// Reads bytes of the confirmed upload (header and image) from the medium. kNoReading: the offset is beyond
-  /// the upload. setup.
+  /// the upload. Not real-time safe.
   HalFault read_confirmed(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept;
 
   // ---- the links, while the store is not at work for one of them
-  /// Begins a new upload of `bytes` bytes; an unfinished upload is dropped. setup.
+  /// Begins a new upload of `bytes` bytes; an unfinished upload is dropped. Not real-time safe.
   UploadResult begin(std::uint32_t bytes);
   /// Adds the next piece of the upload. offset: number of bytes before the piece. A repeated last piece is
-  /// accepted. setup.
+  /// accepted. Not real-time safe.
   UploadResult add(std::uint32_t offset, const std::uint8_t* bytes, std::uint32_t size);
 
   // ---- anybody

@@ -46,7 +46,7 @@ struct BoardFile {
   std::vector<std::string> key_files;  // public keys, read already
 };
 
-/// Reads and checks a board file and the key files that it names. Throws BoardError. setup.
+/// Reads and checks a board file and the key files that it names. Throws BoardError. Not real-time safe.
 BoardFile read_board_file(const std::string& path);
 
 }  // namespace vernier

@@ -14,7 +14,7 @@ class BoardKey final : public IdentityKey {
  public:
   /// Reads the key of a store, or makes a key if the store has none. The secret half is on the medium before
   /// the constructor returns. store: directory that can be written. Throws BoardError if the key cannot be
-  /// read or made, is not a key, or if other users may read it. setup.
+  /// read or made, is not a key, or if other users may read it. Not real-time safe.
   explicit BoardKey(const std::string& store);
   ~BoardKey() override;
   BoardKey(const BoardKey&) = delete;
@@ -22,7 +22,7 @@ class BoardKey final : public IdentityKey {
 
   const std::uint8_t* public_half() const noexcept override { return public_.data(); }
   HalFault sign(const std::uint8_t* message, std::uint32_t size, std::uint8_t* signature) noexcept override;
-  /// The public half as 64 hexadecimal digits. setup.
+  /// The public half as 64 hexadecimal digits. Not real-time safe.
   std::string text() const;
 
  private:

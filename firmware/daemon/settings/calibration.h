@@ -23,17 +23,17 @@ struct Calibration {
 };
 
 /// Fits a line to the points by least squares. codes: number of codes of the whole span. Throws BoardError:
-/// fewer than three points, only one code, a slope smaller than five times its uncertainty. setup. Source:
-/// JCGM 100:2008, H.3 (calibration line).
+/// fewer than three points, only one code, a slope smaller than five times its uncertainty. Not real-time
+/// safe. Source: JCGM 100:2008, H.3 (calibration line).
 Calibration fit_calibration(const std::vector<CalibrationPoint>& points, std::int64_t codes, bool rotary);
 
 /// Reads a file with the header "code,measured[um]" (rotary: "code,measured[arcsec]") and one point per line;
-/// # begins a comment. Throws BoardError with file and line. setup.
+/// # begins a comment. Throws BoardError with file and line. Not real-time safe.
 std::vector<CalibrationPoint> read_calibration_points(const std::string& path, bool rotary);
 
 /// Writes the file that an output names as its `calibration`: span, zero (the nearest code) and polarity. The
 /// uncertainties are written as comments for people. The file is written by write_output: as a whole or, if
-/// that fails, not changed. Then BoardError is thrown. setup.
+/// that fails, not changed. Then BoardError is thrown. Not real-time safe.
 void write_calibration(const std::string& path, const Calibration& calibration, const std::string& axis);
 
 /// Returns a calibration as JSON: the content of write_calibration.

@@ -8,7 +8,7 @@
 namespace vernier {
 
 /// The inputs of kind "feature" of a board file. Throws BoardError if an input names no input with samples or
-/// no feature, or has a window or resolution that is not possible. setup.
+/// no feature, or has a window or resolution that is not possible. Not real-time safe.
 std::vector<FeatureRequest> feature_requests(const BoardFile& file);
 
 }  // namespace vernier

@@ -12,7 +12,7 @@ struct BoardError {
   std::string what;
 };
 
-/// The 32 bytes of a public key file (base64 after a header line). Throws BoardError. setup.
+/// The 32 bytes of a public key file (base64 after a header line). Throws BoardError. Not real-time safe.
 PublicKey read_public_key(const std::string& path);
 
 }  // namespace vernier

@@ -32,19 +32,19 @@ class CanAxes : public PositionReader {
   static constexpr std::uint32_t kStalledFrames = 3;  // frames with one and the same stamp that are accepted
 
   /// interface: for example "can0"; ids: 11 bits, or 29 bits above 0x7ff, all different, at least one.
-  /// Returns null with `error` set if the kernel refuses the socket. setup.
+  /// Returns null with `error` set if the kernel refuses the socket. Not real-time safe.
   static std::unique_ptr<CanAxes> open(const std::string& interface, const std::vector<std::uint32_t>& ids,
                                        std::string& error);
   /// Takes over any socket that keeps frames apart, does not block, and gives frames as the kernel's
-  /// can_frame. setup.
+  /// can_frame. Not real-time safe.
   CanAxes(int socket, const std::vector<std::uint32_t>& ids);
   ~CanAxes() override;
   CanAxes(const CanAxes&) = delete;
   CanAxes& operator=(const CanAxes&) = delete;
 
-  /// Takes the frames since the last call, at most kMostFrames, without waiting. realtime.
+  /// Takes the frames since the last call, at most kMostFrames, without waiting. Real-time safe.
   void begin_tick() noexcept override;
-  /// kNoReading: no new, valid frame of this axis since the previous tick. realtime.
+  /// kNoReading: no new, valid frame of this axis since the previous tick. Real-time safe.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
 
   const CanCounts& counts() const noexcept { return counts_; }

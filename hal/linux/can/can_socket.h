@@ -12,23 +12,23 @@ namespace vernier {
 canid_t can_identifier(std::uint32_t id) noexcept;
 
 /// Binds a socket to an interface ("can0"). address: the other fields of the address (identifiers of ISO-TP).
-/// Closes the socket and sets `error` if that fails. setup.
+/// Closes the socket and sets `error` if that fails. Not real-time safe.
 bool bind_can(int socket, const std::string& interface, sockaddr_can address, std::string& error);
 
 /// Opens a non-blocking socket for frames with these identifiers. bus_errors: the kernel also reports the
 /// bus-off state. An interface with a '/' is the path of a local socket (SOCK_SEQPACKET) of a program in the
 /// place of a bus: the first message has the filters (can_filter), the others are frames (can_frame). Each
 /// frame of a program comes back to it, too, if its filters have the identifier. -1 with `error` set if the
-/// kernel refuses. setup.
+/// kernel refuses. Not real-time safe.
 int open_can(const std::string& interface, const std::vector<std::uint32_t>& ids, bool bus_errors,
              std::string& error);
 
 /// The socket also gets the frames that it sends itself, in their order on the bus. Closes the socket and
-/// sets `error` if the kernel refuses. setup.
+/// sets `error` if the kernel refuses. Not real-time safe.
 bool hear_own_frames(int socket, const std::string& interface, std::string& error);
 
 /// Sets `error` to the last error of the system ("can0: no such interface: ..."), closes the socket and
-/// returns -1. setup.
+/// returns -1. Not real-time safe.
 int can_failed(const std::string& interface, const char* what, int socket, std::string& error);
 
 }  // namespace vernier

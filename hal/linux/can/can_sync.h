@@ -11,9 +11,9 @@ namespace vernier {
 /// The sync frame of a CAN bus (SYNC of CiA 301, identifier 0x80): any frame with the identifier counts.
 class CanSync : public TickSync {
  public:
-  /// interface: "can0"; id: 11 bits, or 29 above 0x7ff. Null with `error` set. setup.
+  /// interface: "can0"; id: 11 bits, or 29 above 0x7ff. Null with `error` set. Not real-time safe.
   static std::unique_ptr<CanSync> open(const std::string& interface, std::uint32_t id, std::string& error);
-  /// Takes over any socket that keeps frames apart and does not block. setup.
+  /// Takes over any socket that keeps frames apart and does not block. Not real-time safe.
   explicit CanSync(int socket) : socket_(socket) {}
   ~CanSync() override;
   CanSync(const CanSync&) = delete;

@@ -20,17 +20,17 @@ class CanopenAxes : public PositionReader {
   };
   static constexpr int kMostFrames = 256;  // taken from the socket in one tick
 
-  /// Returns null with `error` set if the kernel refuses the socket. setup.
+  /// Returns null with `error` set if the kernel refuses the socket. Not real-time safe.
   static std::unique_ptr<CanopenAxes> open(const std::string& interface, const std::vector<Axis>& axes,
                                            std::string& error);
-  /// Takes over any socket that keeps frames apart and does not block. setup.
+  /// Takes over any socket that keeps frames apart and does not block. Not real-time safe.
   CanopenAxes(int socket, const std::vector<Axis>& axes);
   ~CanopenAxes() override;
   CanopenAxes(const CanopenAxes&) = delete;
   CanopenAxes& operator=(const CanopenAxes&) = delete;
 
   void begin_tick() noexcept override;
-  /// kNoReading: no TPDO of the drive since the previous tick. realtime.
+  /// kNoReading: no TPDO of the drive since the previous tick. Real-time safe.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
   const CanopenCounts& counts(std::uint32_t index) const noexcept { return drives_[index].drive.counts(); }
 

@@ -50,7 +50,7 @@ class CanopenDrive {
  public:
   explicit CanopenDrive(const CanopenSettings& settings) noexcept : settings_(settings) {}
 
-  /// Takes a frame of the bus, also one that the board has sent. realtime.
+  /// Takes a frame of the bus, also one that the board has sent. Real-time safe.
   void take(const can_frame& frame, InstantNs now) noexcept;
 
   struct Step {
@@ -59,30 +59,30 @@ class CanopenDrive {
     std::int32_t offset = 0;
   };
   /// Judges the drive and chooses the offset for this tick. wanted: counts of the object. The caller calls
-  /// sent() if the bus took the frame. realtime.
+  /// sent() if the bus took the frame. Real-time safe.
   Step step(std::int64_t wanted, InstantNs now) noexcept;
   void sent(std::int32_t offset, InstantNs now) noexcept {
     sent_ = offset, pending_ = true, pending_since_ = now;
     if (doubt_ == Doubt::kRepeat) doubt_ = Doubt::kOnItsWay;
     ++counts_.offsets;
   }
-  /// The bus did not take the frame. realtime.
+  /// The bus did not take the frame. Real-time safe.
   void not_sent() noexcept { ++counts_.refused; }
-  /// What the drive has from before. setup.
+  /// What the drive has from before. Not real-time safe.
   void begin_with(std::int32_t offset) noexcept { sent_ = on_bus_ = applied_ = offset; }
 
-  /// The newest position actual value since the last call of begin_tick(). realtime.
+  /// The newest position actual value since the last call of begin_tick(). Real-time safe.
   bool position(std::int32_t& value) const noexcept {
     if (fresh_) value = position_;
     return fresh_;
   }
   void begin_tick() noexcept { fresh_ = false; }
 
-  /// Offset that the drive has, or gets with the next SYNC. realtime.
+  /// Offset that the drive has, or gets with the next SYNC. Real-time safe.
   std::int32_t offset() const noexcept { return sent_; }
-  /// True: the last step was sent as it was wanted. realtime.
+  /// True: the last step was sent as it was wanted. Real-time safe.
   bool follows() const noexcept { return follows_; }
-  /// Null, or what is missing: "SYNC", "the heartbeat", ... setup.
+  /// Null, or what is missing: "SYNC", "the heartbeat", ... Not real-time safe.
   const char* missing(InstantNs now) const noexcept;
   bool enabled() const noexcept { return (status_ & kStateMask) == kOperationEnabled; }
   std::uint16_t status() const noexcept { return status_; }

@@ -22,24 +22,25 @@ struct CanopenPlace {
 class CanopenOutput : public OutputDevice {
  public:
   /// Returns null with `error` set if the bus is not there, or the drive's PDOs are not those of `settings`.
-  /// setup.
+  /// Not real-time safe.
   static std::unique_ptr<CanopenOutput> open(const CanopenPlace& place, const CanopenSettings& settings,
                                              const AnalogueScale& scale, std::string& error);
-  /// Takes over any socket that keeps frames apart and does not block. setup.
+  /// Takes over any socket that keeps frames apart and does not block. Not real-time safe.
   CanopenOutput(int socket, const CanopenPlace& place, const CanopenSettings& settings,
                 const AnalogueScale& scale);
   ~CanopenOutput() override;
   CanopenOutput(const CanopenOutput&) = delete;
   CanopenOutput& operator=(const CanopenOutput&) = delete;
 
-  /// kRefused: the drive takes no offset (no SYNC, bus off), or the tick must learn of a loss. realtime.
+  /// kRefused: the drive takes no offset (no SYNC, bus off), or the tick must learn of a loss.
+  /// Real-time safe.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
-  /// The correction that the drive has, if it does not follow. realtime.
+  /// The correction that the drive has, if it does not follow. Real-time safe.
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 
-  /// False if another node sends the RPDO. Listens for some SYNC periods. setup.
+  /// False if another node sends the RPDO. Listens for some SYNC periods. Not real-time safe.
   bool lock() noexcept override;
-  /// The offset that the drive has, by SDO. setup.
+  /// The offset that the drive has, by SDO. Not real-time safe.
   HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept override;
   std::string attempt(std::uint32_t axis) override;
   std::uint64_t held_at_end(std::uint32_t) const noexcept override { return held_at_end_; }

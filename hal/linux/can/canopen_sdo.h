@@ -17,20 +17,21 @@ struct CanopenObject {
 /// board only reads, and only before the first tick: a node has one SDO server for one client at a time.
 class CanopenSdo {
  public:
-  /// interface: as for open_can(). node: 1 .. 127. Null socket with `error` set. setup.
+  /// interface: as for open_can(). node: 1 .. 127. Null socket with `error` set. Not real-time safe.
   CanopenSdo(const std::string& interface, std::uint32_t node, std::string& error);
-  /// Takes over any socket that keeps frames apart and does not block. setup.
+  /// Takes over any socket that keeps frames apart and does not block. Not real-time safe.
   CanopenSdo(int socket, std::uint32_t node) : socket_(socket), node_(node) {}
   ~CanopenSdo();
   CanopenSdo(const CanopenSdo&) = delete;
   CanopenSdo& operator=(const CanopenSdo&) = delete;
 
-  /// Reads a value of 1 to 4 bytes. Returns empty, or the reason. Waits at most kWait. setup.
+  /// Reads a value of 1 to 4 bytes. Returns empty, or the reason. Waits at most kWait. Not real-time safe.
   std::string read(CanopenObject object, std::uint32_t& value);
   /// Finds the RPDO with this identifier. Empty, or how its mapping differs from one value of 32 bits of
-  /// `object` that the drive uses with the next SYNC. setup.
+  /// `object` that the drive uses with the next SYNC. Not real-time safe.
   std::string check_offset(std::uint32_t rpdo, CanopenObject object);
-  /// As check_offset() for the TPDO: statusword, then position actual value, with each SYNC. setup.
+  /// As check_offset() for the TPDO: statusword, then position actual value, with each SYNC.
+  /// Not real-time safe.
   std::string check_position(std::uint32_t tpdo);
 
   static constexpr int kWaitMs = 300;

@@ -11,7 +11,7 @@ namespace vernier {
 class IsotpLink : public CommandLink {
  public:
   /// interface: "can0"; receive, transmit: identifiers, 11 bits, or 29 bits above 0x7ff. Null with `error`
-  /// set if the kernel refuses. setup.
+  /// set if the kernel refuses. Not real-time safe.
   static std::unique_ptr<IsotpLink> open(const std::string& interface, std::uint32_t receive,
                                          std::uint32_t transmit, std::string& error);
   ~IsotpLink() override;
@@ -26,7 +26,7 @@ class IsotpLink : public CommandLink {
   }
 
   /// The client's side of an ISO-TP link: sends a request and waits for the reply. Returns the bytes of the
-  /// reply; -1 with errno set if no reply came. setup.
+  /// reply; -1 with errno set if no reply came. Not real-time safe.
   int ask(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, std::uint32_t room,
           TimeUs wait) noexcept;
 

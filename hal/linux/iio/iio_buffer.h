@@ -45,7 +45,7 @@ class IioBuffer : public InputReader {
   static constexpr std::uint32_t kMostWaiting = 4;  // ticks that a tick may be late without a scan lost
 
   /// Sets up the device (channels, trigger, rate) and starts it. Returns null with `error` set if that fails.
-  /// setup.
+  /// Not real-time safe.
   static std::unique_ptr<IioBuffer> open(const IioBufferSettings& settings, std::string& error);
   /// Stops the device.
   ~IioBuffer() override;
@@ -54,7 +54,7 @@ class IioBuffer : public InputReader {
 
   /// Takes the received scans without waiting, and steps to the next scan. realtime: one or two system calls.
   void begin_tick() noexcept override;
-  /// kNoReading: this tick has no scan. realtime.
+  /// kNoReading: this tick has no scan. Real-time safe.
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
   const IioBufferCounts& counts() const noexcept { return counts_; }
 

@@ -19,7 +19,7 @@ struct IioScale {
 /// in_temp0_input in 1/1000 degC, or in_voltage3_raw.
 class IioInput : public SampledInput {
  public:
-  /// attribute: path. Null with `error` set. setup.
+  /// attribute: path. Null with `error` set. Not real-time safe.
   static std::unique_ptr<IioInput> open(const std::string& attribute, const IioScale& scale,
                                         std::uint32_t stale_reads, std::string& error);
 

@@ -18,12 +18,12 @@ struct IioElement {
 };
 
 /// Reads "le:s16/16>>0", "be:u24/32X2>>8" and the like. Returns false for other text, or if the storage is
-/// not 8, 16, 32 or 64 bits or is too small for its bits. setup.
+/// not 8, 16, 32 or 64 bits or is too small for its bits. Not real-time safe.
 bool parse_iio_element(std::string_view text, IioElement& element) noexcept;
 
 /// Returns the value of a channel whose storage begins at `storage`: converted to the byte order of the host,
 /// shifted, cut to its bits, with its sign. An unsigned value of 64 bits is limited to the largest int64.
-/// realtime.
+/// Real-time safe.
 std::int64_t iio_value(const unsigned char* storage, const IioElement& element) noexcept;
 
 /// Returns the offset of an element that follows `at` bytes of a scan; elements are aligned to their size.

@@ -38,17 +38,17 @@ struct ModbusAxesSettings {
 /// the program of the controller stands still.
 class ModbusAxes : public PositionReader {
  public:
-  /// line: used by these axes only. setup.
+  /// line: used by these axes only. Not real-time safe.
   ModbusAxes(std::shared_ptr<ModbusLine> line, const ModbusAxesSettings& settings);
   ~ModbusAxes() override;
   ModbusAxes(const ModbusAxes&) = delete;
   ModbusAxes& operator=(const ModbusAxes&) = delete;
 
   void begin_tick() noexcept override;
-  /// kNoReading: no new positions since the previous tick. realtime.
+  /// kNoReading: no new positions since the previous tick. Real-time safe.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
 
-  /// What was read, for the end of the daemon. setup.
+  /// What was read, for the end of the daemon. Not real-time safe.
   std::string account() const;
 
  private:

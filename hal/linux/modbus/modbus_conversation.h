@@ -28,7 +28,7 @@ class ModbusConversation {
   static constexpr InstantNs kReplyDeadline{1'000'000'000};  // for a peer to take its reply
 
   /// unit: address on a serial line, 1..247; 0: TCP, any unit. frame_time: longest time for a whole request,
-  /// from its first byte on. setup.
+  /// from its first byte on. Not real-time safe.
   ModbusConversation(const ModbusLayout& layout, int unit, InstantNs frame_time) noexcept
       : layout_(layout), unit_(unit), frame_time_(frame_time) {}
 

@@ -16,10 +16,11 @@ namespace vernier {
 class ModbusLine {
  public:
   /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; wait: longest time for an answer.
-  /// Returns null with `error` set if the device cannot be used. setup.
+  /// Returns null with `error` set if the device cannot be used. Not real-time safe.
   static std::shared_ptr<ModbusLine> rtu(const std::string& device, int baud, char parity, TimeUs wait,
                                          std::string& error);
-  /// address: numeric. A peer that does not answer is no error: each reading tries it again. setup.
+  /// address: numeric. A peer that does not answer is no error: each reading tries it again.
+  /// Not real-time safe.
   static std::shared_ptr<ModbusLine> tcp(const std::string& address, int port, TimeUs wait,
                                          std::string& error);
   ~ModbusLine();
@@ -29,12 +30,13 @@ class ModbusLine {
   enum class Registers { kInput, kHolding };
   /// Reads `count` registers (1 to 125). False: no answer in time, an exception, or an answer of another
   /// unit, transaction, function or length. After a missing answer the line is not used for the same time
-  /// again: a late answer is then not taken for the answer to the next request. setup.
+  /// again: a late answer is then not taken for the answer to the next request. Not real-time safe.
   bool read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;
   /// Writes `count` holding registers (1 to 123) in one request. False as for read(): the peer may have taken
-  /// the values. setup.
+  /// the values. Not real-time safe.
   bool write(int unit, int address, int count, const std::uint16_t* values) noexcept;
-  /// Answers so far that did not belong to their request or were damaged. For the thread that reads. setup.
+  /// Answers so far that did not belong to their request or were damaged. For the thread that reads.
+  /// Not real-time safe.
   std::uint64_t wrong_answers() const noexcept { return wrong_answers_; }
 
  private:

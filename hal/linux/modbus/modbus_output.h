@@ -42,7 +42,8 @@ struct ModbusOutputSettings {
 class ModbusOutput : public OutputDevice {
  public:
   /// line: used by this output only. Returns null with `error` set if the controller does not answer, does
-  /// not return the sequence number, or is written by another board. Waits for the controller. setup.
+  /// not return the sequence number, or is written by another board. Waits for the controller.
+  /// Not real-time safe.
   static std::unique_ptr<ModbusOutput> open(std::shared_ptr<ModbusLine> line,
                                             const ModbusOutputSettings& settings, std::string& error);
   /// Clears the valid bits.
@@ -51,7 +52,7 @@ class ModbusOutput : public OutputDevice {
   ModbusOutput& operator=(const ModbusOutput&) = delete;
 
   /// kRefused: the controller does not return the sequence number; or a correction grows whose valid bit is
-  /// not set. realtime.
+  /// not set. Real-time safe.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 

@@ -21,10 +21,10 @@ namespace vernier {
 class ModbusServer : public CommandLink {
  public:
   /// address: numeric, "127.0.0.1"; port 0: any free port. Returns null with `error` set if the server cannot
-  /// listen. setup.
+  /// listen. Not real-time safe.
   static std::unique_ptr<ModbusServer> tcp(const std::string& address, int port, const ModbusLayout& layout,
                                            std::string& error);
-  /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; unit: 1..247. setup.
+  /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; unit: 1..247. Not real-time safe.
   static std::unique_ptr<ModbusServer> rtu(const std::string& device, int baud, char parity, int unit,
                                            const ModbusLayout& layout, std::string& error);
   ~ModbusServer() override;

@@ -12,7 +12,7 @@ struct ProcessResult {
 };
 
 /// Runs a program and waits for it; standard output is returned, standard error goes to `error_file`.
-/// Throws std::runtime_error where it cannot be started. tool.
+/// Throws std::runtime_error where it cannot be started.
 ProcessResult run_process(const std::vector<std::string>& arguments, const std::string& error_file);
 
 }  // namespace vernier::bench

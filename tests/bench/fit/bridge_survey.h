@@ -32,7 +32,7 @@ enum class Start { kAligned, kFar };
 
 /// Tables of `stations` stations on every axis with all six columns free, a BaseShift for each set-up, the
 /// tool's three lengths: 18 * stations + 33 parameters. `points` random positions of the volume, x y z each,
-/// of a machine with errors of 20 um and 20 urad. tool.
+/// of a machine with errors of 20 um and 20 urad.
 Survey make_survey(std::size_t stations, std::size_t points, Targets targets, Start start,
                    std::uint64_t seed);
 

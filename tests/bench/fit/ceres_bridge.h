@@ -28,7 +28,7 @@ double thread_seconds();
 enum class Configuration { kBest, kDefaults };
 
 /// The survey written for Ceres by hand: one cost function a point (three residuals), a block of six for each
-/// station and each BaseShift. tool.
+/// station and each BaseShift.
 Race race_ceres(const Survey& survey, Configuration configuration);
 
 }  // namespace vernier::bench

@@ -20,7 +20,6 @@ inline constexpr std::array<const char*, 7> kReferenceMachines = {
 
 /// A reference machine with seeded errors: statics 5 um / 5 mdeg off their nominal, tables of 64 stations on
 /// the three-axis machine, random walks in all columns. Always the same. Throws InputError for another name.
-/// tool.
 Machine reference_machine(const std::string& name);
 
 /// The same with its compiled form.

@@ -10,19 +10,19 @@
 
 namespace vernier::commands::fleet_cli {
 
-/// Adds the option `--registry`; its default is the variable VERNIER_REGISTRY. tool.
+/// Adds the option `--registry`; its default is the variable VERNIER_REGISTRY.
 void add_registry(CLI::App& command, std::string& place);
 /// Opens the registry with the given name; creates a file that does not exist. Throws InputError if no name
-/// is given, or if the registry is not available. tool.
+/// is given, or if the registry is not available.
 registry::Registry make_registry(const std::string& place);
-/// Opens a registry that exists already; a misspelt file name is refused. tool.
+/// Opens a registry that exists already; a misspelt file name is refused.
 registry::Registry open_registry(const std::string& place);
 
 /// Converts a time that a user wrote to us since 1970; `otherwise` if the text is empty. Throws InputError if
-/// the text is not a time. tool.
+/// the text is not a time.
 std::int64_t time_of(const std::string& text, std::int64_t otherwise);
 
-/// A line on standard error, whole, from any thread. tool.
+/// A line on standard error, whole, from any thread.
 void say_line(const std::string& line);
 
 /// The kinds of `vernier fleet`, a file each.

@@ -15,10 +15,10 @@ struct PartSource {
 };
 
 /// Returns the part at its place in the machine, from a list of features or a part program. Throws
-/// InputError, and LimitNotMet if a point is out of reach. tool.
+/// InputError, and LimitNotMet if a point is out of reach.
 tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine& machine);
 
-/// Adds `vernier part conformity`. tool.
+/// Adds `vernier part conformity`.
 void add_conformity(CLI::App& part);
 
 }  // namespace vernier::commands::part_cli

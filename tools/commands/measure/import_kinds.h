@@ -10,7 +10,7 @@ struct ImportOutput {
   std::string csv_path, json_path;
 };
 
-/// Adds `-o FILE` (required) and `--json FILE` to a kind. tool.
+/// Adds `-o FILE` (required) and `--json FILE` to a kind.
 void add_import_output(CLI::App& kind, ImportOutput& output);
 
 // One function a kind: adds its options and callback to its subcommand.

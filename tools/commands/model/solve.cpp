@@ -45,7 +45,7 @@ kinematics::InverseOptions options_of(const SolveArguments& arguments, const mod
   return options;
 }
 
-/// The axes found bring the tool to the target, and may be there. tool.
+/// The axes found bring the tool to the target, and may be there.
 text::Assurance assurance_of(const model::Machine& machine, const kinematics::InverseResult& result,
                              const kinematics::InverseOptions& options) {
   const kinematics::Inverse& proof = result.each[0];

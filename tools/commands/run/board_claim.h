@@ -13,14 +13,14 @@ struct ClaimWords {
   std::string board, board_key;
 };
 
-/// Adds `--board` and `--board-key` to a command that changes a board. tool.
+/// Adds `--board` and `--board-key` to a command that changes a board.
 void add_board_claim(CLI::App& command, ClaimWords& words);
-/// Converts the options to a claim on the board. Throws InputError if the key is not valid. tool.
+/// Converts the options to a claim on the board. Throws InputError if the key is not valid.
 upload::BoardClaim claim_of(const ClaimWords& words);
 /// Compares the board with the claim before data are signed or sent. Throws LimitNotMet with the words
-/// "nothing was sent" if the board is another board. tool.
+/// "nothing was sent" if the board is another board.
 void require_claim(upload::Client& client, const ClaimWords& words);
-/// Records in the assurance which items were compared and which were not. tool.
+/// Records in the assurance which items were compared and which were not.
 void vouch_for_board(text::Assurance& assurance, const ClaimWords& words, const std::string& board);
 
 }  // namespace vernier::commands

@@ -7,7 +7,7 @@
 namespace vernier::commands::upload_cli {
 
 /// The image of a directory that `vernier compile` wrote, after a further test of the sheet "safe to run?".
-/// Throws InputError if the file is not an image, LimitNotMet if the image may not run. tool.
+/// Throws InputError if the file is not an image, LimitNotMet if the image may not run.
 std::vector<std::uint8_t> safe_image(const std::string& directory);
 
 }  // namespace vernier::commands::upload_cli

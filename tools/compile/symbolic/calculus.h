@@ -9,7 +9,7 @@
 
 namespace vernier::compile {
 
-/// Computes d node / d channel as a node. Throws std::domain_error if the node has a step or a table. tool.
+/// Computes d node / d channel as a node. Throws std::domain_error if the node has a step or a table.
 class Derivative {
  public:
   Derivative(Graph& graph, NodeId channel) : g_(graph), channel_(channel) {}
@@ -25,7 +25,7 @@ class Derivative {
 
 /// Values of nodes at random positions of their channels' ranges. The random numbers are seeded: each call
 /// gives the same values. A table or a lag has no sampled value. A node that depends on a table or a lag
-/// throws std::domain_error. tool.
+/// throws std::domain_error.
 class Samples {
  public:
   Samples(const Graph& graph, Eigen::Index count) : graph_(graph), count_(count) {}
@@ -58,12 +58,12 @@ class Enclosure {
 };
 
 /// Returns a lower bound of a node over the declared ranges, by bisection of the positions on which the node
-/// depends. lower_bound_of evaluates at most `boxes` parts. The result is never above the true minimum. tool.
+/// depends. lower_bound_of evaluates at most `boxes` parts. The result is never above the true minimum.
 double lower_bound_of(const Graph& graph, NodeId node, std::size_t boxes);
 
 /// Upper bounds of |d node / d channel| over the declared ranges. Tables count with their steepest piece,
 /// choices with the steeper side; steps of comparisons are excluded. tables: largest slope of each column,
-/// per graph node. tool.
+/// per graph node.
 class Slopes {
  public:
   Slopes(const Graph& graph, NodeId channel, const std::map<NodeId, double>& table_slopes)

@@ -53,7 +53,7 @@ struct Node {
 
 /// The error equation as a graph of real-valued operations. Equal operations share one node (hash-consing).
 /// Constants are folded, zeros are pruned, sums are flattened and like terms are collected. Nodes are never
-/// removed. Unreachable nodes need no computing time. tool.
+/// removed. Unreachable nodes need no computing time.
 class Graph {
  public:
   NodeId constant(double value);

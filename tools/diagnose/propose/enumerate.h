@@ -23,19 +23,19 @@ struct ScannedCandidate {
 
 /// Returns every effect of the catalogue at every location of the machine that the rule of its
 /// form admits and that the rows can distinguish. Every logged column with a suitable unit is an
-/// input. tool.
+/// input.
 std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
                                                    const std::vector<effects::Effect>& effects);
 
 /// Returns locations whose influence on all observations equals that of another location of their kind, but
 /// is many times weaker. Index: as Evidence::places(). Example: a length across the reading direction that is
 /// visible only because the machine is tilted by minutes. An effect that a survey shows at such a location
-/// belongs to the other location. tool.
+/// belongs to the other location.
 std::vector<char> outshone_places(const Evidence& evidence);
 
 /// Returns the degrees of freedom that the observations can distinguish. Among degrees of freedom with the
 /// same influence on all observations (all but 1e-7 of the direction), the first is used. Rows of the file
-/// precede an added row. `angles_apart`: returns the first angle and the first length. tool.
+/// precede an added row. `angles_apart`: returns the first angle and the first length.
 std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
 
 }  // namespace vernier::diagnose

@@ -19,7 +19,7 @@ namespace vernier::diagnose {
 /// each observation, the residual, and the part that the free parameters of the model can still absorb.
 class Evidence {
  public:
-  /// `fitted`: the machine at its best fit. Every logged column becomes an input. tool.
+  /// `fitted`: the machine at its best fit. Every logged column becomes an input.
   Evidence(const model::Machine& fitted, const model::Measurement& measurement,
            const DiagnoseThresholds& thresholds = {});
 
@@ -153,7 +153,7 @@ class Evidence {
 };
 
 /// Computes the columns of candidates one after another (Evidence::columns) on one copy of the machine. Use a
-/// separate ColumnMaker for each thread. tool.
+/// separate ColumnMaker for each thread.
 class ColumnMaker {
  public:
   explicit ColumnMaker(const Evidence& evidence);

@@ -28,23 +28,23 @@ struct FinePeriods {
 /// Returns the shortest period of an axis that the positions of the axis distinguish from every longer
 /// period. The result is 2.1 steps if the positions are even, nearly even or multiples of one step. The
 /// result is 0 if the positions are uneven enough for all periods down to 1/1000 of the range. The period is
-/// in the unit of the axis. tool.
+/// in the unit of the axis.
 double shortest_told_apart(const Evidence& evidence, std::size_t axis);
 
 /// Returns the frequency differences at which two cyclic errors are nearly identical at all positions of an
 /// axis. Unit: periods per unit of the axis. If the positions have the spacing s, these frequencies are 1/s
-/// and its multiples. Frequencies up to `most` are returned. tool.
+/// and its multiples. Frequencies up to `most` are returned.
 std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis, double most);
 
 /// Returns the search range at an axis below the shortest period of `grid` (increasing). The search range
 /// extends down to 1/1000 of the measured range, to 2.5 periods for each position, and not below `shortest`
-/// (shortest_told_apart). `carrier` stays empty. tool.
+/// (shortest_told_apart). `carrier` stays empty.
 FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::vector<double>& grid,
                          double shortest);
 
 /// Returns the common factor of the columns sin(2 pi q / p) and cos(2 pi q / p) of a candidate at all
 /// readings. The factor is equal for every period p. Empty if the term is not such a pair. Call carrier_of
-/// before poses are weighted. tool.
+/// before poses are weighted.
 Eigen::VectorXd carrier_of(const Evidence& evidence, const effects::Candidate& candidate,
                            const FinePeriods& fine);
 
@@ -56,12 +56,12 @@ struct WaveOfAxis {
 
 /// Returns the exact decrease of chi^2 by a wave at the frequencies first + k * step, beside the
 /// part that the model absorbs and the orthonormal columns `beside`. `residual`: outside of both.
-/// A gain is 0 where the wave is not independent of both. tool.
+/// A gain is 0 where the wave is not independent of both.
 Eigen::VectorXd wave_gains(const Evidence& evidence, const WaveOfAxis& wave, double first, double step,
                            Eigen::Index count, const Eigen::MatrixXd& beside,
                            const Eigen::VectorXd& residual);
 
-/// Returns the sines and cosines of a wave at the frequencies first + k * step. tool.
+/// Returns the sines and cosines of a wave at the frequencies first + k * step.
 ProjectedWaves projected_waves(const Evidence& evidence, const WaveOfAxis& wave, double first, double step,
                                Eigen::Index count);
 

@@ -28,7 +28,7 @@ struct ProjectedWaves {
 /// are computed anew each time.
 class ProjectedColumns {
  public:
-  /// Forgets all columns if the whitening of the evidence has changed. Call before each scan. tool.
+  /// Forgets all columns if the whitening of the evidence has changed. Call before each scan.
   void renew(const Evidence& evidence, std::size_t candidates);
 
   /// Returns the points of a candidate, or null.

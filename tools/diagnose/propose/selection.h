@@ -45,7 +45,7 @@ Selection evaluate_selection(const SelectionProblem& problem, const std::vector<
 double likelihood_part(const SelectionProblem& problem, double chi_square);
 
 /// Returns the set with the smallest criterion that forward steps, pairs, exchanges and backward
-/// steps find, at most `most` entries. tool.
+/// steps find, at most `most` entries.
 Selection select(const SelectionProblem& problem, std::size_t most);
 
 /// Returns the coefficients of the columns of a set, in the order of the set.

@@ -25,7 +25,7 @@ struct ControllerSetting {
 ControllerRules rules_of(Controller controller, const ControllerSetting& setting);
 
 /// Returns the files of a controller. The tables receive the rounding of the files. Throws LimitNotMet: a
-/// value of FANUC is beyond its range. machine_name: for comments. tool.
+/// value of FANUC is beyond its range. machine_name: for comments.
 std::vector<ConfigurationFile> controller_files(Controller controller, const ControllerSetting& setting,
                                                 const std::string& machine_name, ControllerTables& tables);
 

@@ -30,7 +30,6 @@ struct ControllerWishes {
 /// the controller's limit is reached. In the second case the number with the smallest error is taken. Tables
 /// of other axes below a quarter of the tolerance are left out.
 /// `at` (count 1): inputs and motion. Throws InputError: step_mm needs more points than the controller keeps.
-/// tool.
 ControllerTables controller_tables(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerRules& rules, const model::States& at,
                                    const ControllerWishes& wishes);

@@ -52,7 +52,7 @@ struct ControllerErrors {
 };
 
 /// Evaluates the chain with the corrected commands at positions between the points (4096, fixed seed), each
-/// axis in a random direction. tool.
+/// axis in a random direction.
 ControllerErrors controller_errors(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerTables& tables, const model::States& at);
 

@@ -44,7 +44,6 @@ struct PrinterFeatures {
 /// the lowest position of Z for the heights. The number of points is the smallest one at which the heights
 /// between them are within tolerance_um, or the largest one. `at` (count 1): inputs, motion. Offsets of the
 /// axes are not corrected: homing sets them. A turn about Z is not corrected: it turns the part as a whole.
-/// tool.
 PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
                                      const PrinterFeatures& features, const model::States& at,
                                      double tolerance_um);
@@ -58,7 +57,7 @@ struct PrinterErrors {
 };
 
 /// Evaluates the chain with the corrected commands at positions between the points of the mesh (4096, fixed
-/// seed). tool.
+/// seed).
 PrinterErrors printer_errors(const model::Machine& machine, const ThreeAxes& axes,
                              const PrinterCorrection& correction, const model::States& at);
 

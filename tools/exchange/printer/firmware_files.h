@@ -25,7 +25,6 @@ PrinterFeatures features_of(Firmware firmware, const PresentSetting& present);
 /// Returns the files of a firmware, and the correction with the rounding of these files. Sources, all in
 /// tools/docs/exchange.md: Klipper klippy/extras/skew_correction.py and bed_mesh.py; RepRapFirmware M556, M92
 /// and the height map file; Marlin M852, M420, M421, M92; grbl $100 to $102. machine_name: for comments.
-/// tool.
 std::vector<ConfigurationFile> firmware_files(Firmware firmware, const PresentSetting& present,
                                               const std::string& machine_name, PrinterCorrection& correction);
 

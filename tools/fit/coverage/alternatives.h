@@ -20,12 +20,11 @@ inline constexpr double kNothing_mm = 5e-5;
 /// (spectral window above 0.7);
 /// - for a rotation (an angle with a free static): a shift in the three lengths of the same
 /// transform, if the rows read no rotation. With one tool and no axis behind the transform, the rotation and
-/// the shift have the same effect. tool.
+/// the shift have the same effect.
 std::vector<model::FitRecord::Alternative> find_alternatives(const ReadingsBesideSetUp& readings);
 
 /// Returns the motion of the tool point by the model's term minus the motion by its alternative, at each
 /// state: 3 N, mm. The result is zero if the machine has no such transform. machine: without BaseShifts.
-/// tool.
 Eigen::VectorXd alternative_column(const model::Machine& machine,
                                    const model::FitRecord::Alternative& alternative,
                                    const model::States& states);

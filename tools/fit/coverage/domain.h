@@ -36,11 +36,11 @@ std::vector<DomainRange> domain_ranges(const model::Machine& machine);
 
 /// Returns the text with every open range closed around the fit rows of a measurement. The limits are the
 /// lowest and highest value of the quantity. The fade is a tenth of the distance between the limits (of the
-/// value, if the quantity did not vary). Closed ranges are not changed. tool.
+/// value, if the quantity did not vary). Closed ranges are not changed.
 std::string close_domains(const std::string& text, const model::Machine& machine,
                           const model::Measurement& measurement);
 
-/// Position of rows relative to a domain. tool.
+/// Position of rows relative to a domain.
 struct DomainUse {
   DomainRange range;
   double least = 0, most = 0;       // of the quantity over all rows

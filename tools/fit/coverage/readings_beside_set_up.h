@@ -11,7 +11,6 @@ namespace vernier::fit {
 
 /// The weighted readings of the fit rows along one direction each (x, y, z, d). The part that a free set-up
 /// of each instrument absorbs is projected out. Two explanations of the readings are compared in this form.
-/// tool.
 class ReadingsBesideSetUp {
  public:
   /// residual: measured - model of each reading; variance: of a weighted reading.

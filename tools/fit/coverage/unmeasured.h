@@ -27,13 +27,13 @@ std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters);
 /// replacement uses the line of this dependence (weighted regression). An example is heat that was measured
 /// on a diagonal of X and Y. Three cases are excluded. First: rows that read rotations, because they
 /// distinguish a rotation from a shift. Second: a station table is not tested against its own axis. Third: a
-/// single axis that never moved; the rule `measured-range` of the safety sheet reports it. tool.
+/// single axis that never moved; the rule `measured-range` of the safety sheet reports it.
 std::vector<model::FitRecord::Unvaried> unvaried_dependences(const ReadingsBesideSetUp& readings);
 
 /// Returns those properties of the model that no reading confirms, as possible motions of the tool point at
 /// each state, one standard uncertainty: 3 N x e, mm. An unvaried dependence may be as in the model or
 /// absent. An alternative term may be the true term (tools/fit/coverage/alternatives.h). e depends only on
-/// machine and record. bare: without BaseShifts, fitted; parameters: those of `bare`. tool.
+/// machine and record. bare: without BaseShifts, fitted; parameters: those of `bare`.
 Eigen::MatrixXd unmeasured_columns(const model::Machine& bare, const model::ParameterSet& parameters,
                                    const model::FitRecord& record, const model::States& states);
 

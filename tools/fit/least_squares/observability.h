@@ -37,7 +37,7 @@ struct Observability {
 inline constexpr double kUnseenShare = 1e-5;
 
 /// normal: J^T W^2 J, n x n. Above 200 parameters, observe() uses pivoted Cholesky and inverse iteration. The
-/// full eigen-decomposition follows only if they give no clear rank. tool.
+/// full eigen-decomposition follows only if they give no clear rank.
 Observability observe(const Eigen::MatrixXd& normal, double cutoff = kUnseenShare);
 
 }  // namespace vernier::fit

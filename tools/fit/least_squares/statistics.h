@@ -26,7 +26,7 @@ RoleStatistics role_statistics(const model::Measurement& m, const Eigen::VectorX
 
 /// Returns all values of a row that were set or logged, except time and the measured values. Rows with the
 /// same conditions are repeats. The correction of a board is not included: a reading contains it, a residual
-/// does not. tool.
+/// does not.
 std::vector<double> row_conditions(const model::Measurement& m, std::size_t row);
 
 /// Returns the noise of the measurement, um: rms of u over the fit rows' lengths. Without u the noise comes

@@ -45,7 +45,7 @@ struct NoiseModel {
   double price(double of_place = NoiseThresholds().price_of_place) const;
 };
 
-/// Returns the columns of the steps, one entry per reading: 0 before the step, 1 from the step on. tool.
+/// Returns the columns of the steps, one entry per reading: 0 before the step, 1 from the step on.
 Eigen::MatrixXd step_columns(const NoiseLayout& layout, const std::vector<NoiseStep>& steps,
                              Eigen::Index readings);
 
@@ -55,11 +55,11 @@ std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout);
 
 /// Transforms the rows of `columns` (weighted readings) to independent rows with variance 1, by a
 /// Kalman filter along each series. The computing time grows with rows times columns. Returns log
-/// det of the covariance. tool.
+/// det of the covariance.
 double whiten(const NoiseLayout& layout, const NoiseModel& model, Eigen::MatrixXd& columns);
 
 /// Returns the covariance of the weighted readings times `columns`. Computing time: rows times
-/// columns. tool.
+/// columns.
 Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& model,
                                  const Eigen::MatrixXd& columns);
 
@@ -77,7 +77,7 @@ struct NoiseUnit {
 };
 constexpr const char* unit_name(bool rotation) { return rotation ? "arcsec" : "um"; }
 
-/// Describes a noise model in one sentence for people. tool.
+/// Describes a noise model in one sentence for people.
 std::string in_words(const NoiseModel& model, const NoiseUnit& unit);
 
 }  // namespace vernier::fit

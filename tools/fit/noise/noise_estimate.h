@@ -14,7 +14,7 @@ inline constexpr double kMostNoiseProducts = 6e7;
 /// Estimates the noise model of a residual beside the fitted columns by restricted maximum likelihood
 /// (Patterson and Thompson 1971). residual: weighted, first limited to a few robust standard deviations.
 /// fitted: orthonormal columns that were fitted to the readings. A component is included if the likelihood
-/// decreases by more than chance explains. `with_u`: all components together are not below 1. tool.
+/// decreases by more than chance explains. `with_u`: all components together are not below 1.
 NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                           const Eigen::MatrixXd& fitted, bool with_u, const NoiseThresholds& limits = {});
 

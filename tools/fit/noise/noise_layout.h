@@ -33,14 +33,14 @@ struct NoiseLayout {
 
 /// Orders the observations for a noise model. observations: indices into measurement.observations, in their
 /// order. Positions belong to one pose if they differ by less than a tolerance. The gap between small and
-/// large steps gives the tolerance. tool.
+/// large steps gives the tolerance.
 NoiseLayout noise_layout(const model::Measurement& measurement, const std::vector<std::size_t>& observations,
                          const LayoutThresholds& limits = {});
 
 /// Returns the number of the position of each row. Rows have the same number if all axes have the same
 /// positions, at any time. On each axis, positions are the same if they differ by less than a tolerance. The
 /// gap between small and large distances of neighbours gives the tolerance. Exactly equal positions always
-/// have the same number. tool.
+/// have the same number.
 std::vector<int> places_of_rows(const model::Measurement& measurement, const LayoutThresholds& limits = {});
 
 /// Returns the interval between a reading of a series and the previous reading: s, or rows.

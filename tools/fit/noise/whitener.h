@@ -14,7 +14,7 @@ struct NoiseRatios {
 
 /// Transforms readings to independent readings. The variance of the transformed readings is 1. whiten() uses
 /// a Kalman filter of three states (drift, run, pose) along each series. `readings`: one column per quantity,
-/// one row per reading. Returns log det of the covariance. Computing time: rows times columns. tool.
+/// one row per reading. Returns log det of the covariance. Computing time: rows times columns.
 double whiten(const NoiseLayout& layout, const NoiseRatios& ratios, Eigen::MatrixXd& readings);
 
 }  // namespace vernier::fit

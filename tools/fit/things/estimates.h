@@ -8,7 +8,7 @@
 namespace vernier::fit {
 
 /// Returns place, direction and radius of every thing that rows met, with standard uncertainties from the
-/// readings and from the covariance of the machine. tool.
+/// readings and from the covariance of the machine.
 std::vector<ThingEstimate> estimates_of_things(const FitResult& result,
                                                const model::Measurement& measurement);
 

@@ -22,14 +22,14 @@ struct SizeDirection {
 };
 
 /// Returns the direction at `point`; nullopt: the free parameters cannot change the size (the positions of
-/// linear axes or held lengths give it). tool.
+/// linear axes or held lengths give it).
 std::optional<SizeDirection> size_direction(const model::Machine& machine, const model::Measurement& rows,
                                             const model::ParameterSet& parameters,
                                             const Convention& convention, const Eigen::VectorXd& point);
 
 /// Decides what the size of the machine rests on, from the readings at `point` and the plausible sizes of all
 /// other parameters. Without information above the convention's own, the size is held: `problem` becomes
-/// blind along it. Only for rows that meet things (`same`, `on`): nullopt without. tool.
+/// blind along it. Only for rows that meet things (`same`, `on`): nullopt without.
 std::optional<SizeOfMachine> decide_size(FitProblem& problem, const model::Machine& machine,
                                          const model::ParameterSet& parameters, const Convention& convention,
                                          const Eigen::VectorXd& point);

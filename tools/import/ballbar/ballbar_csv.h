@@ -22,7 +22,7 @@ struct BallbarCsv {
 
 /// Writes ball-bar files as one measurement file (CSV): positions, motion, clock, length with its centre, run
 /// and role. Samples in start..end have the role `fit`, samples before and after it the role `check`. An axis
-/// becomes a column if the plane of a file contains the axis. tool.
+/// becomes a column if the plane of a file contains the axis.
 BallbarCsv ballbar_csv(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options);
 
 }  // namespace vernier::importer

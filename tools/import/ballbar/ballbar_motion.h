@@ -19,14 +19,14 @@ struct CirclePoint {
   double since_mm[2] = {0, 0};  // travel of the axis since its last reversal
 };
 
-/// Returns the actual feed of a run, from the samples that the run took for its arc: mm/min. tool.
+/// Returns the actual feed of a run, from the samples that the run took for its arc: mm/min.
 double actual_feed_mm_min(const BallbarFile& file, const BallbarRun& run);
 
 /// Returns the commanded motion at sample `index` of a run; beyond start..end the angle continues at the same
-/// speed. tool.
+/// speed.
 CirclePoint circle_point(const BallbarFile& file, const BallbarRun& run, std::size_t index);
 
-/// The analysed arcs (start..end) of all runs for analyse_circle. tool.
+/// The analysed arcs (start..end) of all runs for analyse_circle.
 std::vector<CircularPass> circular_passes(const BallbarFile& file);
 
 }  // namespace vernier::importer

@@ -61,7 +61,7 @@ struct CircularResult {
 
 /// Analyses passes about one centre by ISO 230-4. nominal_radius: mm. Each pass needs three samples at three
 /// different angles; throws std::invalid_argument otherwise. The centre comes from the linearised least
-/// squares deviation = c + a cos + b sin, as in the software of the instruments. tool. Source: ISO
+/// squares deviation = c + a cos + b sin, as in the software of the instruments. Source: ISO
 /// 230-4:1996, 3.4 to 3.6.
 CircularResult analyse_circle(double nominal_radius_mm, const std::vector<CircularPass>& passes);
 

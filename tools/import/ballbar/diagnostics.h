@@ -51,7 +51,7 @@ struct DiagnosticsSetup {
   double pitch_a_mm = 0, pitch_b_mm = 0;  // of the cyclic errors that are fitted as well; 0: not fitted
 };
 
-/// Radial deviation in um per unit of each diagnostic, at that angle and direction. tool.
+/// Radial deviation in um per unit of each diagnostic, at that angle and direction.
 /// Source: found by recomputing a file's own simulation (tests/data/ballbar/README.md).
 std::array<double, kDiagnosticsCount> diagnostics_basis(double angle_deg, int direction,
                                                         const DiagnosticsSetup& setup);
@@ -83,7 +83,7 @@ struct DiagnosticsResult {
 
 /// Fits the linear diagnostics (and cyclic terms) to samples of both directions by least squares; the
 /// minimum-norm solution if the rank is deficient. Throws std::invalid_argument if there are fewer samples
-/// than terms. tool.
+/// than terms.
 DiagnosticsResult fit_diagnostics(const std::vector<DiagnosticsSample>& samples,
                                   const DiagnosticsSetup& setup);
 

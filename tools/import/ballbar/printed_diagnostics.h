@@ -19,17 +19,17 @@ struct RecomputedResults {
   std::map<std::string, std::string> why;
 };
 
-/// Mean of the feeds of a test's passes, mm/min; `nullopt` if a pass has no feed. tool.
+/// Mean of the feeds of a test's passes, mm/min; `nullopt` if a pass has no feed.
 std::optional<double> mean_feed_mm_min(const CircularResult& circle);
 
 /// Returns the model curve of the file as samples of a test: its SIMULATION series, both on the grid of the
-/// clockwise run, one sample in the middle of each step. tool. Source: found by recomputing
+/// clockwise run, one sample in the middle of each step. Source: found by recomputing
 /// (tests/data/ballbar/README.md).
 std::vector<DiagnosticsSample> model_curve(const BallbarFile& file);
 
 /// Computes the diagnostics that a file prints. The linear diagnostics and cyclic errors come from the model
 /// curve of the file. Values at the ends, shares and ranks follow from these; roundness and the other results
-/// come from the readings. tool.
+/// come from the readings.
 RecomputedResults recompute_diagnostics(const BallbarFile& file, const BallbarAnalysis& analysis,
                                         const CircularResult& circle);
 

@@ -24,7 +24,7 @@ struct PrintedResult {
 
 /// Returns all results that a file prints: of its runs, ISO 230-4, ANSI/ASME B5.54 and B5.57, and the
 /// diagnostics of its software with their ranking. If printed and computed results agree, the indices, angles
-/// and definitions of the file are read correctly. tool.
+/// and definitions of the file are read correctly.
 std::vector<PrintedResult> printed_results(const BallbarFile& file, const CircularResult& circle);
 
 }  // namespace vernier::importer

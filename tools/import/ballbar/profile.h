@@ -10,7 +10,6 @@ inline constexpr Eigen::Index kProfilePoints = 720;  // of a turn, half a degree
 
 /// Returns the mean reading of a run with a clock by angle (from +A towards +B), um: kProfilePoints values,
 /// all turns on the circle together, without centre and radius. Angles without a reading are interpolated.
-/// tool.
 Eigen::VectorXd angle_profile(const BallbarRun& run);
 
 /// Shift between two profiles.

@@ -17,10 +17,9 @@ struct RepairReport {
 };
 
 /// Repairs a file and fits the repeating error of each repaired run, on the same samples before and after.
-/// tool.
 RepairReport repair_and_judge(const BallbarFile& file);
 
-/// Returns the changes by a repair and their gain: repair_json for programs, print_repair for people. tool.
+/// Returns the changes by a repair and their gain: repair_json for programs, print_repair for people.
 nlohmann::ordered_json repair_json(const RepairReport& report);
 void print_repair(std::FILE* out, const RepairReport& report);
 

@@ -31,7 +31,7 @@ struct RepeatingError {
 
 /// Fits models of the repeating error to run `run` of a file, over its samples start..end. Samples that
 /// `on_circle` (per run, per sample; empty: all are) leaves out count nowhere. The angle is that of the clock
-/// of the run, else that of the file. tool.
+/// of the run, else that of the file.
 RepeatingError repeating_error(const BallbarFile& file, std::size_t run,
                                const std::vector<std::vector<char>>& on_circle = {});
 

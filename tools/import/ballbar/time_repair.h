@@ -51,7 +51,7 @@ struct TimeRepair {
 /// passes jumps, one pass lacks samples or the other waited; the function assumes missing samples. The angle
 /// of the file's START is kept in the run with the smallest residual between its turns. In the other runs the
 /// angle is turned until the repeating error agrees with that run. A run of less than one and a half turns,
-/// or a run that does not repeat, is not changed; its RunRepair contains the reason. tool.
+/// or a run that does not repeat, is not changed; its RunRepair contains the reason.
 TimeRepair repair_time_base(const BallbarFile& file);
 
 }  // namespace vernier::importer

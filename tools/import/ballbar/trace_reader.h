@@ -28,13 +28,12 @@ struct TraceCircle {
 /// returns one BallbarFile per circle. The runs of all files, in their order, are assigned to the circles in
 /// their order. Each circle gets the same number of runs (two if both directions of a circle follow each
 /// other); the plane is the label of the runs. With one circle each file gives one BallbarFile with all its
-/// runs. Throws InputError if the runs do not divide evenly, and as read_ballbar_trace. tool.
+/// runs. Throws InputError if the runs do not divide evenly, and as read_ballbar_trace.
 std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& paths, const TraceSetup& setup,
                                             const std::vector<TraceCircle>& circles);
 
 /// Reads a file of Renishaw Ballbar Trace (JSON: Runs[].Direction 0 or 1, Runs[].Readings, ErrorUnits). All
 /// readings of the file are in the arc; no reading is overshoot. Throws InputError with file, line and word.
-/// tool.
 BallbarFile read_ballbar_trace(const std::string& path, const TraceSetup& setup);
 
 }  // namespace vernier::importer

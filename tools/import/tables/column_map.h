@@ -27,7 +27,7 @@ struct ColumnMap {
 ///   column 3 = x[mm]      (third column)      column Temp 1 = T_column[degC]   (column named so in the
 ///   header) set run = s1          set u[um] = 5       (the same in every row) separator = semicolon decimal
 ///   = comma   skip = 2   comment = %   header = yes
-/// Throws InputError with file, line and word. tool.
+/// Throws InputError with file, line and word.
 void read_column_map(ColumnMap& map, const std::string& text, const std::string& file);
 
 /// Adds "3=x[mm]" or "Name=x[mm]"; "run=s1" or "u[um]=5". Throws InputError.
@@ -59,11 +59,10 @@ struct ImportTable {
 
 /// The columns of a file that the map names, every number read and written with a decimal point. Columns of
 /// words are not changed. Throws InputError with file, line and word: a column that does not exist, not a
-/// number, an unknown unit, a name twice. tool.
+/// number, an unknown unit, a name twice.
 ImportTable mapped_table(const std::string& text, const std::string& file, const ColumnMap& map);
 
 /// Writes the table as a measurement file and reads the file back as a test. Throws InputError if that fails.
-/// tool.
 std::string measurement_csv(const ImportTable& table);
 
 }  // namespace vernier::importer

@@ -26,7 +26,7 @@ struct DelimitedFile {
 };
 
 /// Splits a text. Fields may be in double quotes. Throws InputError with file, line and word: a row of
-/// another length, an open quote, a zero byte, no rows. tool.
+/// another length, an open quote, a zero byte, no rows.
 DelimitedFile parse_delimited(const std::string& text, const std::string& file,
                               const DelimitedFormat& format);
 

@@ -20,7 +20,7 @@ struct LaserFile {
 /// DATA:: (targets in mm), USER-TEXT::, RUNS::, DEVIATIONS:: (run, target, deviation in um). axis: replaces
 /// the axis of the file; empty: the axis of the file. Throws InputError with file, line and word: another
 /// kind of file, a rotary axis, counts that do not agree, a target twice in a run, approach directions that
-/// the file does not define. tool.
+/// the file does not define.
 LaserFile read_laser_file(const std::string& text, const std::string& file, const std::string& axis,
                           RunSenses senses);
 

@@ -27,7 +27,6 @@ struct LoggedTable {
 /// inputs of a machine's log. The assigned values are those of the dwell in which the point was measured:
 /// means of numbers, the first of words, `t` by the clock of the log. text: the log, a CSV of measurement
 /// columns with `t` and every axis of the machine, in time order. Throws InputError with file, line and word.
-/// tool.
 LoggedTable with_log(const ImportTable& tracker, const std::string& text, const std::string& log_file,
                      const model::Machine& machine, const LogOptions& options);
 

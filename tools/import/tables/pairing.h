@@ -17,7 +17,7 @@ struct Dwell {
 
 /// Returns the dwells: intervals of at least `least_s` in which every axis stays within its tolerance of its
 /// position at the beginning of the interval. time: s, increasing; axes: rows x axes; tolerance: one per
-/// axis, same unit. tool.
+/// axis, same unit.
 std::vector<Dwell> find_dwells(const Eigen::VectorXd& time, const Eigen::MatrixXd& axes,
                                const Eigen::VectorXd& tolerance, double least_s);
 
@@ -43,7 +43,7 @@ struct Pairing {
 /// sequences so that distances between neighbours (which do not depend on the frame) and times agree best.
 /// Dwells and points without a partner are skipped; the order is kept. Then pair_points fits one clock and
 /// one rigid motion for all pairs; pairs that do not fit are separated again. Throws InputError if neither
-/// times nor nominal tool points are given and the numbers of dwells and points differ. tool.
+/// times nor nominal tool points are given and the numbers of dwells and points differ.
 Pairing pair_points(const PairingInput& input);
 
 }  // namespace vernier::importer

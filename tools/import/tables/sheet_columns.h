@@ -45,20 +45,20 @@ void assign_deviation(SheetWishes& wishes, const std::string& words, const text:
 /// A profile: how a table is read, once and for all. A statement a line, # remarks:
 ///   separator = semicolon    decimal = comma    skip = 2    sheet = Tabelle1    unit = mm
 ///   column X ist = x[mm]     deviation Abw. = X[um]     leave Bemerkung     set run = a
-/// Throws InputError with file, line and word. tool.
+/// Throws InputError with file, line and word.
 void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std::string& file);
 /// Returns a profile of the recognised columns: with it, the next file of this kind needs no further
-/// settings. tool.
+/// settings.
 std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           const std::vector<SheetColumn>& columns, const SheetWishes& wishes);
 
 /// Returns the meaning of each column: as assigned, else by its heading. Throws InputError for a wish that
-/// fits no column. tool.
+/// fits no column.
 std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                           const SheetWishes& wishes);
 
 /// The rows of data as a measurement file's table. Throws InputError with file, line and word: a cell that is
-/// not a number (with its probable meaning), a column without a unit, a name twice, no measured column. tool.
+/// not a number (with its probable meaning), a column without a unit, a name twice, no measured column.
 ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                            const std::vector<SheetColumn>& columns, const SheetWishes& wishes);
 

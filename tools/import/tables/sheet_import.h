@@ -27,7 +27,7 @@ struct SheetReading {
 };
 
 /// Reads text or workbook. `wishes`: the settings of a profile; `words` override them. Throws InputError with
-/// file, line and word. tool.
+/// file, line and word.
 SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
                            SheetWishes wishes = {});
 

@@ -19,17 +19,17 @@ bool says_measured(const std::string& word);
 bool says_statistic(const std::string& word);
 bool says_deviation(const std::string& word);
 
-/// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no direction. tool.
+/// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no direction.
 int sense_said(std::string_view word);
 
 /// True if a deviation is described as nominal - actual: "(nominal-actual)", "= Soll - Ist". `whole`: also
-/// true if the text is only this description; "Soll-Ist-Vergleich" gives no sign. tool.
+/// true if the text is only this description; "Soll-Ist-Vergleich" gives no sign.
 bool says_nominal_less_actual(std::string_view text, bool whole);
 
-/// The cells above the headings of a table. tool.
+/// The cells above the headings of a table.
 std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table);
 
-/// The only axis that the titles name ("Achse: X", "X-Achse", "Axis X"); empty: no axis or several. tool.
+/// The only axis that the titles name ("Achse: X", "X-Achse", "Axis X"); empty: no axis or several.
 std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table);
 
 }  // namespace vernier::importer

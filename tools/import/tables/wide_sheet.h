@@ -12,7 +12,7 @@ namespace vernier::importer {
 /// deviation if its heading or a title says this. Otherwise a reading is a position if its values spread as
 /// the positions do, else a deviation. Returns the number of columns that were joined; 0 if the sheet is of
 /// another kind and is not changed. Throws InputError: the same run and direction twice, a table that would
-/// be too large. tool.
+/// be too large.
 std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table);
 
 }  // namespace vernier::importer

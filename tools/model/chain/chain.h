@@ -16,7 +16,7 @@ struct Poses {
 
 /// Forward kinematics of the chain: p = W^-1 * T * (0,0,0,1), FORMATS section 1. Exact, in double
 /// precision. Throws InputError if an expression is not finite. The message names transform,
-/// degree of freedom and state. tool.
+/// degree of freedom and state.
 Poses forward(const Machine& machine, const States& states);
 
 /// Returns the deviation of each state: position of `machine` minus position of the nominal chain of

@@ -38,7 +38,7 @@ struct ValueAndSlopes {
 };
 
 /// Evaluates expressions of one machine at all states together, with derivatives if they are
-/// requested. The evaluation is column by column, because lag needs the whole run. tool.
+/// requested. The evaluation is column by column, because lag needs the whole run.
 class Evaluator {
  public:
   /// `active`: true for each key whose derivative is requested. Empty: no derivatives.

@@ -32,7 +32,7 @@ struct RowLinear {
 
 /// Linearises the rows of a measurement one by one. A station table is represented by a few
 /// weights times six columns. Data that do not depend on the parameters' values (stations and
-/// weights of every row) are computed once. Keeps a reference to `measurement`. tool.
+/// weights of every row) are computed once. Keeps a reference to `measurement`.
 class Linearizer {
  public:
   Linearizer(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters);

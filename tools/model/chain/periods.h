@@ -23,7 +23,7 @@ struct Detail {
 };
 
 /// Evaluates the chain with the statics at their values, for motion in the positive direction of the axis.
-/// at: positions of the other axes and inputs (its first state). Result in mm or deg of the axis. tool.
+/// at: positions of the other axes and inputs (its first state). Result in mm or deg of the axis.
 Detail detail_along(const Machine& machine, std::size_t axis, const States& at);
 
 }  // namespace vernier::model

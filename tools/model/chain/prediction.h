@@ -14,7 +14,7 @@ using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
 /// Returns the predicted value of each observation; mm, or deg for rotations. The result has one entry per
 /// observation. Rotation vectors repeat every 360 deg. The predicted rotation vector is the equivalent vector
-/// nearest to the measured vector. tool.
+/// nearest to the measured vector.
 Eigen::VectorXd predict(const Machine& machine, const Measurement& measurement);
 
 /// Things (`same`, `on`) are at their best estimate for the machine. `known_cost`: weighted sum of squares of

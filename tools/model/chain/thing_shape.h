@@ -30,7 +30,7 @@ struct TouchReading {
   double by_tip = 0;         // by the radius of the tip
 };
 
-/// Returns the reading `component` (from 0) of a touch at `point`, mm; `tip`: radius of the tip, mm. tool.
+/// Returns the reading `component` (from 0) of a touch at `point`, mm; `tip`: radius of the tip, mm.
 TouchReading touch(const Artefact& artefact, const ThingShape& shape, const Eigen::Vector3d& point,
                    double tip, std::size_t component);
 
@@ -48,7 +48,7 @@ struct KnownValues {
 KnownValues known_values(const Artefact& artefact, const ThingShape& shape);
 
 /// Returns start values of a thing from the tool points that touched it (at least one, mm), the best guess
-/// first. down: direction of gravity, which selects the side of a cap. tool.
+/// first. down: direction of gravity, which selects the side of a cap.
 std::vector<ThingShape> thing_starts(const Artefact& artefact, const std::vector<Eigen::Vector3d>& points,
                                      double tip, const Eigen::Vector3d& down);
 

@@ -20,7 +20,7 @@ struct UnknownSlope {
 };
 
 /// The things of a measurement (`same`, `on`), and the readings of each. Things that a known length connects
-/// are estimated together: a cluster. Keeps a reference to the measurement. tool.
+/// are estimated together: a cluster. Keeps a reference to the measurement.
 class Things {
  public:
   Things(const Machine& machine, const Measurement& measurement);
@@ -59,7 +59,7 @@ class Things {
 };
 
 /// Returns the pseudo-inverse of a symmetric matrix without negative eigenvalues (normal equations of unequal
-/// scales). tool.
+/// scales).
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 
 /// The things of a measurement as one machine has them: every unknown value at its best estimate.

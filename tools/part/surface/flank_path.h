@@ -44,7 +44,7 @@ struct FlankPose {
 
 /// Tip = C1 + radius * N - length * R: with N(u,1) the analytical flank path of the paper's equations 1 to 3.
 /// The cutter touches the surface along the whole generatrix only if the surface is not twisted; the excess
-/// cut is computed in tools/part/envelope.h. tool.
+/// cut is computed in tools/part/envelope.h.
 FlankPose flank_pose(const RuledSurface& surface, const Cutter& cutter, double u, NormalReading reading = {});
 
 }  // namespace vernier::part

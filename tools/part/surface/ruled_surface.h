@@ -33,7 +33,7 @@ struct SurfaceFoot {
 
 /// Returns the nearest point of the surface by Gauss-Newton from (u, v), limited to 0 <= u <= 1, v free.
 /// point: mm. Throws std::runtime_error if the iteration does not converge (start farther off than the
-/// curve's radius). tool.
+/// curve's radius).
 SurfaceFoot nearest(const RuledSurface& surface, const Eigen::Vector3d& point, double u, double v);
 
 /// Finds the nearest point of a surface; searches the whole surface for the start.

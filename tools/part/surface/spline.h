@@ -17,7 +17,7 @@ struct CurvePoint {
 /// for n = control points - 3 spans. Piegl and Tiller, The NURBS Book, 2nd ed., algorithms A3.1 and A3.2.
 class Spline {
  public:
-  /// control: at least 4 points, mm. Throws std::invalid_argument for fewer. tool.
+  /// control: at least 4 points, mm. Throws std::invalid_argument for fewer.
   explicit Spline(std::vector<Eigen::Vector3d> control);
 
   /// u: 0..1; outside this range the end span continues. The second derivative is continuous, the third jumps

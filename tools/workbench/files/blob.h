@@ -18,7 +18,7 @@ class Blob {
   nlohmann::ordered_json f32(const Eigen::ArrayXd& values);
   nlohmann::ordered_json u32(const std::vector<std::uint32_t>& values);
   nlohmann::ordered_json u8(const std::vector<std::uint8_t>& values);
-  /// The whole. tool.
+  /// The whole.
   std::string bytes(const nlohmann::ordered_json& header) const;
 
  private:

@@ -18,7 +18,7 @@ std::optional<UnitPowers> unit_powers(const std::string& unit);
 std::string unit_text(const UnitPowers& powers);
 
 /// Returns the unit of an expression, with `unknown` taken as a pure number; `nullopt` if the unit is not
-/// determined (a static without unit, a power that is no number). warnings: units that do not match. tool.
+/// determined (a static without unit, a power that is no number). warnings: units that do not match.
 std::optional<UnitPowers> expression_unit(const model::Machine& machine, const model::Expr& expr,
                                           const std::string& unknown, std::vector<std::string>& warnings);
 

@@ -9,7 +9,7 @@
 namespace vernier::workbench {
 
 /// All functions of the workbench that read a machine, a measurement or a term. These functions run in a
-/// separate process: a harmful file ends that process and not the server. tool.
+/// separate process: a harmful file ends that process and not the server.
 class FileDesk {
  public:
   explicit FileDesk(const Project& project) : project_(project), cache_(project) {}

@@ -21,14 +21,14 @@ struct ProjectFile {
 };
 
 /// True if the name is allowed for a file of a project: one to three parts between '/', each of 1 to 120
-/// bytes, without control characters, '\' and ':', not starting with '.', '-', '~' or a blank. tool.
+/// bytes, without control characters, '\' and ':', not starting with '.', '-', '~' or a blank.
 bool is_project_name(std::string_view name);
 
-/// Throws InputError with the name if `path` is a symbolic link, a device or a pipe. tool.
+/// Throws InputError with the name if `path` is a symbolic link, a device or a pipe.
 void refuse_special(const std::filesystem::path& path, const std::string& name);
 
 /// The folder that the workbench reads and writes; the workbench accesses no file outside the folder. Names
-/// are checked as above, and no part of a name may be a symbolic link, a device or a pipe. tool.
+/// are checked as above, and no part of a name may be a symbolic link, a device or a pipe.
 class Project {
  public:
   /// Throws InputError if `directory` is not a folder.

@@ -32,7 +32,7 @@ ApiReply json_reply(const nlohmann::ordered_json& json, int status = 200);
 ApiReply blob_reply(std::string bytes);
 
 /// The result of `answer`. If `answer` throws: bad input is 422 with {"message"}, an internal error is 500.
-/// The project's folder is removed from messages. tool.
+/// The project's folder is removed from messages.
 ApiReply reply_of(const Project& project, const std::function<ApiReply()>& answer);
 
 /// Returns the JSON object in the body of a request. body_json and the functions below throw InputError with

@@ -22,7 +22,7 @@ struct LoadedRows {
 };
 
 /// Reads machines with their measurements and keeps the last few, as long as their files do not change. May
-/// be called from several threads. tool.
+/// be called from several threads.
 class RowCache {
  public:
   explicit RowCache(const Project& project) : project_(project) {}
@@ -45,14 +45,14 @@ class RowCache {
 };
 
 /// Returns everything that the page draws of a machine and rows (Blob): columns, runs, roles, lines, tool
-/// points, directions of lengths, observations with residuals in um or urad, circles, numbers. tool.
+/// points, directions of lengths, observations with residuals in um or urad, circles, numbers.
 std::string rows_blob(const LoadedRows& rows);
 
-/// Residuals and figures with some parameters changed; no file is written. tool.
+/// Residuals and figures with some parameters changed; no file is written.
 std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, double>& values);
 
 /// Returns what an effect would explain: the change of the residual of the fitted model if the effect is
-/// added and fitted, per observation, um or urad. add: a candidate's `add` string. tool.
+/// added and fitted, per observation, um or urad. add: a candidate's `add` string.
 std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 
 /// Returns the free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention,

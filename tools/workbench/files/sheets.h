@@ -8,12 +8,12 @@
 namespace vernier::workbench {
 
 /// True if the first line of the text is that of a measurement file: names with units, separated by commas. A
-/// text without such a line may be a spreadsheet. tool.
+/// text without such a line may be a spreadsheet.
 bool begins_as_measurement(const std::string& text);
 
 /// Returns the interpretation of a spreadsheet: {how, separator, decimal, heading_line, columns
 /// (columns_json), rows: the first as cells, csv: the first lines of the measurement file, n_rows, message:
-/// reason why it is not a measurement yet}. Throws InputError if the bytes are not a table. tool.
+/// reason why it is not a measurement yet}. Throws InputError if the bytes are not a table.
 nlohmann::ordered_json sheet_preview(const std::string& bytes, const std::string& file,
                                      const importer::SheetWords& words);
 

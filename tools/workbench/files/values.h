@@ -14,7 +14,7 @@ namespace vernier::workbench {
 model::ParameterSet all_parameters(const model::Machine& machine);
 
 /// Sets parameters by name (as in the result of fit), including hidden statics. Throws InputError
-/// with a name that the machine does not have. tool.
+/// with a name that the machine does not have.
 void set_values(model::Machine& machine, const std::map<std::string, double>& values);
 
 }  // namespace vernier::workbench

@@ -17,7 +17,7 @@ struct PlannedCommand {
   bool for_history = false;            // changes the project
 };
 
-/// The commands and options of the program that the page may use. tool.
+/// The commands and options of the program that the page may use.
 class CommandTable {
  public:
   /// described: every command of the program with its options, as `vernier completion json` prints them.

@@ -10,7 +10,7 @@ namespace vernier::workbench {
 
 /// The steps of a project, in order. The steps are kept in `.vernier/history.json` and, without the undone
 /// steps, in the shell script `history.sh`, which repeats them. Commands to a board are comments in the
-/// script. tool.
+/// script.
 class CommandHistory {
  public:
   /// Reads the history of an earlier session. Throws InputError if the history cannot be read.

@@ -16,7 +16,7 @@ namespace vernier::workbench {
 
 /// Runs commands of the page as processes of this program in the project's folder, each in a thread that
 /// waits for it. The page gets the same result as a terminal. A bad file affects only its job; cancelling
-/// ends the job immediately. tool.
+/// ends the job immediately.
 class Jobs {
  public:
   /// program: the `vernier` to run. References are kept.

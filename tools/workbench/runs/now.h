@@ -4,9 +4,9 @@
 
 namespace vernier::workbench {
 
-/// Returns s since an arbitrary moment, never decreasing: for durations. tool.
+/// Returns s since an arbitrary moment, never decreasing: for durations.
 double steady_s();
-/// Returns s since 1970: for dates. tool.
+/// Returns s since 1970: for dates.
 std::int64_t unix_s();
 
 }  // namespace vernier::workbench
