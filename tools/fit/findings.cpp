@@ -9,7 +9,7 @@
 #include <set>
 
 #include "tools/fit/coverage/reading_direction.h"
-#include "tools/fit/things/size.h"
+#include "tools/fit/size.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/median.h"
 

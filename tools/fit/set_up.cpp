@@ -7,11 +7,11 @@
 #include <cmath>
 #include <map>
 
+#include "tools/fit/coverage/unseen_turns.h"
 #include "tools/fit/least_squares/levenberg.h"
 #include "tools/fit/least_squares/problem.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/selection.h"
-#include "tools/fit/unseen_turns.h"
 #include "tools/maths/alignment.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/chain_rows.h"

@@ -10,7 +10,7 @@
 #include "tools/fit/coverage/domain.h"
 #include "tools/fit/coverage/reach.h"
 #include "tools/fit/decisions.h"
-#include "tools/fit/things/size.h"
+#include "tools/fit/size.h"
 #include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
 #include "tools/results/detail.h"

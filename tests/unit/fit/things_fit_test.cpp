@@ -60,7 +60,7 @@ std::string survey(bool distance, std::uint64_t seed) {
 
 FitResult fitted(const std::string& rows, const FitOptions& options = {}) {
   const model::Machine machine = model::parse_machine(kArm, "arm.xml");
-  return fit(machine, model::parse_measurement(rows, "survey.csv", machine), options);
+  return fit::fit(machine, model::parse_measurement(rows, "survey.csv", machine), options);
 }
 double value(const FitResult& result, const std::string& name) {
   return result.machine.statics[*result.machine.find_static(name)].value;

@@ -112,7 +112,9 @@ TEST(Things, OfEveryTypeGiveTheirNumberOfReadingsAndTheirDerivatives) {
 }
 
 TEST(Things, ASphereIsFoundWithItsRadius) {
-  Artefact ball{.name = "S", .type = ArtefactType::kSphere};
+  Artefact ball;
+  ball.name = "S";
+  ball.type = ArtefactType::kSphere;
   const Eigen::Vector3d centre(10, -20, 30);
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3d& n :

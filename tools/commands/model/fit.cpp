@@ -12,7 +12,7 @@
 #include "tools/fit/freedom.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/set_up.h"
-#include "tools/fit/things/size.h"
+#include "tools/fit/size.h"
 #include "tools/format/units.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/fit_record.h"

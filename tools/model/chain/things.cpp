@@ -255,6 +255,7 @@ void ThingsAt::descend(std::size_t cluster) {
   if (k == 0) return;
   const Measurement& m = things_.measurement();
   double now = cost(cluster), damping = 0;
+  // Of the equations (Levenberg): the first damping, its step, and the damping at which no step is left.
   constexpr double kFirstDamping = 1e-3, kTimesDamping = 10, kMostDamping = 1e12;
   for (int i = 0; i < kMostSteps; ++i) {
     const MatrixXd equations = normal(cluster);

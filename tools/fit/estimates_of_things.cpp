@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/things/estimates.h"
+#include "tools/fit/estimates_of_things.h"
 
 #include <cmath>
 

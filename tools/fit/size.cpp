@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/things/size.h"
+#include "tools/fit/size.h"
 
 #include <fmt/format.h>
 
