@@ -7,11 +7,11 @@
 #include <map>
 #include <set>
 
+#include "tools/fit/coverage/unseen_turns.h"
 #include "tools/fit/least_squares/levenberg.h"
 #include "tools/fit/least_squares/problem.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/set_up.h"
-#include "tools/fit/unseen_turns.h"
 #include "tools/format/units.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"

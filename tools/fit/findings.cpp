@@ -9,6 +9,7 @@
 #include <set>
 
 #include "tools/fit/coverage/reading_direction.h"
+#include "tools/fit/size.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/median.h"
 
@@ -159,6 +160,8 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                                                    const model::Measurement& m) {
   std::vector<model::FitRecord::Finding> list;
   if (!result.converged) list.push_back({"not-converged", 1, "The fit did not converge."});
+  if (result.size && !result.size->known)
+    list.push_back({"size-unknown", result.size->relative_std, size_sentence(*result.size)});
   if (!result.absurd.empty()) list.push_back({"absurd", 1, result.absurd});
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);

@@ -22,7 +22,8 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// residual over noise), `noise-unknown` (the readings have neither u nor repeats), `no-gain` (check rows
 /// against the nominal machine), `disturbed` (share of the residual of the nominal machine),
 /// `check-not-independent` (share of the check rows at poses of fit rows), `not-varied` (number of
-/// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`. record: with all
+/// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`,
+/// `size-unknown` (no reading has a known length; value: the plausible share). record: with all
 /// other entries filled.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);

@@ -12,17 +12,19 @@
 
 #include "tools/fit/convention.h"
 #include "tools/fit/coverage/alternatives.h"
+#include "tools/fit/coverage/moved.h"
 #include "tools/fit/coverage/unmeasured.h"
+#include "tools/fit/coverage/unseen_turns.h"
+#include "tools/fit/estimates_of_things.h"
 #include "tools/fit/findings.h"
 #include "tools/fit/least_squares/problem.h"
 #include "tools/fit/least_squares/statistics.h"
-#include "tools/fit/moved.h"
 #include "tools/fit/sanity.h"
 #include "tools/fit/selection.h"
 #include "tools/fit/set_up.h"
 #include "tools/fit/settle.h"
+#include "tools/fit/size.h"
 #include "tools/fit/solve.h"
-#include "tools/fit/unseen_turns.h"
 #include "tools/format/readings.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/evaluate.h"
@@ -426,18 +428,24 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   result.misfit_mm = convention.misfit_mm;
   result.reach_mm = convention.reach_mm;
   FitProblem problem(machine, rows, result.parameters);
+  result.size = decide_size(problem, machine, result.parameters, convention, convention.centre);
   const StatedPriors stated = stated_priors(result, options, convention);
   const bool with_u = has_uncertainty(measurement);
   Settled end;
+  const std::size_t readings = result.before.count - problem.things().eliminated();
+  if (options.loss != Loss::kSquared && !problem.things().empty())
+    throw text::InputError(
+        "--loss: a robust loss does not work with the columns same and on; remove bad touches by "
+        "--residuals, or use the squared loss");
   if (result.parameters.size() == 0) {
-    end = nothing_free(problem, result.before.count, with_u);
+    end = nothing_free(problem, readings, with_u);
     result.converged = true;
   } else {
     const auto solved = [&] {
       const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
       const bool squared = options.loss == Loss::kSquared;
-      end = squared ? settle(problem, near, convention, stated, result.before.count, with_u, options.noise)
-                    : describe(problem, near, convention, stated, result.before.count, with_u, options.noise);
+      end = squared ? settle(problem, near, convention, stated, readings, with_u, options.noise)
+                    : describe(problem, near, convention, stated, readings, with_u, options.noise);
       result.iterations += squared ? end.iterations : 0;
       result.converged = result.converged && (!squared || end.converged);
     };
@@ -452,6 +460,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   result.after = role_statistics(measurement, result.residual, false);
   result.check = role_statistics(measurement, result.residual, true);
   estimate(result, end);
+  result.things = estimates_of_things(result, measurement);
   judge(result, machine, measurement);
   result.check_ratio = check_ratio(result, convention.centre, measurement);
   result.prediction_variance = prediction_variance(result, measurement);

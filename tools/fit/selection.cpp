@@ -7,7 +7,9 @@ std::vector<std::string> setups_of_fit_rows(const model::Measurement& measuremen
   const std::vector<std::string>& names = measurement.states.names(measurement.states.setup);
   std::vector<char> seen(names.size(), 0);
   for (const model::Observation& o : measurement.observations)
-    if (measurement.check[o.row] == 0) seen[measurement.states.of(measurement.states.setup, o.row)] = 1;
+    if (measurement.check[o.row] == 0 &&
+        !(model::is_of_thing(o.kind) && model::is_free_of_set_up(measurement, o)))
+      seen[measurement.states.of(measurement.states.setup, o.row)] = 1;
   std::vector<std::string> setups;
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (seen[i] != 0) setups.push_back(names[i]);

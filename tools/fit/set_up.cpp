@@ -7,11 +7,11 @@
 #include <cmath>
 #include <map>
 
+#include "tools/fit/coverage/unseen_turns.h"
 #include "tools/fit/least_squares/levenberg.h"
 #include "tools/fit/least_squares/problem.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/selection.h"
-#include "tools/fit/unseen_turns.h"
 #include "tools/maths/alignment.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/chain_rows.h"
@@ -73,8 +73,31 @@ struct PointPairs {
   std::vector<Eigen::Vector3d> from, to;
 };
 
+/// Adds the points and centres of known place: as the machine finds them without the set-up, and as known.
+void add_known_places(const SetUpProblem& problem, const model::Measurement& rows,
+                      std::map<std::size_t, PointPairs>& pairs) {
+  if (std::none_of(rows.things.begin(), rows.things.end(),
+                   [](const model::Thing& one) { return one.in_measuring_frame(); }))
+    return;
+  model::Measurement unknown = rows;
+  for (model::Thing& thing : unknown.things) thing.artefact.place.reset();
+  for (const model::EstimatedThing& one : model::estimate_things(problem.at_zero, unknown, {})) {
+    const model::Thing& thing = rows.things[one.thing];
+    if (!thing.in_measuring_frame() || thing.artefact.has_direction()) continue;
+    const auto row = static_cast<std::size_t>(std::find(rows.thing.begin(), rows.thing.end(), one.thing) -
+                                              rows.thing.begin());
+    const auto shift = model::base_shift_of(
+        problem.rigid, rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)]);
+    if (!shift) continue;
+    const std::array<double, 3>& place = *thing.artefact.place;
+    pairs[*shift].from.push_back(one.shape.point);
+    pairs[*shift].to.emplace_back(place[0], place[1], place[2]);
+  }
+}
+
 std::map<std::size_t, PointPairs> points_of(const SetUpProblem& problem, const model::Measurement& rows) {
   std::map<std::size_t, PointPairs> pairs;
+  add_known_places(problem, rows, pairs);
   const Eigen::VectorXd predicted = model::predict(problem.at_zero, rows);
   for (std::size_t i = 0; i + 2 < rows.observations.size(); ++i) {
     const auto* three = &rows.observations[i];
@@ -101,7 +124,8 @@ Eigen::VectorXd aligned_start(const SetUpProblem& problem, const model::Measurem
       from.col(static_cast<Eigen::Index>(k)) = pairs.from[k];
       to.col(static_cast<Eigen::Index>(k)) = pairs.to[k];
     }
-    if (!maths::fixes_motion(from)) continue;
+    // Known places alone start from what they give: one a shift, two the smallest turn.
+    if (rows.things.empty() && !maths::fixes_motion(from)) continue;
     const maths::RigidMotion motion = maths::align(from, to);
     Eigen::Matrix<double, 6, 1> six;
     six << motion.translation, angles_of(motion.rotation);
@@ -158,6 +182,14 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
   const Eigen::VectorXd file = own.shifts.get(own.rigid);
   hold_at(problem, held, file);
   SetUp given = fitted_set_up(machine, own.shifts, problem, file);
+  if (!rows.things.empty()) {
+    const Eigen::VectorXd start = aligned_start(own, rows);
+    model::Machine there = own.rigid;
+    own.shifts.set(there, start);
+    hold_at(problem, unseen_turns(there, rows, own.shifts, reach_of(there, rows)), start);
+    SetUp aligned = fitted_set_up(machine, own.shifts, problem, start);
+    if (aligned.cost < (1 - kSetUpGain) * plain.cost) plain = std::move(aligned);
+  }
   return given.cost < (1 - kSetUpGain) * plain.cost ? std::move(given.machine) : std::move(plain.machine);
 }
 

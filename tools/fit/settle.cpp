@@ -34,7 +34,7 @@ constexpr double kSettled = 1e-14;
 /// Below this share the result counts as converged.
 constexpr double kConverged = 1e-6;
 /// Damping of a step, relative to the diagonal of the normal matrix.
-constexpr double kFirstDamping = 1e-9, kTimesDamping = 10, kMostDamping = 1e3;
+constexpr double kSettleFirstDamping = 1e-9, kSettleTimesDamping = 10, kSettleMostDamping = 1e3;
 /// A damped step that lowers the cost by less than this share of the variance of a reading is the last one
 /// (solve.cpp has the same limit).
 constexpr double kLastDecrease = 1e-3;
@@ -196,8 +196,10 @@ class Settler {
     const VectorXd gradient = gradient_with_priors(centre), from = result_.point;
     const MatrixXd normal = normal_with_priors();
     const double unit = std::max(result_.variance, floor_of_variance()), before = cost(centre);
-    const auto next = [](double damping) { return std::max(kFirstDamping, kTimesDamping * damping); };
-    for (double damping = 0; damping < kMostDamping; damping = next(damping)) {
+    const auto next = [](double damping) {
+      return std::max(kSettleFirstDamping, kSettleTimesDamping * damping);
+    };
+    for (double damping = 0; damping < kSettleMostDamping; damping = next(damping)) {
       MatrixXd damped = normal;
       damped.diagonal() *= 1 + damping;
       const VectorXd step = solution_of(damped, gradient);
@@ -259,11 +261,11 @@ class Settler {
   /// Orthonormal directions of the readings that the parameters can follow. A column that moves the readings
   /// by no more than rounding, at the scale of its parameter, is no direction.
   MatrixXd fitted_directions(const MatrixXd& jacobian, double size) const {
-    constexpr double kRounding = 1e-6;  // of the residual
+    constexpr double kRoundingOfResidual = 1e-6;  // of the residual
     MatrixXd columns = jacobian * scale_.asDiagonal();
     for (Eigen::Index k = 0; k < columns.cols(); ++k)
-      if (!(columns.col(k).norm() > kRounding * size)) columns.col(k).setZero();
-    return maths::orthonormal(columns, kRounding, nullptr);
+      if (!(columns.col(k).norm() > kRoundingOfResidual * size)) columns.col(k).setZero();
+    return maths::orthonormal(columns, kRoundingOfResidual, nullptr);
   }
 
   /// Returns J^T W cov(readings) W J. It is `variance` times the normal matrix if errors are
@@ -299,6 +301,7 @@ class Settler {
     if (result_.noise.independent()) return result_.variance * data;
     MatrixXd hanging = j.transpose() * covariance_times(layout, result_.noise, j);
     hanging.diagonal() += stated_unit() * stated_.weight;
+    if (const MatrixXd known = problem_.known_normal(result_.point); known.size() > 0) hanging += known;
     return hanging;
   }
 

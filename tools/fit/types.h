@@ -124,6 +124,25 @@ struct WorstReading {
   std::string reading;  // "survey.csv:57 z"
 };
 
+/// Place, direction and radius of a thing that rows met (`same`, `on`).
+struct ThingEstimate {
+  std::string name, setup, type;    // type: `same`, or the type of the artefact
+  bool in_measuring_frame = false;  // else in workpiece coordinates
+  std::size_t touches = 0;          // rows of the fit
+  Eigen::Vector3d place_mm = Eigen::Vector3d::Zero(), u_place_mm = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> direction;
+  double u_direction_deg = 0;
+  std::optional<double> radius_mm;
+  double u_radius_mm = 0;
+};
+
+/// What the size of the machine rests on.
+struct SizeOfMachine {
+  bool known = false;       // false: held at nominal
+  double relative_std = 0;  // standard uncertainty of the size, as a share; of nominal: the plausible share
+  std::string from;         // "distances", "known radius", "machine", "nominal" ...
+};
+
 struct FitResult {
   model::Machine
       machine;  // with the fitted values; a free static without `nominal` has its start value there
@@ -143,6 +162,8 @@ struct FitResult {
   std::optional<NormalisedError>
       normalised_check;  // if there are check rows with an uncertainty of their readings
   std::vector<std::pair<std::string, double>> priors;  // parameter, standard uncertainty
+  std::vector<ThingEstimate> things;                   // that rows met
+  std::optional<SizeOfMachine> size;                   // if rows met things
   std::vector<StageFigures> stages;                    // as requested, then one with all parameters
   WorstReading worst, worst_check;                     // of the fit rows; of the check rows
   /// rms of the fitted machine on check rows, divided by the rms of the nominal machine. Both rms values use

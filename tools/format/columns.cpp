@@ -59,6 +59,12 @@ constexpr ColumnGroup row_of_distance() {
   group.form = ReadingForm::kDistance;
   return group;
 }
+constexpr ColumnGroup thing(const char* name, ReadingForm form, const char* meaning) {
+  ColumnGroup group = label(name, true, meaning, nullptr);
+  group.use = kReading;
+  group.form = form;
+  return group;
+}
 constexpr ColumnGroup uncertainty() {
   return {.names = one(columns::kUncertainty),
           .count = 1,
@@ -102,6 +108,12 @@ constexpr std::array kGroups = {
     readings({columns::kInclination[0], columns::kInclination[1], nullptr}, 2, "arcsec",
              ReadingForm::kInclination, true,
              "measured inclination of the tool's x axis and y axis to the horizontal; any of the two"),
+    thing(columns::kSame, ReadingForm::kSame,
+          "label of the unknown point that the tool point met in this row; `u` is the uncertainty of meeting "
+          "it"),
+    thing(columns::kOn, ReadingForm::kOn,
+          "name of the `<artefact>` that the tool point touched in this row; `u` is the uncertainty of the "
+          "touch"),
     beside(columns::kCentre, "mm", ReadingForm::kLength, "the fixed centre, in the measuring frame"),
     normal(),
     beside(columns::kNominalPoint, "mm", ReadingForm::kDeviation,

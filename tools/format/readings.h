@@ -24,7 +24,13 @@ enum class ReadingKind : std::uint8_t {
   kA2,
   kDistance,
   kIx,
-  kIy
+  kIy,
+  kSameX,
+  kSameY,
+  kSameZ,
+  kOn1,
+  kOn2,
+  kOn3
 };
 
 /// Form of a reading: how the instrument takes it. Readings of one form share their columns and their
@@ -36,7 +42,9 @@ enum class ReadingForm : std::uint8_t {
   kDeviation,
   kDirection,
   kDistance,
-  kInclination
+  kInclination,
+  kSame,
+  kOn
 };
 
 /// One form of reading. The columns of the form are in columns.h: the columns with the reading, and the
@@ -69,6 +77,10 @@ inline constexpr std::array kReadingForms = {
                      "Distance of the tool point of this row from the tool point of another row."},
     ReadingFormEntry{ReadingForm::kInclination, true, true, false, false, "inclination error of tool axis %",
                      "Inclination of an axis of the tool's frame to the horizontal."},
+    ReadingFormEntry{ReadingForm::kSame, false, true, true, false, "% error at an unknown point",
+                     "The tool point met an unknown point that other rows met too."},
+    ReadingFormEntry{ReadingForm::kOn, false, false, true, false, "distance from the artefact",
+                     "The tool point touched an artefact of the machine file."},
 };
 
 constexpr const ReadingFormEntry& entry_of(ReadingForm form) {
@@ -113,6 +125,18 @@ inline constexpr std::array kReadingKinds = {
                      "The inclination of the tool's x axis to the horizontal."},
     ReadingKindEntry{ReadingKind::kIy, "iy", ReadingForm::kInclination, 1,
                      "The inclination of the tool's y axis to the horizontal."},
+    ReadingKindEntry{ReadingKind::kSameX, "same_x", ReadingForm::kSame, 0,
+                     "The x distance of the tool point from the unknown point, 0 when it is met."},
+    ReadingKindEntry{ReadingKind::kSameY, "same_y", ReadingForm::kSame, 1,
+                     "The y distance of the tool point from the unknown point, 0 when it is met."},
+    ReadingKindEntry{ReadingKind::kSameZ, "same_z", ReadingForm::kSame, 2,
+                     "The z distance of the tool point from the unknown point, 0 when it is met."},
+    ReadingKindEntry{ReadingKind::kOn1, "on_1", ReadingForm::kOn, 0,
+                     "The distance of the tool point from the artefact: from its surface, or the first "
+                     "component from a point or across a line."},
+    ReadingKindEntry{ReadingKind::kOn2, "on_2", ReadingForm::kOn, 1,
+                     "The second component from a point or across a line."},
+    ReadingKindEntry{ReadingKind::kOn3, "on_3", ReadingForm::kOn, 2, "The third component from a point."},
 };
 inline constexpr std::size_t kReadingKindCount = kReadingKinds.size();
 
@@ -134,6 +158,11 @@ constexpr const char* report_unit_of(ReadingKind kind) { return is_rotation(kind
 constexpr bool is_free_of_setup(ReadingKind kind) { return entry_of(form_of(kind)).free_of_set_up; }
 constexpr bool is_direction(ReadingKind kind) { return form_of(kind) == ReadingForm::kDirection; }
 constexpr bool is_inclination(ReadingKind kind) { return form_of(kind) == ReadingForm::kInclination; }
+/// The reading is 0: the tool point met a thing (an unknown point, an artefact) whose unknown values a fit
+/// eliminates.
+constexpr bool is_of_thing(ReadingKind kind) {
+  return form_of(kind) == ReadingForm::kSame || form_of(kind) == ReadingForm::kOn;
+}
 
 /// Returns the kind of this name; nullopt: no kind has the name.
 std::optional<ReadingKind> kind_named(std::string_view name);
@@ -163,6 +192,8 @@ inline constexpr std::array kSurveyReadings = {
     SurveyReading{"direction", {ReadingForm::kDirection}, 1, "theodolite, camera on the tool axis"},
     SurveyReading{"distance", {ReadingForm::kDistance}, 1, "step gauge, ball plate, length between points"},
     SurveyReading{"inclination", {ReadingForm::kInclination}, 1, "electronic level on the tool"},
+    SurveyReading{"same", {ReadingForm::kSame}, 1, "socket, cone or tip met from many poses"},
+    SurveyReading{"on", {ReadingForm::kOn}, 1, "touch probe on a sphere, plane or ring of unknown place"},
 };
 
 /// Finds a survey reading by its word; nullptr: no survey reading has the word.

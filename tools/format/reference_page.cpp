@@ -76,7 +76,8 @@ std::string later_page() {
       "- An input of the machine file may have such a name. Then the column is this input.\n"
       "- `ix` and `iy` are readings only with a unit of angle.\n"
       "- `ax`, `ay` and `az` are readings only if all three are in the file, without a unit.\n"
-      "- `distance` is a reading only if the file has the column `from`.\n",
+      "- `distance` is a reading only if the file has the column `from`.\n"
+      "- `on` is a reading only if the machine file has an `<artefact>`.\n",
       text::joined(later, ", "));
 }
 

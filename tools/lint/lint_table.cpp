@@ -19,6 +19,7 @@ const LintColumn* LintTable::find(const std::string& name) const {
 }
 
 bool LintNames::is_reading(const LintTable& table, const LintColumn& column) const {
+  if (column.name == format::columns::kOn && machine_ != nullptr && machine_->artefacts.empty()) return false;
   // Found columns outlive the call: the format looks at one header at a time.
   std::deque<format::CsvColumn> header;
   return format::is_reading({column.name, column.unit},

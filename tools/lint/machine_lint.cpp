@@ -220,6 +220,8 @@ Used used_by(const model::Machine& machine) {
           if (kind == model::SymbolKind::kInput) used.inputs.insert(index);
           if (kind == model::SymbolKind::kTableValue) used.table_values.insert(index);
         });
+  for (const model::Artefact& artefact : machine.artefacts)
+    if (const auto tip = machine.find_static(artefact.tip)) used.statics.insert(*tip);
   return used;
 }
 

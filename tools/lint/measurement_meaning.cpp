@@ -13,6 +13,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/model/chain/thing_shape.h"
 #include "tools/text/numbers.h"
 #include "tools/text/similar.h"
 
@@ -29,6 +30,7 @@ class Meaning {
 
   void look() {
     for (const LintColumn& column : table_.columns) look_at_column(column);
+    look_at_things();
     look_at_labels();
     look_at_time();
     look_at_normals();
@@ -162,6 +164,74 @@ class Meaning {
     if (!any_reading_)
       findings_.error(table_.header_line, "", "no row has a reading",
                       "a template that is still to be filled in?");
+  }
+
+  /// Labels of unknown points, and names of artefacts.
+  void look_at_things() {
+    const LintColumn *same = table_.find(columns::kSame), *on = table_.find(columns::kOn);
+    if (same != nullptr && names_.is_reading(table_, *same)) look_at_points(*same);
+    if (on == nullptr) return;
+    if (machine_ != nullptr && machine_->artefacts.empty()) {
+      if (std::any_of(on->cell.begin(), on->cell.end(), [](const auto& cell) { return !cell.empty(); }))
+        findings_.warn(table_.header_line, columns::kOn,
+                       "the machine file has no <artefact>: this column is not read",
+                       "declare what the tool point touched: <artefact name=\"S1\" type=\"sphere\"/>");
+      return;
+    }
+    if (names_.is_reading(table_, *on)) look_at_artefacts(*on);
+    for (std::size_t row = 0; same != nullptr && row < table_.rows.size(); ++row)
+      if (!same->cell[row].empty() && !on->cell[row].empty())
+        findings_.add_of_kind("same and on", LintWeight::kError, line(row), on->cell[row],
+                              "a row meets one thing: fill one of the columns same and on");
+  }
+
+  void look_at_points(const LintColumn& same) {
+    const LintColumn* const setup = table_.find(columns::kSetup);
+    std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> rows_of;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row)
+      if (!same.cell[row].empty())
+        rows_of[{same.cell[row], setup == nullptr ? "" : setup->cell[row]}].push_back(row);
+    for (const auto& [label, rows] : rows_of) {
+      any_reading_ = true;
+      if (rows.size() == 1)
+        findings_.add_of_kind("one row", LintWeight::kWarning, line(rows.front()), label.first,
+                              "one row only has this label: it gives no information",
+                              "a typing error in the label? Meet a point from many poses");
+    }
+    if (!rows_of.empty() && table_.find(columns::kDistance) == nullptr &&
+        table_.find(columns::kOn) == nullptr)
+      findings_.remark(table_.header_line, columns::kSame,
+                       "no known length: the size of a machine without linear axes stays at nominal",
+                       "the column distance gives the distance of two points");
+  }
+
+  void look_at_artefacts(const LintColumn& on) {
+    std::vector<std::string> known;
+    if (machine_ != nullptr)
+      for (const model::Artefact& one : machine_->artefacts) known.push_back(one.name);
+    std::map<std::string, std::size_t> touches;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      const std::string& name = on.cell[row];
+      if (name.empty()) continue;
+      any_reading_ = true;
+      ++touches[name];
+      if (machine_ == nullptr || std::find(known.begin(), known.end(), name) != known.end()) continue;
+      const auto meant = text::word_meant(name, known);
+      findings_.add_of_kind("artefact " + name, LintWeight::kError, line(row), name,
+                            "the machine file has no artefact of this name",
+                            meant ? "did you mean " + *meant + "?" : "");
+    }
+    if (machine_ == nullptr) return;
+    for (const model::Artefact& one : machine_->artefacts) {
+      const auto found = touches.find(one.name);
+      const auto unknown = static_cast<std::size_t>(model::unknowns_of(one));
+      if (found == touches.end() || found->second * one.dimension() > unknown) continue;
+      findings_.warn(table_.header_line, one.name,
+                     fmt::format("{} touches of this artefact, which has {} unknown values: they give no "
+                                 "information",
+                                 found->second, unknown),
+                     "touch it more often, or give its radius or place if they are known");
+    }
   }
 
   void look_at_time() {

@@ -25,7 +25,7 @@ struct FileUse {
 std::vector<FileUse> uses_of(const Machine& machine, const Measurement& rows) {
   std::vector<FileUse> uses(rows.files.size());
   for (const Observation& o : rows.observations)
-    if (rows.check[o.row] == 0 && !is_free_of_setup(o.kind)) uses[rows.file[o.row]].needs_set_up = true;
+    if (rows.check[o.row] == 0 && !is_free_of_set_up(rows, o)) uses[rows.file[o.row]].needs_set_up = true;
   const Labels& setup = rows.states.setup;
   for (std::size_t row = 0; row < rows.rows(); ++row) {
     FileUse& use = uses[rows.file[row]];

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/model/artefact.h"
 #include "tools/model/expression.h"
 #include "tools/model/reading_uncertainty.h"
 #include "tools/text/error.h"
@@ -125,6 +126,7 @@ struct Machine {
   std::vector<BaseShift> base_shifts;
   std::vector<Transform> tool, workpiece;
   std::vector<Tool> tools;                       // in addition to the tool of the file
+  std::vector<Artefact> artefacts;               // what a tool point may touch: column `on`
   std::vector<WorkRange> volume;                 // of the axes that <volume> names
   std::optional<ReadingUncertainty> instrument;  // for files that state no u
   bool correct_orientation =

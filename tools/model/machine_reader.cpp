@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
@@ -232,12 +233,123 @@ class Reader {
       } else if (is(node, "instrument")) {
         once(node, instrument);
         read_instrument(node);
+      } else if (is(node, "artefact")) {
+        read_artefact(node);
       } else {
         unknown(node);
       }
     }
     if (table_node) read_tables(table_node);
     if (volume_node) read_volume(volume_node);
+    check_tips();
+  }
+
+  std::optional<double> length(const pugi::xml_node& node, const char* name) {
+    const auto word = attribute(node, name);
+    if (!word) return std::nullopt;
+    const auto value = length_in_mm(*word);
+    if (!value)
+      fail_attribute(node, name, *word, std::string(name) + " is a length, for example 12.5mm or 0.5um");
+    return value;
+  }
+
+  /// Reads three attributes that are given together or not at all; nullopt: none is given.
+  std::optional<std::array<double, 3>> three(const pugi::xml_node& node,
+                                             const std::array<const char*, 3>& names) {
+    std::array<double, 3> value{};
+    std::size_t given = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto one = length(node, names[i]);
+      given += one ? 1 : 0;
+      value[i] = one.value_or(0);
+    }
+    if (given == 0) return std::nullopt;
+    if (given != 3)
+      fail(node, node.name(),
+           std::string("give ") + names[0] + ", " + names[1] + " and " + names[2] +
+               " together, or none of them");
+    return value;
+  }
+
+  void read_artefact(const pugi::xml_node& node) {
+    no_children(node);
+    namespace columns = format::columns;
+    check_attributes(node,
+                     {"name", "type", "radius", "uradius", columns::kPoint[0], columns::kPoint[1],
+                      columns::kPoint[2], columns::kUncertainty, columns::kNormal[0], columns::kNormal[1],
+                      columns::kNormal[2], columns::kSetup, "tip", "side", "note"});
+    Artefact item;
+    item.line = line(node);
+    item.name = attribute(node, "name").value_or("");
+    if (item.name.empty()) fail(node, node.name(), "an artefact needs a name: the word of the column on");
+    const std::string type = attribute(node, "type").value_or("");
+    const auto known = artefact_type_named(type);
+    if (!known) fail_attribute(node, "type", type, "type is point, line, plane, sphere or cylinder");
+    item.type = *known;
+    item.setup = attribute(node, columns::kSetup);
+    for (const Artefact& other : machine_.artefacts)
+      if (other.name == item.name && (other.setup == item.setup || !other.setup || !item.setup))
+        fail(node, item.name, "two artefacts have this name in one set-up");
+    read_size(node, item);
+    item.place = three(node, format::columns::kPoint);
+    item.direction = three(node, format::columns::kNormal);
+    const std::string u = attribute(node, columns::kUncertainty).value_or("");
+    item.u_place = length(node, columns::kUncertainty).value_or(0);
+    if (item.u_place < 0) fail_attribute(node, columns::kUncertainty, u, "u must not be negative");
+    if (item.u_place > 0 && !item.place)
+      fail_attribute(node, columns::kUncertainty, u,
+                     "u is the uncertainty of a known place: give x, y and z");
+    check_direction(node, item);
+    machine_.artefacts.push_back(std::move(item));
+  }
+
+  void check_direction(const pugi::xml_node& node, const Artefact& item) {
+    if (!item.direction) return;
+    const char* const first = format::columns::kNormal.front();
+    const std::string word = attribute(node, first).value_or("");
+    if (!item.has_direction()) fail_attribute(node, first, word, "a point or a sphere has no direction");
+    const auto& n = *item.direction;
+    constexpr double kUnit = 1e-3;  // tolerance of the length of a unit vector that was written with digits
+    if (std::abs(std::hypot(n[0], n[1], n[2]) - 1) > kUnit)
+      fail_attribute(node, first, word, "the direction must be a unit vector");
+  }
+
+  /// Reads the radius of an artefact, and the tip that touches it.
+  void read_size(const pugi::xml_node& node, Artefact& item) {
+    item.radius = length(node, "radius");
+    item.u_radius = length(node, "uradius").value_or(0);
+    for (const char* name : {"radius", "uradius"})
+      if (attribute(node, name) && !item.has_radius())
+        fail_attribute(node, name, *attribute(node, name), "only a sphere or a cylinder has a radius");
+    if (item.radius && *item.radius <= 0)
+      fail_attribute(node, "radius", *attribute(node, "radius"), "a radius must be greater than 0");
+    if (item.u_radius < 0)
+      fail_attribute(node, "uradius", *attribute(node, "uradius"), "uradius must not be negative");
+    if (item.u_radius > 0 && !item.radius)
+      fail_attribute(node, "uradius", *attribute(node, "uradius"), "uradius needs the radius");
+    item.tip = attribute(node, "tip").value_or("");
+    if (!item.tip.empty() && !item.has_radius() && item.type != ArtefactType::kPlane)
+      fail_attribute(node, "tip", item.tip, "a tip touches a plane, a sphere or a cylinder");
+    const std::string side = attribute(node, "side").value_or("outside");
+    if (side != "outside" && side != "inside")
+      fail_attribute(node, "side", side, "side is outside or inside");
+    if (side == "inside" && !item.has_radius())
+      fail_attribute(node, "side", side, "only a sphere or a cylinder is touched from inside");
+    item.inside = side == "inside";
+  }
+
+  /// The tip of an artefact is a static that is a length.
+  void check_tips() const {
+    for (const Artefact& item : machine_.artefacts) {
+      if (item.tip.empty()) continue;
+      const auto found = machine_.find_static(item.tip);
+      if (!found)
+        throw text::InputError({machine_.file, item.line}, item.tip,
+                               "no static has this name: the tip's radius");
+      if (machine_.statics[*found].unit != "mm")
+        throw text::InputError({machine_.file, item.line}, item.tip,
+                               "the static of a tip is its radius in mm: give the static unit=\"mm\"");
+    }
   }
 
   void read_tools(const pugi::xml_node& list) {

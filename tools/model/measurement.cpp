@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
@@ -47,6 +48,7 @@ class Builder {
     read_geometry();
     read_directions();
     read_distances();
+    read_things();
     read_observations();
     if (machine_.instrument && !reader_.has(columns::kUncertainty)) state_uncertainty(*machine_.instrument);
     for (const format::CsvColumn& column : reader_.unused())
@@ -369,6 +371,100 @@ class Builder {
     has_distances_ = true;
   }
 
+  /// Is a column of labels of things a reading in this file? `on` needs an artefact of the machine file:
+  /// older files may have a column of this name.
+  bool names_things(const char* name) const {
+    if (!has_word(name)) return false;
+    if (std::string_view(name) != columns::kOn || !machine_.artefacts.empty()) return true;
+    for (std::size_t row = 0; row < reader_.rows(); ++row)
+      if (!reader_.cell(name, row).empty()) return false;
+    return true;  // a template that is not filled in
+  }
+
+  void read_things() {
+    result_.thing.assign(reader_.rows(), kNoThing);
+    if (names_things(columns::kSame))
+      read_labels_of_things(columns::kSame, [&](std::size_t, const std::string& label) {
+        return Thing{format::ReadingForm::kSame, label, {}, {}};
+      });
+    if (names_things(columns::kOn))
+      read_labels_of_things(columns::kOn, [&](std::size_t row, const std::string& label) {
+        return Thing{format::ReadingForm::kOn, label, {}, artefact_of(row, label)};
+      });
+    if (result_.things.empty()) {
+      result_.thing.clear();
+      return;
+    }
+    for (std::size_t row = 0; row < reader_.rows(); ++row) check_ends(row);
+  }
+
+  template <class Make>
+  void read_labels_of_things(const char* name, const Make& make) {
+    const std::vector<std::string> words = reader_.words(name);
+    std::map<std::pair<std::string, std::string>, std::size_t> known;
+    for (std::size_t row = 0; row < reader_.rows(); ++row) {
+      if (words[row].empty()) continue;
+      if (result_.thing[row] != kNoThing)
+        throw text::InputError(reader_.place(row), words[row],
+                               "a row meets one thing: fill one of the columns same and on");
+      const auto [at, fresh] = known.try_emplace({words[row], set_up_of_thing(row)}, result_.things.size());
+      if (fresh) {
+        result_.things.push_back(make(row, words[row]));
+        result_.things.back().setup = at->first.second;
+      }
+      result_.thing[row] = at->second;
+    }
+  }
+
+  /// Returns the set-up in which the row meets a thing: the word of the column `setup`, else the run if the
+  /// machine file has a BaseShift for the run; empty: one set-up.
+  std::string set_up_of_thing(std::size_t row) const {
+    const States& states = result_.states;
+    if (!states.setup.of.empty()) return states.setup.names[states.setup.of[row]];
+    const std::string& run = states.run_names[states.run[row]];
+    return std::any_of(machine_.base_shifts.begin(), machine_.base_shifts.end(),
+                       [&](const BaseShift& shift) { return shift.run == run; })
+               ? run
+               : std::string();
+  }
+
+  const Artefact& artefact_of(std::size_t row, const std::string& name) const {
+    const std::string setup = set_up_of_thing(row);
+    std::string names, elsewhere;
+    for (const Artefact& one : machine_.artefacts) {
+      if (one.name != name) {
+        names += (names.empty() ? "" : ", ") + one.name;
+        continue;
+      }
+      if (!one.setup || *one.setup == setup) return one;
+      elsewhere = *one.setup;
+    }
+    throw text::InputError(reader_.place(row), name,
+                           elsewhere.empty()
+                               ? "the machine file has no artefact of this name; it has " + names
+                               : "the machine file has this artefact in the set-up \"" + elsewhere +
+                                     "\", the row is in the set-up \"" + setup + "\"");
+  }
+
+  /// A distance is between two tool points, or between two unknown points.
+  void check_ends(std::size_t row) const {
+    const std::size_t other = result_.other_end.empty() ? kNoRow : result_.other_end[row];
+    if (other == kNoRow) return;
+    const auto met = [&](std::size_t one) {
+      return result_.thing[one] == kNoThing                          ? 0
+             : result_.things[result_.thing[one]].is_unknown_point() ? 1
+                                                                     : 2;
+    };
+    if (met(row) == 2 || met(other) == 2)
+      throw text::InputError(reader_.place(row), columns::kDistance,
+                             "a row of a distance must not touch an artefact: give the artefacts their known "
+                             "places instead");
+    if (met(row) != met(other))
+      throw text::InputError(reader_.place(row), columns::kDistance,
+                             "one end of this distance is a point of the column same, the other end is not: "
+                             "name the points of both rows in the column same");
+  }
+
   /// Reads three columns that belong to a reading: lengths of a point, or pure numbers of a
   /// direction.
   void three(const std::array<const char*, 3>& names, const char* owner, Eigen::Matrix3Xd& target) {
@@ -407,6 +503,7 @@ class Builder {
       }
       any = any || values[k].size() > 0;
     }
+    any = any || names_things(columns::kSame) || names_things(columns::kOn);
     if (!any)
       throw text::InputError(reader_.header(), "",
                              "no measured column (" + format::reading_column_names() + ")");
@@ -418,9 +515,51 @@ class Builder {
         check_geometry(kind, row);
         result_.observations.push_back({kind, row, values[k][at]});
       }
+    add_touches();
   }
 
-  bool is_measured(ObservationKind kind) const { return is_reading(format::name_of(kind)); }
+  /// Adds the readings of things, which are 0, behind the other readings of their row.
+  void add_touches() {
+    if (result_.things.empty()) return;
+    std::vector<Observation> all;
+    std::size_t next = 0;
+    for (std::size_t row = 0; row < reader_.rows(); ++row) {
+      for (; next < result_.observations.size() && result_.observations[next].row == row; ++next)
+        all.push_back(result_.observations[next]);
+      if (result_.thing[row] == kNoThing) continue;
+      const Thing& thing = result_.things[result_.thing[row]];
+      const auto first = thing.is_unknown_point() ? ObservationKind::kSameX : ObservationKind::kOn1;
+      for (std::size_t k = 0; k < thing.artefact.dimension(); ++k)
+        all.push_back({static_cast<ObservationKind>(static_cast<std::size_t>(first) + k), row, 0});
+    }
+    result_.observations = std::move(all);
+    count_lengths_once();
+  }
+
+  /// A length between two unknown points that several rows state alike is one reading: that of the smallest
+  /// u.
+  void count_lengths_once() {
+    std::map<std::tuple<std::size_t, std::size_t, double, char>, std::size_t> best;
+    const auto key = [&](const Observation& o) {
+      const std::size_t a = result_.thing[o.row], b = result_.thing[result_.other_end[o.row]];
+      return std::tuple(std::min(a, b), std::max(a, b), o.value, result_.check[o.row]);
+    };
+    const auto is_length = [&](const Observation& o) {
+      return o.kind == ObservationKind::kDistance && result_.is_between_things(o.row);
+    };
+    const auto u = [&](std::size_t row) { return result_.uncertainty[static_cast<Eigen::Index>(row)]; };
+    for (const Observation& o : result_.observations) {
+      if (!is_length(o)) continue;
+      const auto [at, fresh] = best.try_emplace(key(o), o.row);
+      if (!fresh && u(o.row) < u(at->second)) at->second = o.row;
+    }
+    std::erase_if(result_.observations,
+                  [&](const Observation& o) { return is_length(o) && best.at(key(o)) != o.row; });
+  }
+
+  bool is_measured(ObservationKind kind) const {
+    return !is_of_thing(kind) && is_reading(format::name_of(kind));
+  }
 
   /// A length needs its centre, a deviation its nominal point and a unit normal.
   void check_geometry(ObservationKind kind, std::size_t row) {
@@ -528,8 +667,24 @@ void append_labels_of_rows(Measurement& all, const Measurement& next) {
   }
 }
 
-/// Appends data that only some rows have: ua, directions, other ends of distances.
-void append_optional(Measurement& all, const Measurement& next) {
+/// Appends the things of the rows. A thing that both measurements met is one thing, unless `apart`.
+void append_things(Measurement& all, const Measurement& next, bool apart) {
+  if (all.thing.empty() && next.thing.empty()) return;
+  all.thing.resize(all.rows(), kNoThing);
+  const std::size_t known = apart ? 0 : all.things.size();
+  std::vector<std::size_t> at;
+  for (const Thing& thing : next.things) {
+    const auto end = all.things.begin() + static_cast<std::ptrdiff_t>(known);
+    const auto found = std::find_if(all.things.begin(), end, [&](const Thing& one) { return one.is(thing); });
+    at.push_back(found == end ? all.things.size() : static_cast<std::size_t>(found - all.things.begin()));
+    if (found == end) all.things.push_back(thing);
+  }
+  for (std::size_t row = 0; row < next.rows(); ++row)
+    all.thing.push_back(next.thing_of(row) == kNoThing ? kNoThing : at[next.thing[row]]);
+}
+
+/// Appends data that only some rows have: ua, directions, things, other ends of distances.
+void append_optional(Measurement& all, const Measurement& next, bool apart) {
   const auto before = static_cast<Eigen::Index>(all.rows()), more = static_cast<Eigen::Index>(next.rows());
   const auto with = [](const Column& column, Eigen::Index count) {
     return column.size() > 0 ? column : Column(Column::Zero(count));
@@ -541,6 +696,7 @@ void append_optional(Measurement& all, const Measurement& next) {
   };
   if (all.direction.cols() > 0 || next.direction.cols() > 0)
     all.direction = join(pointing(all.direction, before), pointing(next.direction, more));
+  append_things(all, next, apart);
   if (all.other_end.empty() && next.other_end.empty()) return;
   all.other_end.resize(all.rows(), kNoRow);
   for (std::size_t row = 0; row < next.rows(); ++row) {
@@ -630,8 +786,29 @@ States commanded_states(const Measurement& m) {
   return states;
 }
 
+bool Measurement::is_between_things(std::size_t row) const {
+  const std::size_t other = other_end.empty() ? kNoRow : other_end[row];
+  return other != kNoRow && thing_of(row) != kNoThing && thing_of(other) != kNoThing &&
+         things[thing[row]].is_unknown_point() && things[thing[other]].is_unknown_point();
+}
+
+bool is_free_of_set_up(const Measurement& m, const Observation& o) {
+  if (is_of_thing(o.kind)) return !m.things[m.thing[o.row]].in_measuring_frame();
+  return is_free_of_setup(o.kind) || (o.kind == ObservationKind::kDistance && m.is_between_things(o.row));
+}
+
 bool Measurement::has_recorded(std::string_view name) const {
   return std::find(recorded.begin(), recorded.end(), name) != recorded.end();
+}
+
+void refuse_things(const Measurement& m, const std::string& command) {
+  for (std::size_t row = 0; row < m.rows(); ++row) {
+    if (m.thing_of(row) == kNoThing) continue;
+    const Thing& thing = m.things[m.thing[row]];
+    throw text::InputError(
+        {m.files[m.file[row]], m.line[row]}, thing.label,
+        command + " does not read the columns same and on; leave out these files, or use vernier fit");
+  }
 }
 
 void require_time_order(const Measurement& m) {
@@ -655,12 +832,18 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
   result.states = select_states(all.states, keep);
   // A row's observations are adjacent. If a row is kept twice, other rows refer to its first copy.
   std::vector<std::size_t> position(all.rows(), kNoRow), first(all.rows() + 1, 0);
-  for (std::size_t i = keep.size(); i-- > 0;) position[keep[i]] = i;
+  std::vector<std::size_t> met(all.things.size(), kNoRow);
+  for (std::size_t i = keep.size(); i-- > 0;) {
+    position[keep[i]] = i;
+    if (all.thing_of(keep[i]) != kNoThing) met[all.thing[keep[i]]] = i;
+  }
   for (const Observation& o : all.observations) ++first[o.row + 1];
   for (std::size_t row = 0; row < all.rows(); ++row) first[row + 1] += first[row];
   for (std::size_t i = 0; i < keep.size(); ++i) {
     const std::size_t other = all.other_end.empty() ? kNoRow : all.other_end[keep[i]];
-    const std::size_t end = other == kNoRow ? kNoRow : position[other];
+    std::size_t end = other == kNoRow ? kNoRow : position[other];
+    // Any row that met the point at the other end stands for it.
+    if (end == kNoRow && all.is_between_things(keep[i])) end = met[all.thing[other]];
     if (!all.other_end.empty()) result.other_end.push_back(end);
     for (std::size_t k = first[keep[i]]; k < first[keep[i] + 1]; ++k) {
       Observation o = all.observations[k];
@@ -692,6 +875,8 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
   }
   for (const LabelColumn& label : all.labels) result.labels.push_back({label.name, pick(label.value, keep)});
   if (!all.corrected.empty()) result.corrected = pick(all.corrected, keep);
+  result.things = all.things;
+  if (!all.thing.empty()) result.thing = pick(all.thing, keep);
   result.check = pick(all.check, keep);
   result.file = pick(all.file, keep);
   result.line = pick(all.line, keep);
@@ -704,7 +889,7 @@ void append_measurement(Measurement& all, Measurement next, bool apart) {
   append_candidates(all, next);
   append_corrections(all, next);
   append_labels_of_rows(all, next);
-  append_optional(all, next);
+  append_optional(all, next, apart);
   for (Observation observation : next.observations) {
     observation.row += all.rows();
     all.observations.push_back(observation);

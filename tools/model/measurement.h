@@ -16,6 +16,7 @@ using ObservationKind = format::ReadingKind;
 using format::is_direction;
 using format::is_free_of_setup;
 using format::is_inclination;
+using format::is_of_thing;
 using format::is_rotation;
 
 /// One measured number: mm, or deg for rotations.
@@ -41,6 +42,25 @@ struct LabelColumn {
 /// `other_end` of a row without a distance.
 inline constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
 
+/// A thing that rows met: an unknown point (`same`: an artefact of type point of which nothing is known), or
+/// an artefact of the machine file. Each thing has its own unknown values in each set-up.
+struct Thing {
+  format::ReadingForm form = format::ReadingForm::kSame;
+  std::string label, setup;  // setup: empty if rows state none
+  Artefact artefact;
+
+  bool is_unknown_point() const { return form == format::ReadingForm::kSame; }
+  /// The thing is in the measuring frame of its set-up; else in workpiece coordinates.
+  bool in_measuring_frame() const { return artefact.place.has_value(); }
+  /// True for the same thing, in another measurement of the same machine.
+  bool is(const Thing& other) const {
+    return form == other.form && label == other.label && setup == other.setup;
+  }
+};
+
+/// `thing` of a row that met no thing.
+inline constexpr std::size_t kNoThing = static_cast<std::size_t>(-1);
+
 /// The rows of one or several measurement files, bound to a machine (FORMATS section 2). Rows with an empty
 /// input cell are not included; only their number is kept.
 struct Measurement {
@@ -63,12 +83,17 @@ struct Measurement {
   Eigen::Matrix3Xd nominal_point;  // of `d`, workpiece coordinates, mm
   Eigen::Matrix3Xd direction;      // of a1 a2, unit vectors, measuring frame; empty: in no row
   std::vector<std::size_t> other_end;  // row at the other end of a distance, else kNoRow; empty: no distances
+  std::vector<Thing> things;           // of `same` and `on`
+  std::vector<std::size_t> thing;      // of the row, else kNoThing; empty: in no row
   std::size_t excluded = 0;            // rows with an empty input cell
   std::vector<std::string>
       recorded;  // names of the columns of motion that at least one file has (vX, feed, t ...)
 
   std::size_t rows() const { return states.count; }
   bool has_recorded(std::string_view name) const;
+  std::size_t thing_of(std::size_t row) const { return thing.empty() ? kNoThing : thing[row]; }
+  /// The distance of this row is between two unknown points (`same` at both ends), not between tool points.
+  bool is_between_things(std::size_t row) const;
 };
 
 /// Name of the set-up of a measurement file: the file name without folder and ending; with_folder: with the
@@ -79,6 +104,10 @@ std::string set_up_of_file(const std::string& path, bool with_folder = false);
 /// Returns the standard uncertainty of a reading. For a rotation the result is ua of its row if given, else
 /// u. The result is 0 if the row has no uncertainty. mm or deg.
 double uncertainty_of(const Measurement& measurement, const Observation& observation);
+
+/// True if the set-up of the instrument does not change the reading. A thing without a known place is in
+/// workpiece coordinates.
+bool is_free_of_set_up(const Measurement& measurement, const Observation& observation);
 
 /// Returns the commanded position of an axis in each row (the read position, if it was logged), mm or deg.
 /// Two rows with the same commanded positions are at one pose. The commanded position is states.axis minus
@@ -103,6 +132,10 @@ Measurement read_measurement(const std::vector<std::string>& paths, const Machin
 /// Throws InputError with file and line if `t` decreases from one row of a run to the next. In rows without
 /// time order, time-dependent terms and lags have no meaning.
 void require_time_order(const Measurement& measurement);
+
+/// Throws InputError with file, line and label if a row meets a thing (`same`, `on`). command: the command
+/// that cannot use such rows, as its user types it.
+void refuse_things(const Measurement& measurement, const std::string& command);
 
 /// Returns the rows `keep` of a measurement with their observations. `keep` may contain a row several times.
 /// A distance is kept only if both its ends are kept.

@@ -66,6 +66,7 @@ class Sheet {
           columns.push_back({format::heading(name), [](std::size_t) { return std::string(); }});
       }
     }
+    add_things();
     if (forms.contains(format::ReadingForm::kLength)) add_points(format::columns::kCentre, rows_.centre);
     if (forms.contains(format::ReadingForm::kDeviation)) {
       add_points(format::columns::kNominalPoint, rows_.nominal_point);
@@ -82,6 +83,19 @@ class Sheet {
   }
 
  private:
+  /// The columns `same` and `on` name what a row meets: they are given, not filled in.
+  void add_things() {
+    for (SheetColumn& column : columns)
+      for (const auto& [name, form] : {std::pair(format::columns::kSame, format::ReadingForm::kSame),
+                                       std::pair(format::columns::kOn, format::ReadingForm::kOn)})
+        if (column.header == name)
+          column.cell = [this, wanted = form](std::size_t row) {
+            const std::size_t thing = rows_.thing_of(row);
+            const bool met = thing != model::kNoThing && rows_.things[thing].form == wanted;
+            return met ? rows_.things[thing].label : std::string();
+          };
+  }
+
   void add(const std::string& header, const model::Column& column) {
     columns.push_back(
         {header, [&column](std::size_t row) { return cell_text(column[static_cast<Eigen::Index>(row)]); }});

@@ -191,7 +191,7 @@ struct RoundTouches {
 
 RoundTouches round_touches(TouchTable& table, const CalibrationSetup& setup) {
   RoundTouches touches;
-  touches.sign = setup.artefact == Artefact::kRing ? -1 : 1;
+  touches.sign = setup.artefact == CalibrationArtefact::kRing ? -1 : 1;
   touches.x = table.need({"x", "X"}, "recorded position");
   const auto y = table.find({"y", "Y"}), z = table.find({"z", "Z"});
   const auto stays = [&](const VectorXd& values) {
@@ -199,8 +199,8 @@ RoundTouches round_touches(TouchTable& table, const CalibrationSetup& setup) {
     return values.maxCoeff() - values.minCoeff() < kPlane * setup.size_mm;
   };
   // A machine of two axes, including X and Z of a lathe, touches a sphere in a plane.
-  touches.sphere = setup.artefact == Artefact::kSphere && y && z && !stays(*y) && !stays(*z);
-  const bool in_xz = setup.artefact == Artefact::kSphere && z && (!y || stays(*y));
+  touches.sphere = setup.artefact == CalibrationArtefact::kSphere && y && z && !stays(*y) && !stays(*z);
+  const bool in_xz = setup.artefact == CalibrationArtefact::kSphere && z && (!y || stays(*y));
   touches.y = in_xz ? *z : y ? *y : table.need({"y", "Y"}, "recorded position");
   if (touches.sphere) touches.z = *z;
   touches.speed = table.need({"feed", "F"}, "feed along the approach") / maths::kSecondsPerMinute;
@@ -211,7 +211,7 @@ RoundTouches round_touches(TouchTable& table, const CalibrationSetup& setup) {
 
 void say_plane(const RoundTouches& touches, const CalibrationSetup& setup,
                std::vector<std::string>& findings) {
-  if (setup.artefact != Artefact::kSphere || touches.sphere) return;
+  if (setup.artefact != CalibrationArtefact::kSphere || touches.sphere) return;
   constexpr double kOff_mm = 0.5;  // accuracy of placing a sphere by hand
   findings.push_back(
       fmt::format("The sphere was touched in one plane, taken to go through its centre: {} mm beside it "
@@ -355,8 +355,8 @@ void say_conditions(TouchTable& table, const CalibrationSetup& setup, std::vecto
 
 ProbeCalibration calibrate_probe(TouchTable& table, const CalibrationSetup& setup) {
   if (!(setup.size_mm > 0)) throw text::InputError("the size of the artefact is not above 0 (--size)");
-  ProbeCalibration result =
-      setup.artefact == Artefact::kBlock ? calibrate_block(table, setup) : calibrate_round(table, setup);
+  ProbeCalibration result = setup.artefact == CalibrationArtefact::kBlock ? calibrate_block(table, setup)
+                                                                          : calibrate_round(table, setup);
   refuse_absurd(result, setup, table);
   say_conditions(table, setup, result.findings);
   say_outliers(result.fit, table, result.findings);

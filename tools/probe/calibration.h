@@ -10,11 +10,11 @@
 
 namespace vernier::probe {
 
-enum class Artefact { kBlock, kRing, kSphere };
+enum class CalibrationArtefact { kBlock, kRing, kSphere };
 
 /// Sizes of a known artefact and of a nominal stylus.
 struct CalibrationSetup {
-  Artefact artefact = Artefact::kSphere;
+  CalibrationArtefact artefact = CalibrationArtefact::kSphere;
   double size_mm = 0;  // block: distance of its faces; ring, sphere: diameter
   std::optional<double> ball_radius_mm = std::nullopt;  // nominal, of the stylus ball
   double outlier_level = 0.01;

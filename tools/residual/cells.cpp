@@ -41,6 +41,8 @@ RowVectors row_vectors(const model::Measurement& m, const Eigen::VectorXd& resid
     const model::Observation& o = m.observations[i];
     const auto row = static_cast<Eigen::Index>(o.row);
     if (model::is_rotation(o.kind) || m.check[o.row] != 0) continue;
+    // A surface has a normal that only the fit knows.
+    if (model::is_of_thing(o.kind) && m.things[m.thing[o.row]].artefact.dimension() != 3) continue;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
     if (o.kind == model::ObservationKind::kLength)
       direction = (point.col(row) - m.centre.col(row)).normalized();

@@ -22,7 +22,8 @@ bool forbids(const model::FitRecord::Finding& finding) {
 
 /// Further findings with which a fit itself does not hold.
 bool contradicts_fit(const model::FitRecord::Finding& finding) {
-  return is_one_of(finding, {"something-missing", "disturbed", "not-varied", "not-distinguished"});
+  return is_one_of(finding,
+                   {"something-missing", "disturbed", "not-varied", "not-distinguished", "size-unknown"});
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "tools/fit/coverage/domain.h"
 #include "tools/fit/coverage/reach.h"
 #include "tools/fit/decisions.h"
+#include "tools/fit/size.h"
 #include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
 #include "tools/results/detail.h"
@@ -72,6 +73,38 @@ ordered_json tilt_json(const model::Machine& machine, const model::Measurement& 
   return {{"rms", std::sqrt(tilt.square().mean())}, {"max", tilt.maxCoeff()}};
 }
 
+ordered_json size_json(const fit::SizeOfMachine& size) {
+  ordered_json json = {{"known", size.known}, {"from", size.from}};
+  if (size.from != "machine") json["relative_std"] = size.relative_std;
+  json["sentence"] = fit::size_sentence(size);
+  return json;
+}
+
+ordered_json three_numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+ordered_json things_json(const std::vector<fit::ThingEstimate>& things) {
+  ordered_json list = ordered_json::array();
+  for (const fit::ThingEstimate& one : things) {
+    ordered_json json = {{"name", one.name},
+                         {"type", one.type},
+                         {"setup", one.setup},
+                         {"frame", one.in_measuring_frame ? "measuring" : "workpiece"},
+                         {"touches", one.touches},
+                         {"place_mm", three_numbers(one.place_mm)},
+                         {"u_place_mm", three_numbers(one.u_place_mm)}};
+    if (one.direction) {
+      json["direction"] = three_numbers(*one.direction);
+      json["u_direction_deg"] = one.u_direction_deg;
+    }
+    if (one.radius_mm) {
+      json["radius_mm"] = *one.radius_mm;
+      json["u_radius_mm"] = one.u_radius_mm;
+    }
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 }  // namespace
 
 ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m) {
@@ -99,6 +132,10 @@ ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m)
     json["convention"].push_back({{"parameters", decision.parameters},
                                   {"reach_um", decision.reach_um},
                                   {"sentence", decision.sentence}});
+  if (result.size) {
+    json["size"] = size_json(*result.size);
+    json["things"] = things_json(result.things);
+  }
   json["stages"] = ordered_json::array();
   for (const fit::StageFigures& stage : result.stages)
     json["stages"].push_back({{"patterns", stage.patterns},

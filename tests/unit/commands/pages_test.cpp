@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
 #include "tools/text/words.h"
 
@@ -140,6 +141,31 @@ TEST_F(Pages, FirstHourRunsAsPrinted) {
   }
 }
 
+TEST_F(Pages, TouchRunsAsPrinted) {
+  const std::string text = page("tools/docs/touch.md");
+  std::string script;
+  for (const std::string& block : blocks(text, "sh")) script += block;
+  ASSERT_EQ(run(script), 0) << said_;
+  const auto printed = blocks(text, "text");
+  ASSERT_EQ(printed.size(), 3u);
+  for (const std::string& lines : printed)
+    EXPECT_NE(said_.find(lines), std::string::npos) << lines << "is not in\n" << said_;
+  // The truth (tests/data/touch/make.py), within the uncertainties that the fits state.
+  const struct {
+    const char* machine;
+    const char* name;
+    double truth, std;
+  } rows[] = {{"printer", "twist", 0.08, 0.0036},
+              {"printer", "sag", -0.15, 0.0042},
+              {"mill", "squareness", -0.0034, 0.0002},
+              {"mill", "scaleX", 40, 11},
+              {"mill", "scaleY", -25, 11}};
+  for (const auto& row : rows) {
+    const model::Machine machine = model::read_machine(folder_ + "/build/touch/" + row.machine + ".xml");
+    EXPECT_NEAR(machine.statics[*machine.find_static(row.name)].value, row.truth, 2.5 * row.std) << row.name;
+  }
+}
+
 TEST_F(Pages, ReadmeRunsAsPrinted) {
   std::string script;
   for (const std::string& block : blocks(page("README.md"), "sh")) {
@@ -183,7 +209,7 @@ TEST(Links, OfTheFirstPagesLeadSomewhere) {
   for (const std::string name :
        {"README.md", "tools/docs/tutorial.md", "tools/docs/new.md", "tools/docs/lint.md",
         "tools/docs/machine_file.md", "tools/docs/measurement_file.md", "tools/docs/figures.md",
-        "tools/docs/import.md", "tools/docs/board.md", "tools/docs/first_hour.md"}) {
+        "tools/docs/import.md", "tools/docs/board.md", "tools/docs/first_hour.md", "tools/docs/touch.md"}) {
     const std::string text = page(name);
     const fs::path folder = (fs::path(VERNIER_SOURCE_DIR) / name).parent_path();
     for (std::size_t at = 0; (at = text.find("](", at)) != std::string::npos; ++at) {

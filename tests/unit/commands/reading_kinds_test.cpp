@@ -175,11 +175,37 @@ class ReadingKinds : public testing::TestWithParam<ReadingKind> {
         << said_;
     Cells cells{format::parse_csv(text::read_file(file("template.csv")), "template.csv")};
     const auto once = cells.csv.rows;
+    if (format::is_of_thing(GetParam())) return write_touches(cells);
     cells.csv.rows.insert(cells.csv.rows.end(), once.begin(), once.end());
     cells.csv.line.insert(cells.csv.line.end(), cells.csv.line.begin(), cells.csv.line.end());
     fill(cells, truth(model::read_machine(file("machine.xml"))), format::form_of(GetParam()));
     keep_only(cells, GetParam());
     text::write_file(file("survey.csv"), cells.text());
+  }
+
+  /// Every pose of the template meets a point of its own eight times: the reading is 0, and its noise is in
+  /// the positions of the axes. The points of `on` are artefacts of the machine file.
+  void write_touches(Cells& cells) {
+    constexpr std::size_t kTimes = 8;  // one eighth of the squares is fitted away
+    const std::string name = format::reading_columns(format::form_of(GetParam())).names[0];
+    std::string artefacts;
+    const auto once = cells.csv.rows;
+    cells.csv.rows.clear();
+    for (std::size_t k = 0; k < once.size(); ++k) {
+      artefacts += "<artefact name=\"P" + std::to_string(k) + "\" type=\"point\"/>\n";
+      for (std::size_t i = 0; i < kTimes; ++i) {
+        cells.csv.rows.push_back(once[k]);
+        const std::size_t row = cells.csv.rows.size() - 1;
+        cells.cell(row, name) = "P" + std::to_string(k);
+        for (const char* axis : {"X", "Y", "Z"})
+          cells.cell(row, axis) = text::number_text(*text::parse_number(cells.cell(row, axis)) + noise());
+      }
+    }
+    text::write_file(file("survey.csv"), cells.text());
+    if (name != format::columns::kOn) return;
+    std::string machine = text::read_file(file("machine.xml"));
+    machine.insert(machine.find("</variables>"), artefacts);
+    text::write_file(file("machine.xml"), machine);
   }
 
   const std::string folder_ =

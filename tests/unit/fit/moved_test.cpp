@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/moved.h"
+#include "tools/fit/coverage/moved.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/unseen_turns.h"
+#include "tools/fit/coverage/unseen_turns.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -65,7 +65,8 @@ TEST(ReadingKinds, OfEveryFormCanBeSurveyed) {
   }
   EXPECT_EQ(survey_reading("pose")->list().size(), 2u);
   EXPECT_EQ(survey_reading("glance"), nullptr);
-  EXPECT_EQ(survey_words("or"), "point, length, touch, pose, rotation, direction, distance or inclination");
+  EXPECT_EQ(survey_words("or"),
+            "point, length, touch, pose, rotation, direction, distance, inclination, same or on");
 }
 
 TEST(ReadingKinds, SayWhatTheyAre) {

@@ -24,7 +24,8 @@ constexpr double kPi = std::numbers::pi;
 ProbeCalibration published(const std::vector<std::string>& columns, const std::vector<std::string>& where) {
   const std::string file = VERNIER_SOURCE_DIR "/tests/data/probing/table1.csv";
   TouchTable table(read_file(file), file, columns, where);
-  return calibrate_probe(table, {.artefact = Artefact::kBlock, .size_mm = 50.8, .ball_radius_mm = 2.5019});
+  return calibrate_probe(
+      table, {.artefact = CalibrationArtefact::kBlock, .size_mm = 50.8, .ball_radius_mm = 2.5019});
 }
 
 TEST(ProbeCal, GivesThePublishedLineFromTheRowsAtZeroDegrees) {
@@ -59,7 +60,8 @@ TEST(ProbeCal, ARenamedColumnKeepsTheUnitInItsNameAndNonsenseIsRefused) {
 TEST(ProbeCal, ComparesGroupsByTheProbesAngle) {
   const std::string file = VERNIER_SOURCE_DIR "/tests/data/probing/table1.csv";
   TouchTable table(read_file(file), file, {"mean_lp_um=lower"}, {});
-  const CalibrationSetup setup{.artefact = Artefact::kBlock, .size_mm = 50.8, .ball_radius_mm = 2.5019};
+  const CalibrationSetup setup{
+      .artefact = CalibrationArtefact::kBlock, .size_mm = 50.8, .ball_radius_mm = 2.5019};
   const GroupComparison groups = compare_groups(table, setup, "group", calibrate_probe(table, setup));
   ASSERT_EQ(groups.groups.size(), 7u);
   EXPECT_EQ(groups.groups[0].touches, 7u);
@@ -72,9 +74,10 @@ TEST(ProbeCal, SaysWhichTouchesCameBeforeConstantSpeed) {
   const std::string file = VERNIER_SOURCE_DIR "/tests/data/probing/table1.csv";
   const auto not_valid = [&](double clearance) {
     TouchTable table(read_file(file), file, {}, {"group=A"});
-    const ProbeCalibration result = calibrate_probe(
-        table,
-        {.artefact = Artefact::kBlock, .size_mm = 50.8, .ball_radius_mm = 2.5019, .clearance_mm = clearance});
+    const ProbeCalibration result = calibrate_probe(table, {.artefact = CalibrationArtefact::kBlock,
+                                                            .size_mm = 50.8,
+                                                            .ball_radius_mm = 2.5019,
+                                                            .clearance_mm = clearance});
     return std::count_if(result.findings.begin(), result.findings.end(),
                          [](const std::string& finding) { return finding.starts_with("Not valid touches"); });
   };
@@ -117,9 +120,10 @@ std::string touches_of(const Truth& t, std::uint64_t seed, const std::vector<dou
 
 ProbeCalibration calibrated(const Truth& t, std::uint64_t seed, const std::vector<double>& feeds) {
   TouchTable table(touches_of(t, seed, feeds), "touches.csv", {}, {});
-  return calibrate_probe(table, {.artefact = t.sphere ? Artefact::kSphere : Artefact::kRing,
-                                 .size_mm = 2 * t.half,
-                                 .ball_radius_mm = 2.5});
+  return calibrate_probe(table,
+                         {.artefact = t.sphere ? CalibrationArtefact::kSphere : CalibrationArtefact::kRing,
+                          .size_mm = 2 * t.half,
+                          .ball_radius_mm = 2.5});
 }
 
 void expect_near(const ProbeCalibration& result, const std::string& name, double truth) {
@@ -167,7 +171,7 @@ std::string plane_touches(const std::string& header, const char* row, double spr
 
 ProbeCalibration of_a_ball(const std::string& text) {
   TouchTable table(text, "plane.csv", {}, {});
-  return calibrate_probe(table, {.artefact = Artefact::kSphere, .size_mm = 25});
+  return calibrate_probe(table, {.artefact = CalibrationArtefact::kSphere, .size_mm = 25});
 }
 
 TEST(ProbeCal, ASphereTouchedInOnePlaneIsOneThroughItsCentre) {
@@ -219,7 +223,7 @@ TEST(ProbeCal, NamesFileLineAndWord) {
   const auto expect = [](const std::string& text, const std::string& message) {
     try {
       TouchTable table(text, "t.csv", {}, {});
-      calibrate_probe(table, {.artefact = Artefact::kBlock, .size_mm = 50, .ball_radius_mm = 1});
+      calibrate_probe(table, {.artefact = CalibrationArtefact::kBlock, .size_mm = 50, .ball_radius_mm = 1});
       FAIL();
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();

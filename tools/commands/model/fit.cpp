@@ -12,6 +12,7 @@
 #include "tools/fit/freedom.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/set_up.h"
+#include "tools/fit/size.h"
 #include "tools/format/units.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/fit_record.h"
@@ -67,6 +68,22 @@ void print_weakest(std::FILE* out, const fit::FitResult& result) {
   }
 }
 
+/// What rows met, and what the size of the machine rests on.
+void print_things(std::FILE* out, const fit::FitResult& result) {
+  constexpr std::size_t kMost = 12;  // lines
+  for (std::size_t i = 0; i < result.things.size() && i < kMost; ++i) {
+    const fit::ThingEstimate& one = result.things[i];
+    fmt::print(out, "{} {}{}: {:.4f}, {:.4f}, {:.4f} mm +- {:.2g}, {:.2g}, {:.2g} mm", one.type, one.name,
+               one.setup.empty() ? "" : " in set-up " + one.setup, one.place_mm.x(), one.place_mm.y(),
+               one.place_mm.z(), one.u_place_mm.x(), one.u_place_mm.y(), one.u_place_mm.z());
+    if (one.radius_mm) fmt::print(out, ", radius {:.5f} mm +- {:.2g} mm", *one.radius_mm, one.u_radius_mm);
+    fmt::print(out, " ({} touches)\n", one.touches);
+  }
+  if (result.things.size() > kMost)
+    fmt::print(out, "{} more points and artefacts are in the JSON result\n", result.things.size() - kMost);
+  if (result.size && result.size->known) fmt::print(out, "{}\n", fit::size_sentence(*result.size));
+}
+
 /// What later commands will repeat.
 void print_findings(std::FILE* out, const fit::FitResult& result) {
   if (result.normalised_check)
@@ -99,6 +116,7 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
                item.from == fit::Origin::kPrior ? "not measured; stays at nominal +- scale"
                                                 : fit::origin_name(item.from));
   print_decisions(out, result);
+  print_things(out, result);
   print_odd_inputs(out, result.machine);
   for (const auto& [name, std] : result.priors)
     fmt::print(out, "held near nominal as if measured there: {} with std {:g}\n", name, std);

@@ -115,9 +115,10 @@ std::string board_lines(const probe::ProbeCalibration& result) {
 }
 
 void run_cal(CalArguments& arguments) {
-  static const std::map<std::string, probe::Artefact> kArtefacts = {{"block", probe::Artefact::kBlock},
-                                                                    {"ring", probe::Artefact::kRing},
-                                                                    {"sphere", probe::Artefact::kSphere}};
+  static const std::map<std::string, probe::CalibrationArtefact> kArtefacts = {
+      {"block", probe::CalibrationArtefact::kBlock},
+      {"ring", probe::CalibrationArtefact::kRing},
+      {"sphere", probe::CalibrationArtefact::kSphere}};
   arguments.setup.artefact = kArtefacts.at(arguments.artefact);
   arguments.setup.outlier_level = arguments.outlier_level;
   if (arguments.ball_radius > 0) arguments.setup.ball_radius_mm = arguments.ball_radius;

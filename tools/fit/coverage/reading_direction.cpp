@@ -31,6 +31,8 @@ Eigen::Vector3d reading_direction(const model::Machine& machine, const model::Me
            Eigen::Vector3d::Unit(static_cast<Eigen::Index>(reading.kind));
   if (reading.kind == model::ObservationKind::kD)
     return {rows.states.normal[0][row], rows.states.normal[1][row], rows.states.normal[2][row]};
+  if (reading.kind >= model::ObservationKind::kSameX && reading.kind <= model::ObservationKind::kSameZ)
+    return Eigen::Vector3d::Unit(static_cast<Eigen::Index>(format::component_of(reading.kind)));
   return Eigen::Vector3d::Zero();
 }
 

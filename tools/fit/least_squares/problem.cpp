@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/least_squares/problem.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "tools/fit/least_squares/statistics.h"
@@ -109,9 +110,74 @@ double FitProblem::prior_cost(const Eigen::VectorXd& point) const {
   return off.dot(prior_precision_ * off);
 }
 
+void FitProblem::hold_size(std::function<Eigen::VectorXd(const Eigen::VectorXd&)> direction,
+                           Eigen::VectorXd dual) {
+  size_ = std::move(direction);
+  size_dual_ = std::move(dual);
+}
+
+void FitProblem::blind(const Eigen::VectorXd& point, Eigen::VectorXd& gradient) const {
+  if (!size_) return;
+  const Eigen::VectorXd v = size_(point);
+  gradient -= size_dual_ * (v.dot(gradient) / size_dual_.dot(v));
+}
+
+void FitProblem::blind(const Eigen::VectorXd& point, NormalEquations& equations) const {
+  if (!size_) return;
+  blind(point, equations.gradient);
+  const Eigen::VectorXd v = size_(point), w = size_dual_ / size_dual_.dot(v), seen = equations.normal * v;
+  equations.normal += v.dot(seen) * w * w.transpose() - w * seen.transpose() - seen * w.transpose();
+}
+
+model::Linearisation FitProblem::linearised(const Eigen::VectorXd& point) const {
+  model::Linearisation linear =
+      model::linearise(at(point), linearizer_, measurement_.observations.size(), parameters_.size());
+  if (!size_) return linear;
+  const Eigen::VectorXd v = size_(point), w = size_dual_ / size_dual_.dot(v);
+  const Eigen::MatrixXd dense(linear.jacobian);
+  linear.jacobian = Eigen::MatrixXd(dense - (dense * v) * w.transpose()).sparseView();
+  return linear;
+}
+
+Eigen::MatrixXd FitProblem::known_normal(const Eigen::VectorXd& point) const {
+  if (things().empty()) return {};
+  const Eigen::MatrixXd known = linearised(point).known_jacobian;
+  if (known.rows() == 0) return {};
+  return known.transpose() * known;
+}
+
+/// The unknown values of things are eliminated: the derivatives are those at things that follow the
+/// parameters. That is the Schur complement of the normal equations, without its cancellation of large
+/// numbers.
+NormalEquations FitProblem::readings_with_things(const Eigen::VectorXd& point) const {
+  constexpr Eigen::Index kRowsAtOnce = 256;  // a block of dense rows that stays in the cache
+  const model::Linearisation linear =
+      model::linearise(at(point), linearizer_, measurement_.observations.size(), parameters_.size());
+  const Eigen::Index n = linear.jacobian.cols(), count = linear.jacobian.rows();
+  NormalEquations sum;
+  const Eigen::VectorXd residual = weights_.cwiseProduct(measured_ - linear.predicted);
+  sum.cost = residual.squaredNorm() + linear.known_residual.squaredNorm();
+  sum.normal = Eigen::MatrixXd::Zero(n, n);
+  sum.gradient = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index first = 0; first < count; first += kRowsAtOnce) {
+    const Eigen::Index rows = std::min(kRowsAtOnce, count - first);
+    const Eigen::MatrixXd block =
+        weights_.segment(first, rows).asDiagonal() * Eigen::MatrixXd(linear.jacobian.middleRows(first, rows));
+    sum.normal.selfadjointView<Eigen::Lower>().rankUpdate(block.transpose());
+    sum.gradient += block.transpose() * residual.segment(first, rows);
+  }
+  if (linear.known_residual.size() > 0) {
+    sum.normal.selfadjointView<Eigen::Lower>().rankUpdate(linear.known_jacobian.transpose());
+    // The estimates follow the parameters by `known_jacobian`; their known values do not.
+    sum.gradient += linear.known_jacobian.transpose() * linear.known_residual;
+  }
+  return sum;
+}
+
 double FitProblem::cost(const Eigen::VectorXd& point) const {
   try {
-    return (measured_ - model::predict(at(point), measurement_)).cwiseProduct(weights_).squaredNorm() +
+    const model::Prediction now = model::predict_with_things(at(point), measurement_);
+    return (measured_ - now.predicted).cwiseProduct(weights_).squaredNorm() + now.known_cost +
            prior_cost(point);
   } catch (const text::InputError&) {
     return std::numeric_limits<double>::infinity();
@@ -122,8 +188,7 @@ Eigen::VectorXd FitProblem::weighted_residuals(const Eigen::VectorXd& point,
                                                model::SparseRows* jacobian) const {
   if (jacobian == nullptr)
     return (measured_ - model::predict(at(point), measurement_)).cwiseProduct(weights_);
-  model::Linearisation linear =
-      model::linearise(at(point), linearizer_, measurement_.observations.size(), parameters_.size());
+  const model::Linearisation linear = linearised(point);
   *jacobian = weights_.asDiagonal() * linear.jacobian;
   return (measured_ - linear.predicted).cwiseProduct(weights_);
 }
@@ -135,7 +200,8 @@ NormalEquations FitProblem::equations(const Eigen::VectorXd& point) const {
   result.normal = Eigen::MatrixXd::Zero(n, n);
   Eigen::MatrixXd weighted, inner;
   Eigen::VectorXd residual, answer;
-  linearizer_.each_row(at(point), [&](const model::RowLinear& row) {
+  if (!things().empty()) result = readings_with_things(point);
+  const auto add_row = [&](const model::RowLinear& row) {
     const auto first = static_cast<Eigen::Index>(row.first_observation);
     const Eigen::Index count = row.predicted.size();
     const auto weight = weights_.segment(first, count);
@@ -144,8 +210,10 @@ NormalEquations FitProblem::equations(const Eigen::VectorXd& point) const {
     inner_products(weighted, residual, inner, answer);
     result.cost += residual.squaredNorm();
     scatter(row.groups, inner, answer, result);
-  });
+  };
+  if (things().empty()) linearizer_.each_row(at(point), add_row);
   result.normal.triangularView<Eigen::StrictlyUpper>() = result.normal.transpose();
+  blind(point, result);
   silence_rounding(result, weights_.squaredNorm());
   if (prior_centre_.size() > 0) {
     result.cost += prior_cost(point);
@@ -171,14 +239,24 @@ Slope FitProblem::slope(const Eigen::VectorXd& point) const {
         result.gradient.segment(start, group.width) += share * answer.segment(group.slot, group.width);
   };
   try {
-    linearizer_.each_row(at(point), add_row);
+    linearizer_.each_row(at(point), add_row,
+                         [&](const model::ThingsAt& met) { result.cost += met.known_cost(); });
   } catch (const text::InputError&) {
     result.cost = std::numeric_limits<double>::infinity();
     return result;
   }
+  blind(point, result.gradient);
   result.cost += prior_cost(point);
   if (prior_centre_.size() > 0) result.gradient += prior_precision_ * (prior_centre_ - point);
   return result;
+}
+
+Eigen::VectorXd FitProblem::bend_with_things(const Eigen::VectorXd& point, const Eigen::VectorXd& step,
+                                             const Eigen::VectorXd& ahead, double part) const {
+  const model::Linearisation linear = linearised(point);
+  const Eigen::VectorXd second =
+      2 / (part * part) * (ahead - linear.predicted - part * (linear.jacobian * step));
+  return linear.jacobian.transpose() * second.cwiseProduct(weights_.cwiseAbs2());
 }
 
 Eigen::VectorXd FitProblem::bend(const Eigen::VectorXd& point, const Eigen::VectorXd& step) const {
@@ -192,6 +270,7 @@ Eigen::VectorXd FitProblem::bend(const Eigen::VectorXd& point, const Eigen::Vect
   } catch (const text::InputError&) {
     return result;
   }
+  if (!things().empty()) return bend_with_things(point, step, ahead, kPart);
   linearizer_.each_row(at(point), [&](const model::RowLinear& row) {
     for (Eigen::Index o = 0; o < row.predicted.size(); ++o) {
       const Eigen::Index at_row = static_cast<Eigen::Index>(row.first_observation) + o;

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <functional>
 
 #include "tools/fit/least_squares/levenberg.h"
 #include "tools/model/chain/linearizer.h"
@@ -23,6 +24,10 @@ class FitProblem {
   /// cost.
   void set_priors(const Eigen::SparseMatrix<double>& precision, Eigen::VectorXd centre);
   void clear_priors() { prior_centre_.resize(0); }
+  /// Makes the readings blind along a direction: the size of everything, if no reading has a length. Without
+  /// it, their noise would shrink the machine. direction(point) returns the direction v; dual: w, both in the
+  /// parameters' own units. The readings then see (I - v w^T / (w^T v)) of every change.
+  void hold_size(std::function<Eigen::VectorXd(const Eigen::VectorXd&)> direction, Eigen::VectorXd dual);
 
   /// Returns the sum of squared weighted residuals and priors; infinity if the model is undefined at the
   /// point.
@@ -39,9 +44,14 @@ class FitProblem {
   /// Jacobian of `predicted`.
   Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, model::SparseRows* jacobian) const;
 
+  /// Returns the part of the normal equations that known values of things give (radius, place with an
+  /// uncertainty); 0 x 0: there are none.
+  Eigen::MatrixXd known_normal(const Eigen::VectorXd& point) const;
+
   const Eigen::SparseMatrix<double>& prior_precision() const { return prior_precision_; }
   const Eigen::VectorXd& prior_centre() const { return prior_centre_; }  // empty: no priors
   const model::Measurement& measurement() const { return measurement_; }
+  const model::Things& things() const { return linearizer_.things(); }
   const Eigen::VectorXd& weights() const { return weights_; }  // of the readings
   /// Multiplies the weight of every reading by its share.
   void weigh(const Eigen::VectorXd& shares) { weights_ = weights_.cwiseProduct(shares); }
@@ -49,6 +59,12 @@ class FitProblem {
  private:
   model::Machine at(const Eigen::VectorXd& point) const;
   double prior_cost(const Eigen::VectorXd& point) const;
+  NormalEquations readings_with_things(const Eigen::VectorXd& point) const;
+  Eigen::VectorXd bend_with_things(const Eigen::VectorXd& point, const Eigen::VectorXd& step,
+                                   const Eigen::VectorXd& ahead, double part) const;
+  model::Linearisation linearised(const Eigen::VectorXd& point) const;
+  void blind(const Eigen::VectorXd& point, NormalEquations& equations) const;
+  void blind(const Eigen::VectorXd& point, Eigen::VectorXd& gradient) const;
 
   model::Machine machine_;
   const model::Measurement& measurement_;
@@ -57,6 +73,8 @@ class FitProblem {
   Eigen::VectorXd weights_, measured_;
   Eigen::SparseMatrix<double> prior_precision_;
   Eigen::VectorXd prior_centre_;
+  std::function<Eigen::VectorXd(const Eigen::VectorXd&)> size_;
+  Eigen::VectorXd size_dual_;
 };
 
 }  // namespace vernier::fit

@@ -21,6 +21,7 @@ std::vector<double> row_conditions(const model::Measurement& m, std::size_t row)
     key.push_back(std::isnan(m.centre(k, at)) ? 0 : m.centre(k, at));
     key.push_back(std::isnan(m.nominal_point(k, at)) ? 0 : m.nominal_point(k, at));
   }
+  if (!m.thing.empty()) key.push_back(static_cast<double>(m.thing[row]));
   key.push_back(s.feed[at]);
   key.push_back(s.curvature[at]);
   for (const model::CandidateInput& candidate : m.candidates)
@@ -62,7 +63,9 @@ std::optional<double> repeat_noise(const model::Measurement& m, bool rotations) 
   };
   std::map<std::pair<std::vector<double>, int>, PoseReadings> groups;
   for (const model::Observation& o : m.observations) {
-    if (m.check[o.row] != 0 || model::is_rotation(o.kind) != rotations) continue;
+    // The reading of a thing is 0 in every repeat.
+    if (m.check[o.row] != 0 || model::is_rotation(o.kind) != rotations || model::is_of_thing(o.kind))
+      continue;
     std::vector<double> key = row_conditions(m, o.row);
     for (const model::Column& correction : m.correction)
       key.push_back(std::round(correction[static_cast<Eigen::Index>(o.row)] / kCorrectionStep));

@@ -22,7 +22,7 @@ std::vector<std::size_t> row_starts(const Measurement& m) {
 }  // namespace
 
 Linearizer::Linearizer(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters)
-    : measurement_(measurement), start_(row_starts(measurement)) {
+    : measurement_(measurement), things_(machine, measurement), start_(row_starts(measurement)) {
   const std::size_t statics = machine.statics.size();
   active_.assign(statics + 7 * machine.axes.size(), 0);
   slot_of_key_.assign(active_.size(), -1);
@@ -67,7 +67,10 @@ Linearizer::Linearizer(const Machine& machine, const Measurement& measurement, c
 }
 
 Linearizer::Pass::Pass(const Linearizer& all, const Machine& machine)
-    : all_(all), machine_(machine), chain_(machine, all.measurement_.states, all.active_) {
+    : all_(all),
+      machine_(machine),
+      chain_(machine, all.measurement_.states, all.active_),
+      things_(all.things_, machine, chain_) {
   for (const std::size_t key : chain_.keys()) slot_of_key_.push_back(all.slot_of_key_[key]);
   for (const std::string& run : all.measurement_.states.names(all.measurement_.states.setup)) {
     const auto found = base_shift_of(machine, run);
@@ -81,7 +84,7 @@ bool Linearizer::Pass::next() {
   while (at_ < all_.measurement_.rows() && all_.start_[at_] == all_.start_[at_ + 1]) ++at_;
   if (at_ >= all_.measurement_.rows()) return false;
   const std::size_t other = all_.measurement_.other_end.empty() ? kNoRow : all_.measurement_.other_end[at_];
-  is_joined_ = other != kNoRow;
+  is_joined_ = other != kNoRow && !all_.measurement_.is_between_things(at_);
   if (is_joined_)
     join_other_end(at_, other);
   else
@@ -139,14 +142,24 @@ void Linearizer::Pass::fill(std::size_t row, std::size_t at, const Eigen::Vector
     const Observation& observation = m.observations[first + k];
     if (row != at && observation.kind != ObservationKind::kDistance)
       continue;  // depends on its own pose only
-    row_.predicted[o] = model.predicted(observation);
-    const Twist g = model.gradient(observation);
+    Twist g;
+    if (all_.things_.cluster_of(observation) == kNoThing) {
+      row_.predicted[o] = model.predicted(observation);
+      g = model.gradient(observation);
+    } else {
+      const ThingsAt::Reading reading = things_.read(observation);
+      row_.predicted[o] = reading.predicted;
+      const bool measured = m.things[m.thing[row]].in_measuring_frame();
+      g.point = measured ? reading.by_point : Eigen::Vector3d(model.base_rotation() * reading.by_point);
+      if (const std::size_t tip = all_.things_.tip_of(m.thing[row]); tip != kNoThing)
+        if (const Index slot = all_.slot_of_key_[tip]; slot >= 0) row_.gradient(slot, o) = reading.by_tip;
+    }
     const Twist in_workpiece{model.base_rotation().transpose() * g.point,
                              model.base_rotation().transpose() * g.rotation};
     for (std::size_t s = 0; s < twists_.size(); ++s)
-      row_.gradient(slot_of_key_[s], o) =
+      row_.gradient(slot_of_key_[s], o) +=
           in_workpiece.point.dot(twists_[s].point) + in_workpiece.rotation.dot(twists_[s].rotation);
-    if (shift == nullptr || is_free_of_setup(observation.kind)) continue;
+    if (shift == nullptr || is_free_of_set_up(m, observation)) continue;
     for (std::size_t c = 0; c < 6; ++c)
       row_.gradient(all_.slots_ + static_cast<Index>(c), o) =
           g.point.dot(base[c].point) + g.rotation.dot(base[c].rotation);

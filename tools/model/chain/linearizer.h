@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tools/model/chain/chain_rows.h"
+#include "tools/model/chain/things.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
@@ -41,9 +42,17 @@ class Linearizer {
   /// finite.
   template <class Visit>
   void each_row(const Machine& machine, const Visit& visit) const {
+    each_row(machine, visit, [](const ThingsAt&) {});
+  }
+  /// The same; at the end, end(const ThingsAt&) gets the things that rows met, as this machine has them. The
+  /// derivatives of the rows are those at fixed things.
+  template <class Visit, class End>
+  void each_row(const Machine& machine, const Visit& visit, const End& end) const {
     Pass pass(*this, machine);
     while (pass.next()) visit(pass.row());
+    end(pass.things());
   }
+  const Things& things() const { return things_; }
 
  private:
   struct TableGroup {
@@ -57,6 +66,7 @@ class Linearizer {
     Pass(const Linearizer& all, const Machine& machine);
     bool next();
     const RowLinear& row() const { return is_joined_ ? joined_ : row_; }
+    const ThingsAt& things() const { return things_; }
 
    private:
     /// Computes how a row's observations depend on the pose of row `at`. `at` is the row itself, or the row
@@ -74,6 +84,7 @@ class Linearizer {
     const Linearizer& all_;
     const Machine& machine_;
     ChainRows chain_;
+    ThingsAt things_;
     std::vector<Eigen::Index> slot_of_key_;
     std::vector<const BaseShift*> shift_of_setup_;
     std::vector<Twist> twists_;
@@ -83,6 +94,7 @@ class Linearizer {
   };
 
   const Measurement& measurement_;
+  Things things_;
   std::vector<std::size_t> start_;         // first observation of each row
   std::vector<char> active_;               // keys of Evaluator
   std::vector<Eigen::Index> slot_of_key_;  // by key of Evaluator

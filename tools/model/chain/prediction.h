@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "tools/model/chain/thing_shape.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 #include "tools/model/parameters.h"
@@ -16,11 +17,23 @@ using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 /// nearest to the measured vector.
 Eigen::VectorXd predict(const Machine& machine, const Measurement& measurement);
 
+/// Things (`same`, `on`) are at their best estimate for the machine. `known_cost`: weighted sum of squares of
+/// their known values about these estimates; 0 without an uncertain known value.
+struct Prediction {
+  Eigen::VectorXd predicted;
+  double known_cost = 0;
+};
+Prediction predict_with_things(const Machine& machine, const Measurement& measurement);
+
 /// The prediction and its derivatives by the free parameters (analytic): n_obs x n_params, mm or
 /// deg per parameter unit.
 struct Linearisation {
   Eigen::VectorXd predicted;
   SparseRows jacobian;
+  /// Known values of things minus their estimates, times 1/u, and their derivatives by the parameters
+  /// (of the estimates, times 1/u). Empty without an uncertain known value.
+  Eigen::VectorXd known_residual;
+  Eigen::MatrixXd known_jacobian;
 };
 Linearisation linearise(const Machine& machine, const Measurement& measurement,
                         const ParameterSet& parameters);
@@ -30,5 +43,15 @@ Linearisation linearise(const Machine& machine, const Measurement& measurement,
 class Linearizer;
 Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
                         std::size_t parameters);
+
+/// A thing at its best estimate. `own`: covariance of its unknown values at a fixed machine for readings of
+/// weight 1/u; `follows`: their derivatives by the parameters.
+struct EstimatedThing {
+  std::size_t thing = 0, touches = 0;
+  ThingShape shape;
+  Eigen::MatrixXd own, follows;
+};
+std::vector<EstimatedThing> estimate_things(const Machine& machine, const Measurement& measurement,
+                                            const ParameterSet& parameters);
 
 }  // namespace vernier::model

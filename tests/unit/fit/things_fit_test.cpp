@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fits of rows that met unknown points and artefacts: what is found, and what the size rests on.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/measurement.h"
+#include "tools/text/error.h"
+
+namespace vernier::things_fit_test {
+
+using namespace vernier::fit;
+namespace {
+
+/// A plane arm of two joints, and a point between its reach. Lengths 300 and 200 mm; the true second is 0.5
+/// longer, and the zero of the second joint is off by 0.1 deg.
+constexpr double kFirst_mm = 300, kSecond_mm = 200.5, kZero_deg = 0.1, kNoise_mm = 0.002;
+constexpr const char* kArm = R"XML(<machine name="arm"><variables>
+  <static><a value="300" nominal="300" unit="mm"/><b value="200" nominal="200" unit="mm"/>
+    <zero value="0" nominal="0" unit="deg"/></static>
+  <machineaxes><P rotary="true" min="-180" max="180"/><Q rotary="true" min="-180" max="180"/></machineaxes>
+  </variables><transforms branch="tool"><sixdof n="1" rZ="P"/><sixdof n="2" X="a"/><sixdof n="3" rZ="Q+zero"/>
+    <sixdof n="4" X="b"/></transforms></machine>)XML";
+
+/// Joint angles at which the true arm is at (x, y), elbow left or right.
+std::string at(double x, double y, double elbow) {
+  const double far = std::hypot(x, y), unit = 180 / std::numbers::pi;
+  const double bend = std::acos((far * far - kFirst_mm * kFirst_mm - kSecond_mm * kSecond_mm) /
+                                (2 * kFirst_mm * kSecond_mm)) *
+                      elbow;
+  const double first =
+      std::atan2(y, x) - std::atan2(kSecond_mm * std::sin(bend), kFirst_mm + kSecond_mm * std::cos(bend));
+  return fmt::format("{:.10f},{:.10f}", unit * first, unit * bend - kZero_deg);
+}
+
+/// Six points, each met eight times with either elbow. distance: of the first two points, in one row.
+std::string survey(bool distance, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0, kNoise_mm);
+  std::string text = "P[deg],Q[deg],same,name,distance[mm],from,u[mm]\n";
+  const std::array<std::array<double, 2>, 6> points = {
+      {{250, 100}, {400, 0}, {300, -200}, {150, 150}, {420, 120}, {200, -100}}};
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (int i = 0; i < 8; ++i) {
+      const bool length = distance && p == 1 && i == 0;
+      text += at(points[p][0] + noise(random), points[p][1] + noise(random), i % 2 == 0 ? 1 : -1) +
+              fmt::format(",S{},n{}_{},{},{},{}\n", p, p, i,
+                          length ? fmt::format("{:.9f}", std::hypot(150, 100)) : "", length ? "n0_0" : "",
+                          kNoise_mm);
+    }
+  return text;
+}
+
+FitResult fitted(const std::string& rows, const FitOptions& options = {}) {
+  const model::Machine machine = model::parse_machine(kArm, "arm.xml");
+  return fit::fit(machine, model::parse_measurement(rows, "survey.csv", machine), options);
+}
+double value(const FitResult& result, const std::string& name) {
+  return result.machine.statics[*result.machine.find_static(name)].value;
+}
+bool has(const FitResult& result, const std::string& code) {
+  const auto& list = result.machine.fitted->findings;
+  return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.code == code; });
+}
+
+TEST(FitOfThings, ADistanceOfTwoPointsGivesTheArmItsSize) {
+  const FitResult result = fitted(survey(true, 3));
+  ASSERT_TRUE(result.converged);
+  ASSERT_TRUE(result.size);
+  EXPECT_TRUE(result.size->known);
+  EXPECT_EQ(result.size->from, "distances");
+  EXPECT_FALSE(has(result, "size-unknown"));
+  for (const ParameterEstimate& one : result.estimates) {
+    const double truth = one.name == "a" ? kFirst_mm : one.name == "b" ? kSecond_mm : kZero_deg;
+    EXPECT_LT(std::abs(one.value - truth), 3.5 * one.std) << one.name;
+    EXPECT_LT(one.std, 0.01) << one.name;
+  }
+  ASSERT_EQ(result.things.size(), 6u);
+  EXPECT_NEAR(result.things[1].place_mm.x(), 400, 3.5 * result.things[1].u_place_mm.x());
+  EXPECT_EQ(result.things[1].touches, 8u);
+}
+
+// A larger arm meets larger points as well. The ratio of the lengths is found, the size stays at nominal.
+TEST(FitOfThings, WithoutALengthTheSizeIsHeldAndSaid) {
+  const FitResult result = fitted(survey(false, 3));
+  ASSERT_TRUE(result.converged);
+  EXPECT_FALSE(result.size->known);
+  EXPECT_TRUE(has(result, "size-unknown"));
+  EXPECT_NEAR(value(result, "b") / value(result, "a"), kSecond_mm / kFirst_mm, 5e-5);
+  EXPECT_NEAR(value(result, "a"), kFirst_mm, 0.5) << "the noise does not shrink the arm";
+  EXPECT_GT(result.estimates[0].std, 0.02) << "its uncertainty is what is plausible, not what the noise says";
+}
+
+TEST(FitOfThings, ChiSquareOverItsFreedomIsOne) {
+  double sum = 0;
+  constexpr int kSurveys = 20;
+  for (std::uint64_t seed = 1; seed <= kSurveys; ++seed) {
+    const FitResult result = fitted(survey(true, seed));
+    sum += result.chi_square / result.freedom;
+    EXPECT_LT(result.freedom, 6 * 8 * 3 + 1 - 6 * 3 + 0.5) << "the unknown points cost three readings each";
+  }
+  // z has no noise: two of three readings of a row do.
+  EXPECT_NEAR(sum / kSurveys, 2.0 / 3, 0.07);
+}
+
+TEST(FitOfThings, ARobustLossIsRefusedByName) {
+  FitOptions options;
+  options.loss = Loss::kHuber;
+  try {
+    fitted(survey(true, 3), options);
+    FAIL() << "accepted";
+  } catch (const text::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("--loss"), std::string::npos) << error.what();
+  }
+}
+
+TEST(FitOfThings, CeresFindsTheSamePlace) {
+  FitOptions options;
+  options.solver = Solver::kCeres;
+  const FitResult one = fitted(survey(true, 5)), other = fitted(survey(true, 5), options);
+  for (std::size_t i = 0; i < one.estimates.size(); ++i)
+    EXPECT_NEAR(one.estimates[i].value, other.estimates[i].value, 0.02 * one.estimates[i].std);
+}
+
+}  // namespace
+}  // namespace vernier::things_fit_test

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "tools/fit/least_squares/problem.h"
+#include "tools/fit/types.h"
+#include "tools/model/machine.h"
+#include "tools/model/measurement.h"
+#include "tools/model/parameters.h"
+
+namespace vernier::fit {
+
+/// The change of the parameters that makes the whole machine larger by one share, in parameter units per 1.
+/// A length changes by itself, an angle does not.
+struct SizeDirection {
+  Eigen::VectorXd start, at_start, power;
+  Eigen::VectorXd at(const Eigen::VectorXd& point) const {
+    return at_start + power.cwiseProduct(point - start);
+  }
+};
+
+/// Returns the direction at `point`; nullopt: the free parameters cannot change the size (the positions of
+/// linear axes or held lengths give it).
+std::optional<SizeDirection> size_direction(const model::Machine& machine, const model::Measurement& rows,
+                                            const model::ParameterSet& parameters,
+                                            const Convention& convention, const Eigen::VectorXd& point);
+
+/// Decides what the size of the machine rests on, from the readings at `point` and the plausible sizes of all
+/// other parameters. Without information above the convention's own, the size is held: `problem` becomes
+/// blind along it. Only for rows that meet things (`same`, `on`): nullopt without.
+std::optional<SizeOfMachine> decide_size(FitProblem& problem, const model::Machine& machine,
+                                         const model::ParameterSet& parameters, const Convention& convention,
+                                         const Eigen::VectorXd& point);
+
+/// Returns the sentence of the finding `size-unknown`, or of what the size rests on.
+std::string size_sentence(const SizeOfMachine& size);
+
+}  // namespace vernier::fit

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "tools/model/artefact.h"
+
+namespace vernier::model {
+
+/// Place, direction and radius of a thing. `axes`: two directions across, then the direction of a line or of
+/// an axis, or the normal of a plane. Lengths in mm, in the frame of the thing.
+struct ThingShape {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  double radius = 0;
+};
+
+/// At most three of a place, two of a direction, one radius.
+using ThingUnknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+
+/// Returns the number of unknown values of a thing, 0 to 6. Order: place (3 of a point and a sphere, 2 across
+/// a line or an axis, 1 along a normal), tilt about the two directions across (rad), radius.
+Eigen::Index unknowns_of(const Artefact& artefact);
+
+/// One reading of a touch.
+struct TouchReading {
+  double value = 0;          // distance of the tool point from the thing, mm; 0: the point is on it
+  Eigen::Vector3d by_point;  // derivative by the tool point
+  ThingUnknowns by_unknown;  // by the unknown values, mm/mm and mm/rad
+  double by_tip = 0;         // by the radius of the tip
+};
+
+/// Returns the reading `component` (from 0) of a touch at `point`, mm; `tip`: radius of the tip, mm.
+TouchReading touch(const Artefact& artefact, const ThingShape& shape, const Eigen::Vector3d& point,
+                   double tip, std::size_t component);
+
+/// Moves the unknown values of a thing by a step.
+void move_thing(const Artefact& artefact, const ThingUnknowns& step, ThingShape& shape);
+
+/// Returns the directions of the unknown coordinates of the place: columns, in the order of the unknowns.
+Eigen::Matrix3Xd place_directions(const Artefact& artefact, const ThingShape& shape);
+
+/// Values that are known with an uncertainty: 1 / u^2 of each unknown value, 0 if it is not known; and the
+/// known value minus the value of `shape`.
+struct KnownValues {
+  ThingUnknowns precision, off;
+};
+KnownValues known_values(const Artefact& artefact, const ThingShape& shape);
+
+/// Returns start values of a thing from the tool points that touched it (at least one, mm), the best guess
+/// first. down: direction of gravity, which selects the side of a cap.
+std::vector<ThingShape> thing_starts(const Artefact& artefact, const std::vector<Eigen::Vector3d>& points,
+                                     double tip, const Eigen::Vector3d& down);
+
+}  // namespace vernier::model
