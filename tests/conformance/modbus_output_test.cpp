@@ -254,6 +254,38 @@ TEST_F(ModbusOutputLoss, ShortOutageIsNoLossAndMakesNoStep) {
   EXPECT_LE(largest_step(plc_.blocks()), kMostStep);
 }
 
+// The outage is no loss, but the controller has lost its block: it applies nothing, so that the board begins
+// at zero as well.
+TEST_F(ModbusOutputLoss, RestartOfTheControllerWithinTheTimeOutMakesNoStep) {
+  ticks_->run(200ms, 20'000);
+  plc_.forgets = true;
+  plc_.gone = true;
+  ticks_->run(20ms, 20'000);
+  const std::size_t before = plc_.blocks().size();
+  plc_.gone = false;
+  ticks_->run(100ms, 20'000);
+  const auto blocks = plc_.blocks();
+  ASSERT_GT(blocks.size(), before);
+  // The first block after the restart is not valid, and no valid one is far from zero.
+  EXPECT_EQ(blocks[before].valid & 1, 0);
+  std::vector<Plc::Block> since(blocks.begin() + static_cast<std::ptrdiff_t>(before), blocks.end());
+  EXPECT_LE(largest_step(since), kMostStep);
+  expect_return_without_a_step(plc_, *output_, *ticks_);
+}
+
+// The first board may have the longest period that a board file allows.
+TEST(ModbusOutputStart, SecondBoardIsRefusedBesideASlowOne) {
+  Plc plc;
+  std::string error;
+  ModbusOutputSettings slow = settings();
+  slow.period = TimeUs(50'000);
+  slow.timeout = TimeUs(400'000);
+  const auto first = open(plc, error, slow);
+  ASSERT_NE(first, nullptr) << error;
+  EXPECT_EQ(open(plc, error), nullptr);
+  EXPECT_NE(error.find("another board writes"), std::string::npos) << error;
+}
+
 TEST_F(ModbusOutputLoss, TicksThatStandStillLeaveNothingValid) {
   std::this_thread::sleep_for(kDetected);
   EXPECT_EQ(plc_.blocks().back().valid & 1, 0);

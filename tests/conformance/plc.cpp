@@ -87,6 +87,7 @@ void Plc::serve() {
   if (line_ >= 0) peers.push_back(line_);
   while (!stop_) {
     if (gone) {
+      if (forgets) std::fill_n(registers_->tab_registers, registers_->nb_registers, std::uint16_t{0});
       if (line_ >= 0 && has_input(line_)) (void)!::read(line_, query, sizeof query);
       for (const int peer : peers)
         if (peer != line_) ::close(peer);

@@ -40,9 +40,10 @@ class Plc {
   bool wait_for_blocks(std::size_t count) const;
   void forget();
 
-  std::atomic<bool> stuck{false};  // the program stands still: no echo
-  std::atomic<bool> gone{false};   // connections are closed, and none is answered
-  std::atomic<int> late_ms{0};     // each answer comes so late
+  std::atomic<bool> stuck{false};    // the program stands still: no echo
+  std::atomic<bool> gone{false};     // connections are closed, and none is answered
+  std::atomic<bool> forgets{false};  // while it is gone, its registers become zero: a restart
+  std::atomic<int> late_ms{0};       // each answer comes so late
 
  private:
   void serve();

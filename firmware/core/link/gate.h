@@ -48,8 +48,8 @@ class Gate {
   /// True for a request for a challenge. A challenge can be used once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// Gives the challenge of one connection. The challenge replaces the previous one of the connection. If the
-  /// table is full, the oldest challenge of the same link is removed. If no challenge is of the same link, the
-  /// oldest of all links is removed. Not real-time safe.
+  /// table is full, the oldest challenge of the same link is removed. If the table has
+  /// no challenge of the same link, the oldest challenge of any link is removed. Not real-time safe.
   ChallengeReply challenge(LinkAccess access, const Caller& from, TimeUs now) noexcept;
   /// Removes the challenge of a connection that has ended. Not real-time safe.
   void forget(const Caller& from) noexcept;

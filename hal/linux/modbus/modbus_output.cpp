@@ -15,6 +15,8 @@ using std::chrono::microseconds;
 
 constexpr std::size_t kDelayBins = 10'000;  // of 0.1 ms: one second
 constexpr int kTries = 10;                  // of the first exchange
+/// Another board writes at least once in its period, which is at most this long (board_file.cpp).
+constexpr TimeUs kLongestPeriod(50'000);
 
 std::int64_t ns_of(Steady::time_point when) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(when.time_since_epoch()).count();
@@ -63,10 +65,12 @@ std::string ModbusOutput::begin() {
   };
   std::uint16_t before = 0, after = 0;
   if (!look(before)) return "the controller does not answer, or has no such register";
-  std::this_thread::sleep_for(4 * span_of(settings_.period));
-  if (!look(after)) return "the controller does not answer";
-  if (before != after) return "in use: another board writes the sequence number";
-  sequence_ = after;
+  for (const auto end = Clock::now() + 4 * span_of(kLongestPeriod); Clock::now() < end;) {
+    std::this_thread::sleep_for(span_of(settings_.period));
+    if (!look(after)) return "the controller does not answer";
+    if (before != after) return "in use: another board writes the sequence number";
+  }
+  sequence_ = kept_ = before;
   good_ = written_ = Clock::now();
   for (const auto end = Clock::now() + span_of(settings_.timeout) + std::chrono::seconds(1);
        !healthy_ && Clock::now() < end;) {
@@ -160,9 +164,29 @@ void ModbusOutput::judge(bool answered, std::uint16_t echo, Clock::time_point no
   losses_ += silent || corrects ? 1 : 0;
 }
 
+/// Has the controller still one of the blocks since the last one that it surely took? A controller that was
+/// restarted has not, and applies no correction. False as well: it does not answer.
+bool ModbusOutput::controller_kept_the_block() {
+  std::uint16_t now = 0;
+  if (!line_->read(settings_.unit, ModbusLine::Registers::kHolding, settings_.address, 1, &now)) return false;
+  if (static_cast<std::uint16_t>(now - kept_) <= static_cast<std::uint16_t>(sequence_ - kept_)) return true;
+  lose();
+  kept_ = sequence_;
+  const std::scoped_lock lock(guard_);
+  ++losses_;
+  return true;
+}
+
 void ModbusOutput::exchange(bool last) {
   const Clock::time_point began = Clock::now();
   const bool ticks_are_on = ticks_run(began);
+  if (unanswered_ && !last && !controller_kept_the_block()) {
+    {
+      const std::scoped_lock lock(guard_);
+      ++exchanges_, ++failed_;
+    }
+    return judge(false, 0, Clock::now(), ticks_are_on);
+  }
   const std::int64_t stored = stored_ns_.load();
   if (!repeat_ && !last) choose_values(began, ticks_are_on);
   std::array<std::uint16_t, ModbusOutputSettings::kValues + 2 * ModbusOutputSettings::kPlaces> block{};
@@ -181,11 +205,12 @@ void ModbusOutput::exchange(bool last) {
   }
   const bool written = line_->write(settings_.unit, settings_.address, used, block.data());
   const Clock::time_point answered_at = Clock::now();
-  if (written) written_ = began;
+  if (written) written_ = began, kept_ = sequence_;
   repeat_ = !written;
   std::uint16_t echo = 0;
   const bool answered =
       written && line_->read(settings_.unit, ModbusLine::Registers::kHolding, settings_.echo, 1, &echo);
+  unanswered_ = !answered;
   {
     const std::scoped_lock lock(guard_);
     ++exchanges_;

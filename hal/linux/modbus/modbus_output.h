@@ -38,7 +38,8 @@ struct ModbusOutputSettings {
 /// Corrections of several axes as registers of a controller. A separate thread writes the block and reads the
 /// echo; a tick only leaves its value and never waits. If no new sequence number comes back in `timeout`, the
 /// thread clears the valid bits and all writes are refused. The valid bit of an axis is set again when the
-/// board's own correction of the axis is zero: the return of a connection causes no step.
+/// board's own correction of the axis is zero: the return of a connection causes no step. So it is if a
+/// controller was restarted within the time-out and has lost the block.
 class ModbusOutput : public OutputDevice {
  public:
   /// line: used by this output only. Returns null with `error` set if the controller does not answer, does
@@ -86,6 +87,7 @@ class ModbusOutput : public OutputDevice {
   std::string begin();
   void run();
   void exchange(bool last = false);
+  bool controller_kept_the_block();
   void choose_values(Clock::time_point now, bool ticks_are_on);
   bool echo_is_new(std::uint16_t echo, Clock::time_point now) const;
   void judge(bool answered, std::uint16_t echo, Clock::time_point now, bool ticks_are_on);
@@ -99,7 +101,9 @@ class ModbusOutput : public OutputDevice {
   std::atomic<bool> healthy_{false}, stop_{false};
   std::atomic<std::int64_t> stored_ns_{INT64_MIN};  // when a tick left its value
   std::uint16_t sequence_ = 0;
-  bool repeat_ = false;  // the controller may have the last block or the one before
+  std::uint16_t kept_ = 0;   // of the last block that the controller surely took
+  bool repeat_ = false;      // the controller may have the last block or the one before
+  bool unanswered_ = false;  // the last exchange
   Clock::time_point good_, written_;
   std::array<Clock::time_point, 256> sent_at_{};  // by the low byte of the sequence number
 

@@ -130,6 +130,24 @@ TEST_F(OperatorSetting, LatchedFaultOutlivesAStartUntilItIsCleared) {
   EXPECT_EQ(mode(rig), Mode::kActive);
 }
 
+TEST_F(OperatorSetting, ClearedBoardWaitsForTheActivationAfterAStartToo) {
+  {
+    UploadRig rig(store_, key_);
+    rig.run(3000);
+    ASSERT_EQ(mode(rig), Mode::kActive);
+    rig.service().cycle().tick(TimeUs(1), Command::kNone, Fault::kOverrun);
+    rig.run(1000);
+    give(rig, Command::kClearFault, 1000);
+    ASSERT_EQ(mode(rig), Mode::kReady);
+  }
+  UploadRig rig(store_, key_);
+  rig.run(3000);
+  EXPECT_EQ(mode(rig), Mode::kReady);
+  EXPECT_EQ(rig.plant().written(0), AxisTravel{});
+  give(rig, Command::kActivate, 2000);
+  EXPECT_EQ(mode(rig), Mode::kActive);
+}
+
 TEST_F(OperatorSetting, UnreadableRecordsKeepTheCorrectionOut) {
   const std::uint8_t spoiled[sizeof(OperatorRecord)] = {1, 2, 3};
   store_.write_record(kOperatorPlace, spoiled, sizeof(spoiled));
