@@ -30,13 +30,19 @@ struct Arguments {
 
 /// Files with a provenance in the output folders of `improve` and `compile`.
 constexpr std::array kOfFolders = {"improve.json", "bound.json"};
+/// Commands that only read and write files. A record can come from anybody: no other command runs.
+constexpr std::array kOfFiles = {
+    "add",     "ballbar-path", "check",    "compare", "compile", "correct",  "derive", "diagnose", "evaluate",
+    "exclude", "export",       "features", "fit",     "import",  "improve",  "lint",   "map",      "new",
+    "part",    "plan",         "pose",     "replay",  "set",     "simulate", "solve"};
 
 /// An empty folder, removed at the end. Inside it the files of the computer have their own paths.
 class Mirror {
  public:
   Mirror() {
-    std::string name = (fs::temp_directory_path() / "vernier-again-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
+    std::error_code none;
+    std::string name = (fs::temp_directory_path(none) / "vernier-again-XXXXXX").string();
+    if (none || mkdtemp(name.data()) == nullptr)
       throw text::InputError({name, 0}, "", "cannot be made: the folder for temporary files");
     root_ = fs::canonical(name).string();
   }
@@ -109,7 +115,8 @@ std::string file_meant(const std::string& given) {
 /// One `vernier again`, step by step.
 class Again {
  public:
-  explicit Again(const std::string& file) : file_(file_meant(file)), content_(text::read_file(file_)) {
+  explicit Again(const std::string& file)
+      : file_(file_meant(file)), content_(text::read_file(file_)), whole_folder_(fs::is_directory(file)) {
     std::optional<Provenance> made = provenance_of(content_, file_);
     if (!made)
       throw text::InputError(
@@ -119,6 +126,7 @@ class Again {
     made_ = std::move(*made);
     place_ = fs::weakly_canonical(fs::absolute(file_));
     folder_ = (place_.parent_path() / made_.folder).lexically_normal();
+    require_harmless();
   }
 
   const std::string& file() const { return file_; }
@@ -139,9 +147,15 @@ class Again {
     return names;
   }
 
-  /// Content of the file, made again from the inputs, with the version of the program that made the file.
-  /// Throws LimitNotMet if the command does not make it.
-  std::string remade() const {
+  /// A file and its content, made again.
+  struct Remade {
+    std::string name, text;
+  };
+
+  /// The file, made again from the inputs, with the version of the program that made the file; and every
+  /// other file that the command makes in its folder, if the user named a folder. Throws LimitNotMet if the
+  /// command does not make the file.
+  std::vector<Remade> remade() const {
     const Mirror mirror;
     for (const ProvenanceInput& input : made_.inputs) mirror.take(at(input.name));
     fs::create_directories(mirror.of(folder_));
@@ -157,6 +171,21 @@ class Again {
       throw text::LimitNotMet(
           fmt::format("{}: the command `vernier {}` ends with status {} and does not make this file", file_,
                       fmt::join(made_.command, " "), status));
+    std::vector<Remade> files = {{file_, as_made(made, mirror)}};
+    if (!whole_folder_) return files;
+    for (const fs::directory_entry& other : fs::recursive_directory_iterator(made.parent_path()))
+      if (other.is_regular_file() && other.path() != made && !is_input(other.path(), mirror))
+        files.push_back(
+            {(fs::path(file_).parent_path() / other.path().lexically_relative(made.parent_path())).string(),
+             as_made(other.path(), mirror)});
+    std::sort(files.begin() + 1, files.end(),
+              [](const Remade& a, const Remade& b) { return a.name < b.name; });
+    return files;
+  }
+
+ private:
+  /// The text as this command would have written it at the place of the file.
+  std::string as_made(const fs::path& made, const Mirror& mirror) const {
     std::string text = text::read_file(made.string());
     for (const auto written : {as_text, in_comment}) replace_all(text, written(mirror.root()), "");
     if (const std::optional<Provenance> by = provenance_of(text, made.string()))
@@ -165,7 +194,29 @@ class Again {
     return text;
   }
 
- private:
+  bool is_input(const fs::path& path, const Mirror& mirror) const {
+    return std::ranges::any_of(made_.inputs, [&](const ProvenanceInput& input) {
+      return mirror.of(at(input.name)) == path.lexically_normal();
+    });
+  }
+
+  /// Throws InputError for a command that does more than read and write files, and for a name that leaves the
+  /// temporary folder.
+  void require_harmless() const {
+    const auto& command = made_.command;
+    if (command.empty() || std::ranges::find(kOfFiles, command.front()) == kOfFiles.end())
+      throw text::InputError({file_, 0}, command.empty() ? "" : command.front(),
+                             "the record has a command that makes no file from files; it is not run");
+    // Above the root of the computer there is nothing, but above that of the temporary folder there is.
+    const auto depth = std::distance(folder_.begin(), folder_.end()) - 1;
+    for (const std::string& word : command) {
+      std::ptrdiff_t up = 0;
+      for (std::size_t at = 0; (at = word.find("..", at)) != std::string::npos; at += 2) ++up;
+      if (up > depth)
+        throw text::InputError({file_, 0}, word, "this name leaves the folder of the computer's files");
+    }
+  }
+
   fs::path at(const std::string& name) const { return (folder_ / name).lexically_normal(); }
 
   /// A word of the command line can name an output in a folder that exists: so it exists in the mirror.
@@ -179,13 +230,17 @@ class Again {
   /// An absolute path in the command line moves into the mirror.
   static void move(std::string& word, const Mirror& mirror) {
     const auto value = word.starts_with("--") ? word.find("=/") : std::string::npos;
+    constexpr std::size_t kShortOption = 2;  // -o/a/file
     if (word.starts_with('/'))
       word = mirror.root() + word;
     else if (value != std::string::npos)
       word.insert(value + 1, mirror.root());
+    else if (word.size() > kShortOption && word.starts_with('-') && word[kShortOption] == '/')
+      word.insert(kShortOption, mirror.root());
   }
 
   std::string file_, content_;
+  bool whole_folder_ = false;
   Provenance made_;
   fs::path place_, folder_;  // of the file; in which the command ran
 };
@@ -193,10 +248,10 @@ class Again {
 void run_again(const Arguments& arguments) {
   const Again again(arguments.file);
   const std::vector<std::string> changed = again.changed();
-  const std::string remade = again.remade();
-  const bool same = remade == again.content();
+  const std::vector<Again::Remade> remade = again.remade();
   nlohmann::ordered_json json = {{"file", again.file()},
-                                 {"same", same},
+                                 {"same", true},
+                                 {"files", remade.size()},
                                  {"bytes", again.content().size()},
                                  {"program", again.made().program},
                                  {"command", again.made().command},
@@ -205,17 +260,22 @@ void run_again(const Arguments& arguments) {
   fmt::print(out, "made by: {}\ncommand: vernier {}\n", again.made().program,
              fmt::join(again.made().command, " "));
   for (const std::string& name : changed) fmt::print(out, "changed since: {}\n", name);
-  if (same) {
-    fmt::print(out, "{}: made again, all {} bytes are equal\n", again.file(), again.content().size());
-    return write_json(arguments.json, json);
+  for (const Again::Remade& one : remade) {
+    const std::string now = fs::exists(one.name) ? text::read_file(one.name) : "";
+    if (now == one.text) {
+      fmt::print(out, "{}: made again, all {} bytes are equal\n", one.name, now.size());
+      continue;
+    }
+    const Difference first = first_difference(now, one.text);
+    json["same"] = false;
+    json["first_difference"] = {{"file", one.name}, {"byte", first.byte}, {"line", first.line}};
+    write_json(arguments.json, json);
+    throw text::LimitNotMet(fmt::format(
+        "{}: made again, and the bytes differ from byte {} on (line {}){}", one.name, first.byte, first.line,
+        changed.empty() ? ""
+                        : ". Inputs have changed since: " + fmt::format("{}", fmt::join(changed, ", "))));
   }
-  const Difference first = first_difference(again.content(), remade);
-  json["first_difference"] = {{"byte", first.byte}, {"line", first.line}};
   write_json(arguments.json, json);
-  throw text::LimitNotMet(fmt::format(
-      "{}: made again, and the bytes differ from byte {} on (line {}){}", again.file(), first.byte,
-      first.line,
-      changed.empty() ? "" : ". Inputs have changed since: " + fmt::format("{}", fmt::join(changed, ", "))));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -122,6 +123,16 @@ class Recorder {
   std::set<std::string> written_;              // canonical paths
 };
 
+/// The text of a page has the name of the program: a record must not bring other text into it.
+void require_program(const std::string& program, const std::string& file) {
+  const bool plain = std::ranges::all_of(program, [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view(" .()+-_").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (!plain || !program.starts_with("vernier ") || program.find("--") != std::string::npos)
+    throw text::InputError({file, 0}, "program", "the record does not name a version of this program");
+}
+
 }  // namespace
 
 std::string in_comment(const std::string& text) {
@@ -168,6 +179,7 @@ std::optional<Provenance> provenance_of(const std::string& content, const std::s
                       made.at("command").get<std::vector<std::string>>(),
                       made.at("folder").get<std::string>(),
                       {}};
+    require_program(result.program, name);
     for (const Json& one : made.at("inputs"))
       result.inputs.push_back({one.at("name").get<std::string>(), one.at("sha256").get<std::string>()});
     return result;

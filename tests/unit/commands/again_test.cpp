@@ -109,6 +109,37 @@ TEST_F(Again, ChangedMissingAndEditedFilesAreReported) {
   EXPECT_EQ(run("vernier again nothing.html"), 1);
 }
 
+// A record can come from anybody.
+TEST_F(Again, ARecordRunsNoOtherCommandAndLeavesNoFile) {
+  const auto page = [&](const std::string& program, const std::string& command) {
+    write_file(folder + "/page.html", "<!doctype html>\n<!-- made by: {\"program\":\"" + program +
+                                          "\",\"command\":" + command +
+                                          ",\"folder\":\".\",\"inputs\":[]} -->\n");
+  };
+  for (const char* command :
+       {R"(["board","activate","\u002d\u002dto","tcp://127.0.0.1:1"])", R"(["keys","k"])",
+        R"(["workbench","."])", R"(["again","page.html"])", R"(["upload","x"])", "[]"}) {
+    page("vernier 0.1.0", command);
+    EXPECT_EQ(run("vernier again page.html"), 1) << command;
+    EXPECT_NE(said().find("not run"), std::string::npos) << said();
+  }
+  page("vernier 0.1.0",
+       R"(["new","gantry","\u002do","../../../../../../../../../../../../../../tmp/out.xml"])");
+  EXPECT_EQ(run("vernier again page.html"), 1);
+  EXPECT_NE(said().find("leaves the folder"), std::string::npos) << said();
+  page("x--><h1>ACCEPTED</h1><!--", R"(["compare","m.xml"])");
+  EXPECT_EQ(run("vernier again page.html"), 1);
+  EXPECT_NE(said().find("version of this program"), std::string::npos) << said();
+}
+
+TEST_F(Again, OfAFolderEveryFileIsCompared) {
+  ASSERT_EQ(run("vernier compile data/machine.xml -o image"), 0) << said();
+  EXPECT_EQ(run("vernier again image"), 0) << said();
+  write_file(folder + "/image/equation.cpp", read_file(folder + "/image/equation.cpp") + "//\n");
+  EXPECT_EQ(run("vernier again image"), 2) << said();
+  EXPECT_NE(said().find("equation.cpp"), std::string::npos) << said();
+}
+
 TEST_F(Again, TheRecordHasTheHashesOfTheInputs) {
   ASSERT_EQ(run("vernier fit data/machine.xml data/survey.csv -o fitted.xml --json fit.json"), 0) << said();
   const auto made = nlohmann::json::parse(read_file(folder + "/fit.json")).at("made_by");
