@@ -22,37 +22,42 @@ using Eigen::MatrixXd;
 
 /// Poses that may be chosen, and poses that uncertainty is looked at.
 constexpr std::size_t kOffered = 800, kJudged = 150;
+
+/// In the measuring frame, as the columns are.
+Eigen::Matrix3Xd points_of(const model::Machine& machine, const model::Measurement& rows) {
+  const Eigen::VectorXd predicted = model::predict(machine, rows);
+  return Eigen::Map<const Eigen::Matrix3Xd>(predicted.data(), 3, predicted.size() / 3);
+}
+
+/// How the parameters move the tool point over the volume, every tool of the file, but for a rigid motion.
+MatrixXd weight_of(const model::Machine& machine, const PlannedParameters& planned) {
+  std::vector<model::Machine> tooled = {machine};
+  for (const model::Tool& tool : machine.tools) tooled.push_back(model::with_tool(machine, tool.point));
+  const model::Measurement rows = fit::point_readings(offered_poses(machine, kJudged, 7919));
+  const Index count = planned.scale.size();
+  MatrixXd weight = MatrixXd::Zero(count, count);
+  for (const model::Machine& one : tooled) {
+    const MatrixXd all =
+        MatrixXd(model::linearise(one, rows, planned.all).jacobian) * planned.scale.asDiagonal();
+    MatrixXd own = MatrixXd::Zero(all.rows(), all.cols());
+    own(Eigen::all, planned.own) = all(Eigen::all, planned.own);
+    const MatrixXd basis = maths::orthonormal(fit::rigid_motions(points_of(one, rows)), 1e-9, nullptr);
+    own -= basis * (basis.transpose() * own);
+    weight += own.transpose() * own / static_cast<double>(kJudged * tooled.size());
+  }
+  return weight;
+}
+
 class FirstPlanner {
  public:
   FirstPlanner(const model::Machine& machine, const FirstPlanOptions& options)
-      : machine_(machine), options_(options), offered_(offered_poses(machine, kOffered, 0)) {
-    const model::Measurement rows = fit::point_readings(offered_);
-    const model::ParameterSet parameters(machine, {""});
-    for (std::size_t i = 0; i < parameters.size(); ++i)
-      (parameters[i].kind == model::ParameterKind::kBaseShift ? shifts_ : own_)
-          .push_back(static_cast<Index>(i));
-    if (own_.empty())
-      throw text::InputError({machine.file, 0}, machine.name,
-                             "the machine file has no free parameter that could be measured");
-    const MatrixXd all(model::linearise(machine, rows, parameters).jacobian);
-    // In units of what each parameter may plausibly be: what moves the tool point by so much, rms.
-    scale_ = Eigen::VectorXd::Ones(all.cols());
-    for (Index j = 0; j < all.cols(); ++j) {
-      const double size = all.col(j).norm() / std::sqrt(static_cast<double>(kOffered));
-      constexpr double kFree = 1e4;  // a set-up may be anything
-      const bool shift = std::find(shifts_.begin(), shifts_.end(), j) != shifts_.end();
-      if (size > 0) scale_[j] = (shift ? kFree : 1) * 1e-3 * options.expected_um / size;
-    }
-    jacobian_ = all * scale_.asDiagonal();
-    judge(parameters);
-  }
+      : machine_(machine), options_(options), planned_(planned_parameters(machine, options.expected_um)) {}
 
   /// Of any poses.
   double uncertainty_um(const model::States& poses) const {
     const model::Measurement rows = fit::point_readings(poses);
-    const model::ParameterSet parameters(machine_, {""});
     const MatrixXd columns =
-        MatrixXd(model::linearise(machine_, rows, parameters).jacobian) * scale_.asDiagonal();
+        MatrixXd(model::linearise(machine_, rows, planned_.all).jacobian) * planned_.scale.asDiagonal();
     const MatrixXd information =
         MatrixXd::Identity(columns.cols(), columns.cols()) + columns.transpose() * columns / variance();
     return expanded_um(
@@ -61,7 +66,7 @@ class FirstPlanner {
 
   FirstPlan plan() {
     FirstPlan plan;
-    covariance_ = MatrixXd::Identity(jacobian_.cols(), jacobian_.cols());
+    covariance_ = MatrixXd::Identity(planned_.jacobian.cols(), planned_.jacobian.cols());
     plan.before_um = expanded_um(covariance_);
     plan.least_um = expanded_um(after_all());
     const std::vector<std::size_t> chosen = choose(plan);
@@ -73,34 +78,10 @@ class FirstPlanner {
   }
 
  private:
-  /// How the parameters move the tool point over the volume, every tool of the file, but for a rigid motion.
-  void judge(const model::ParameterSet& parameters) {
-    std::vector<model::Machine> tooled = {machine_};
-    for (const model::Tool& tool : machine_.tools) tooled.push_back(model::with_tool(machine_, tool.point));
-    const model::Measurement rows = fit::point_readings(offered_poses(machine_, kJudged, 7919));
-    weight_ = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
-    for (const model::Machine& one : tooled) {
-      const MatrixXd all = MatrixXd(model::linearise(one, rows, parameters).jacobian) * scale_.asDiagonal();
-      MatrixXd own = MatrixXd::Zero(all.rows(), all.cols());
-      own(Eigen::all, own_) = all(Eigen::all, own_);
-      const MatrixXd basis = maths::orthonormal(fit::rigid_motions(points_of(one, rows)), 1e-9, nullptr);
-      own -= basis * (basis.transpose() * own);
-      weight_ += own.transpose() * own / static_cast<double>(kJudged * tooled.size());
-    }
-  }
-
-  /// In the measuring frame, as the columns are.
-  static Eigen::Matrix3Xd points_of(const model::Machine& machine, const model::Measurement& rows) {
-    const Eigen::VectorXd predicted = model::predict(machine, rows);
-    return Eigen::Map<const Eigen::Matrix3Xd>(predicted.data(), 3, predicted.size() / 3);
-  }
-
-  double expanded_um(const MatrixXd& covariance) const {
-    return 2 * maths::kUmPerMm * std::sqrt(std::max(0.0, covariance.cwiseProduct(weight_).sum()));
-  }
+  double expanded_um(const MatrixXd& covariance) const { return planned_.expanded_um(covariance); }
 
   double variance() const { return std::pow(1e-3 * options_.reading_um, 2); }
-  auto row(std::size_t pose) const { return jacobian_.middleRows(3 * static_cast<Index>(pose), 3); }
+  auto row(std::size_t pose) const { return planned_.jacobian.middleRows(3 * static_cast<Index>(pose), 3); }
 
   static void update(MatrixXd& covariance, const MatrixXd& row, double variance) {
     const MatrixXd gain = covariance * row.transpose();
@@ -109,13 +90,14 @@ class FirstPlanner {
   }
 
   MatrixXd after_all() const {
-    const MatrixXd information = MatrixXd::Identity(jacobian_.cols(), jacobian_.cols()) +
-                                 jacobian_.transpose() * jacobian_ / variance();
-    return maths::solve_positive(information, MatrixXd::Identity(jacobian_.cols(), jacobian_.cols()));
+    const MatrixXd information = MatrixXd::Identity(planned_.jacobian.cols(), planned_.jacobian.cols()) +
+                                 planned_.jacobian.transpose() * planned_.jacobian / variance();
+    return maths::solve_positive(information,
+                                 MatrixXd::Identity(planned_.jacobian.cols(), planned_.jacobian.cols()));
   }
 
   MatrixXd after_random(std::size_t count) const {
-    MatrixXd covariance = MatrixXd::Identity(jacobian_.cols(), jacobian_.cols());
+    MatrixXd covariance = MatrixXd::Identity(planned_.jacobian.cols(), planned_.jacobian.cols());
     for (std::size_t i = 0; i < count; ++i) update(covariance, row((i * 383 + 11) % kOffered), variance());
     return covariance;
   }
@@ -126,7 +108,7 @@ class FirstPlanner {
     const double enough = options_.accuracy_um.value_or(2 * options_.reading_um);
     std::vector<char> taken(kOffered, 0);
     while (chosen.size() < std::min(options_.most, kOffered) && now > enough) {
-      const MatrixXd in_volume = covariance_ * weight_ * covariance_;
+      const MatrixXd in_volume = covariance_ * planned_.weight * covariance_;
       double most = -1;
       std::size_t best = 0;
       for (std::size_t i = 0; i < kOffered; ++i) {
@@ -150,7 +132,7 @@ class FirstPlanner {
 
   /// A way through the poses, always to the nearest that is left; check poses and the first one in between.
   void order(const std::vector<std::size_t>& chosen, FirstPlan& plan) const {
-    const std::vector<std::size_t> way = nearest_way(machine_, offered_, chosen);
+    const std::vector<std::size_t> way = nearest_way(machine_, planned_.offered, chosen);
     const auto checks =
         static_cast<std::size_t>(std::ceil(options_.check_share * static_cast<double>(way.size())));
     const model::States extra = offered_poses(machine_, std::max<std::size_t>(1, checks), 104729);
@@ -164,17 +146,17 @@ class FirstPlanner {
     std::size_t next_check = 0;
     for (std::size_t i = 0; i < way.size(); ++i) {
       if (i > 0 && i % kReferenceEvery == 0) {
-        take(offered_, way.front(), false);
+        take(planned_.offered, way.front(), false);
         ++plan.references;
       }
-      take(offered_, way[i], false);
+      take(planned_.offered, way[i], false);
       if ((i + 1) * checks / way.size() > next_check) take(extra, next_check++, true);
     }
     if (way.size() > 1) {
-      take(offered_, way.front(), false);
+      take(planned_.offered, way.front(), false);
       ++plan.references;
     }
-    plan.states = model::select_states(offered_, std::vector<std::size_t>(rows.size(), 0));
+    plan.states = model::select_states(planned_.offered, std::vector<std::size_t>(rows.size(), 0));
     for (std::size_t i = 0; i < rows.size(); ++i)
       for (auto list : {&model::States::axis, &model::States::direction})
         for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis)
@@ -184,15 +166,37 @@ class FirstPlanner {
 
   const model::Machine& machine_;
   const FirstPlanOptions& options_;
-  model::States offered_;
-  std::vector<Index> shifts_, own_;
-  Eigen::VectorXd scale_;
-  MatrixXd jacobian_;    // of the poses offered, three rows each, in units of the scales
-  MatrixXd weight_;      // maps a covariance of the parameters to the tool point, mm^2
+  PlannedParameters planned_;
   MatrixXd covariance_;  // of the parameters, after the chosen poses
 };
 
 }  // namespace
+
+double PlannedParameters::expanded_um(const MatrixXd& covariance) const {
+  return 2 * maths::kUmPerMm * std::sqrt(std::max(0.0, covariance.cwiseProduct(weight).sum()));
+}
+
+PlannedParameters planned_parameters(const model::Machine& machine, double expected_um) {
+  PlannedParameters planned{model::ParameterSet(machine, {""}),  {}, {}, {},
+                            offered_poses(machine, kOffered, 0), {}, {}};
+  for (std::size_t i = 0; i < planned.all.size(); ++i)
+    (planned.all[i].kind == model::ParameterKind::kBaseShift ? planned.set_up : planned.own)
+        .push_back(static_cast<Index>(i));
+  if (planned.own.empty())
+    throw text::InputError({machine.file, 0}, machine.name,
+                           "the machine file has no free parameter that could be measured");
+  planned.jacobian = model::linearise(machine, fit::point_readings(planned.offered), planned.all).jacobian;
+  planned.scale = Eigen::VectorXd::Ones(planned.jacobian.cols());
+  for (Index j = 0; j < planned.jacobian.cols(); ++j) {
+    const double size = planned.jacobian.col(j).norm() / std::sqrt(static_cast<double>(kOffered));
+    constexpr double kFree = 1e4;  // a set-up may be anything
+    const bool shift = std::find(planned.set_up.begin(), planned.set_up.end(), j) != planned.set_up.end();
+    if (size > 0) planned.scale[j] = (shift ? kFree : 1) * 1e-3 * expected_um / size;
+  }
+  planned.jacobian = planned.jacobian * planned.scale.asDiagonal();
+  planned.weight = weight_of(machine, planned);
+  return planned;
+}
 
 FirstPlan first_plan(const model::Machine& machine, const FirstPlanOptions& options) {
   return FirstPlanner(machine, options).plan();

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/model/machine.h"
+#include "tools/model/parameters.h"
 #include "tools/model/states.h"
 
 namespace vernier::plan {
@@ -17,6 +20,23 @@ struct FirstPlanOptions {
   std::size_t most = 400;    // poses
   double check_share = 0.15;  // share of additional poses that only test the fit
 };
+
+/// The free parameters of a machine, in units of what each may plausibly be.
+struct PlannedParameters {
+  model::ParameterSet all;
+  std::vector<Eigen::Index> own, set_up;  // indices: of the machine, of its BaseShift
+  Eigen::VectorXd scale;                  // unit of each parameter
+  model::States offered;                  // poses over the working ranges, with both approach directions
+  Eigen::MatrixXd jacobian;               // of the tool point at these poses, three rows each, in the units
+  Eigen::MatrixXd weight;                 // maps a covariance in these units to the tool point, mm^2
+
+  /// Returns the expanded uncertainty (k = 2) of the tool point over the volume, um, without a rigid motion.
+  double expanded_um(const Eigen::MatrixXd& covariance) const;
+};
+
+/// Returns the parameters of a plan; a parameter may move the tool point by `expected_um`, rms over the
+/// volume. Throws InputError for an axis without a range, or without a free parameter.
+PlannedParameters planned_parameters(const model::Machine& machine, double expected_um);
 
 /// Poses to measure a machine at for the first time.
 struct FirstPlan {

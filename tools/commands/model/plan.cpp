@@ -15,6 +15,7 @@
 #include "tools/plan/first_plan.h"
 #include "tools/plan/plan.h"
 #include "tools/plan/sheets.h"
+#include "tools/plan/touch_plan.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/files.h"
 #include "tools/text/words.h"
@@ -106,6 +107,41 @@ void run_check_plan(const PlanArguments& arguments) {
   fmt::print(human_stream(arguments.json), "{}", plan::check_plan_text(plan, options.reading_um));
 }
 
+/// Which touches of an artefact determine the machine, and what none of them can.
+void run_touch_plan(const PlanArguments& arguments) {
+  const model::Machine machine = model::parse_machine(text::read_file(arguments.machine), arguments.machine);
+  plan::TouchPlanOptions options;
+  options.reading_um = arguments.reading_um.value_or(options.reading_um);
+  if (arguments.expected_um > 0) options.expected_um = arguments.expected_um;
+  if (arguments.points > 0) options.points = arguments.points;
+  const plan::TouchPlan plan = plan::touch_plan(machine, arguments.artefact, options);
+  if (arguments.accuracy_um > 0 && plan.after_um > arguments.accuracy_um)
+    throw text::LimitNotMet(fmt::format(
+        "{:g} um cannot be reached: {} touches of {} lead to {:.3g} um, all to {:.3g} um",
+        arguments.accuracy_um, plan.states.count, arguments.artefact, plan.after_um, plan.least_um));
+  Json json = {{"machine", machine.name},
+               {"artefact", arguments.artefact},
+               {"points", plan.states.count},
+               {"u95_before_um", plan.before_um},
+               {"u95_um", plan.after_um},
+               {"u95_least_um", plan.least_um},
+               {"place_mm", std::vector<double>(plan.place_mm.data(), plan.place_mm.data() + 3)},
+               {"place_is_assumed", plan.place_is_assumed},
+               {"size_known", plan.has_length},
+               {"not_seen", plan.not_seen},
+               {"rows", Json::array()}};
+  for (std::size_t row = 0; row < plan.states.count; ++row)
+    json["rows"].push_back(pose_json(machine, plan.states, row));
+  if (!arguments.output.empty())
+    text::write_file(arguments.output,
+                     plan::touch_plan_csv(machine, plan, arguments.artefact, options.reading_um));
+  if (!arguments.gcode.empty())
+    text::write_file(arguments.gcode,
+                     plan::poses_gcode(machine, plan.states, "touches of " + arguments.artefact));
+  write_json(arguments.json, json);
+  fmt::print(human_stream(arguments.json), "{}", plan::touch_plan_text(plan, arguments.artefact));
+}
+
 /// Without measurements: where to measure a machine for the first time.
 void run_first_plan(const PlanArguments& arguments) {
   if (!arguments.separate.empty())
@@ -151,6 +187,11 @@ void run_plan(const PlanArguments& arguments) {
   if (arguments.check && !(arguments.measurements.empty() && arguments.separate.empty()))
     throw text::InputError({}, "--check", "--check needs only the fitted machine, no measurements");
   if (arguments.check) return run_check_plan(arguments);
+  if (!arguments.artefact.empty()) {
+    if (!arguments.measurements.empty() || !arguments.separate.empty())
+      throw text::InputError({}, "--artefact", "--artefact needs only the machine file, no measurements");
+    return run_touch_plan(arguments);
+  }
   const bool aimed = !arguments.part.path.empty() || !arguments.region.empty() || !arguments.tool.empty();
   if (aimed && !arguments.separate.empty())
     throw text::InputError(
@@ -241,6 +282,9 @@ void register_plan(CLI::App& vernier) {
       ->check(CLI::PositiveNumber);
   command->add_flag("--check", arguments->check,
                     "the few poses of a `vernier check` of a fitted machine (default: 10 points)");
+  command->add_option("--artefact", arguments->artefact,
+                      "touches of this <artefact> of the machine file (default: 40 at most), and what no "
+                      "touch of it determines");
   command
       ->add_option("--part", arguments->part.path,
                    "accuracy for the features of this part (CSV, or a part program)")

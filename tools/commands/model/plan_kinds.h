@@ -12,7 +12,7 @@
 namespace vernier::commands::plan_cli {
 
 struct PlanArguments {
-  std::string machine, output, gcode, json, images, region, tool;
+  std::string machine, output, gcode, json, images, region, tool, artefact;
   std::vector<std::string> measurements, separate, effects;
   part_cli::PartSource part;
   std::size_t points = 0;
