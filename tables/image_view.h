@@ -59,7 +59,8 @@ class ImageView {
   const char* name() const noexcept { return name_; }
   View<AxisRecord> axes() const noexcept { return axes_; }
   View<InputRecord> inputs() const noexcept { return inputs_; }
-  /// Shares of the effects and their names, for Compensator::shares.
+  /// The equation of the contribution of each effect to the correction, for run_shares. share_names: the
+  /// names of the effects, in the same order.
   const ShareProgram& shares() const noexcept { return shares_; }
   View<ShareName> share_names() const noexcept { return share_names_; }
   /// Ready for Compensator.

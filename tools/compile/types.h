@@ -152,7 +152,7 @@ struct LoweredTable {
   ErrorTable view() const { return {records.data(), pieces, columns, degree, grid_multiplier, grid_shift}; }
 };
 
-/// A fixed-point program with its memory.
+/// A fixed-point program that owns its arrays (`Program` in comp/compensator.h only refers to arrays).
 struct LoweredProgram {
   std::vector<std::int32_t> constants;
   std::vector<Channel> channels;

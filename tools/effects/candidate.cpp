@@ -217,8 +217,7 @@ class Maker {
       const std::size_t next = mark == "across2" ? 2 : 1;
       wave = gravity_->across(place, mark == "across" ? *choice_.toward : (own + next) % 3);
     }
-    if (!wave)
-      missing("only rotations that are proportional to one axis each, between the base and this place,");
+    if (!wave) missing("a chain of rotations from the base to this location, each proportional to one axis,");
     // A constant bend by gravity cannot be distinguished from the shape of the part.
     if (wave->is_constant() && choice_.form->place != PlaceRule::kBend)
       missing("a place where an axis changes what gravity does (here it is the same at every pose),");

@@ -50,9 +50,10 @@ std::pair<double, double> spread_interval(double spread, double freedom);
 /// method.
 std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings);
 
-/// Rotates and shifts the measured poses until their barycentres are nearest to the commanded poses (least
-/// squares, Kabsch 1976). Used for an instrument whose frame is not that of the robot. Throws InputError if
-/// the poses do not determine a frame (fewer than three poses, or all on one line).
+/// Rotates and shifts all measured poses together, so that the sum of the squared distances between measured
+/// and commanded positions is smallest (Kabsch 1976). Used for an instrument whose frame is not
+/// that of the robot. Throws InputError if the poses do not determine a frame (fewer than three poses, or all
+/// on one line).
 void align_to_commanded(std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate

@@ -89,7 +89,9 @@ std::optional<PoseReading> crossing(const Cycle& cycle, const std::vector<double
 PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations) {
   const std::vector<Cycle> cycles = cycles_of(readings);
   if (cycles.size() < 2)
-    throw text::InputError("one cycle (run) of the path: repeatability needs two, ISO 9283 asks for ten");
+    throw text::InputError(
+        "the readings contain fewer than two cycles (runs) of the path: repeatability needs two cycles, ISO "
+        "9283 asks for ten");
   std::vector<std::vector<double>> way;
   for (const Cycle& cycle : cycles) way.push_back(ways(cycle));
   PathResult result;

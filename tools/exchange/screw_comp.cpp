@@ -150,8 +150,10 @@ class LinePlacer {
 std::string way_out(double reached_um) {
   for (const double wider : {0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
     if (reached_um <= wider)
-      return fmt::format("; --tolerance {} would do, --component holds all of it", wider);
-  return "; --component holds all of it";
+      return fmt::format(
+          "; use --tolerance {}, or use --component: the LinuxCNC component applies the whole machine file",
+          wider);
+  return "; use --component: the LinuxCNC component applies the whole machine file";
 }
 
 }  // namespace

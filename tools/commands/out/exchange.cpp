@@ -169,7 +169,7 @@ CLI::App* add_import(CLI::App* parent, const char* kind, const char* what,
 
 void register_export(CLI::App& vernier) {
   CLI::App* parent =
-      vernier.add_subcommand("export", "Write the corrected machine in the format of a controller");
+      vernier.add_subcommand("export", "Write the corrections of a machine in the format of a controller");
   parent->require_subcommand(1);
   parent->footer(
       "What a table cannot express is refused with the reason; --leave-out writes the rest. The formats of\n"

@@ -25,7 +25,7 @@ struct EvidenceThresholds {
   /// variance). Searle 1992.
   double pose_chance = 1e-3;
   /// Degrees of freedom between and within poses that the test for a shared pose error requires. With fewer
-  /// degrees of freedom, the uncertainty of the variance exceeds a half (sqrt(2/10)).
+  /// degrees of freedom, the uncertainty of the variance exceeds 45 % (sqrt(2/10)).
   double pose_freedom = 10;
   /// Steps of an axis are even if they are multiples of the smallest step, to within this share of the
   /// smallest step. The value represents the positioning accuracy relative to the step of a measurement.
@@ -286,7 +286,7 @@ struct AcceptanceThresholds {
   /// A product of the search is rejected in two cases: fewer readings than this support it, or this share of
   /// its squares is in the span of failed effects.
   double witnesses = 10, copy_of_failed = 0.9;
-  /// Number of products that are tried with one additional factor.
+  /// Number of the best product terms that the search multiplies by one more factor.
   std::size_t extended = 25;
   /// Share of the noise by which two noise models may differ and still count as equal.
   double same_noise = 0.1;

@@ -8,8 +8,8 @@
 
 namespace vernier::fit {
 
-/// Information of a weighted Jacobian about its parameters. Observability is computed on columns scaled to
-/// unit length.
+/// Shows which parameters a weighted Jacobian determines, and how well. Observability is computed on columns
+/// scaled to unit length.
 struct Observability {
   Eigen::Index rank = 0;
   double condition = 0;  // of the scaled Jacobian, over the identified directions

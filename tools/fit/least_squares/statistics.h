@@ -36,7 +36,8 @@ std::optional<double> noise_um(const model::Measurement& m);
 /// The same for the rotations, urad.
 std::optional<double> noise_urad(const model::Measurement& m);
 
-/// Returns the unit of a weighted reading.
+/// Returns the length and the angle that a weighted reading of 1 represents: the rms of u over the fit rows,
+/// or 1 mm and 1 deg without u.
 NoiseUnit noise_unit(const model::Measurement& m);
 
 /// Returns the weight of each observation in a fit: 1/u, 1 if u is absent, 0 for check rows. The weight

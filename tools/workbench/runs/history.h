@@ -16,7 +16,7 @@ class CommandHistory {
   /// Reads the history of an earlier session. Throws InputError if the history cannot be read.
   explicit CommandHistory(const Project& project);
 
-  /// Adds an entry. result: JSON of the command; its rms_um and check_rms_um are kept.
+  /// Adds an entry. result: JSON of the command; the entry stores rms_um and check_rms_um of this JSON.
   void add(const std::string& typed, const PlannedCommand& command, const nlohmann::ordered_json& result);
   /// undo: undoes the last entry (its files are kept, the script omits it). redo: restores the first undone
   /// entry. Throws InputError if no such entry exists.
