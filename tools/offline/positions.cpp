@@ -161,7 +161,7 @@ model::States solved(const PositionTable& table, const model::Machine& machine, 
 
 std::string corrected_positions(const std::string& text, const std::string& file, const model::States& at,
                                 Corrector& corrector) {
-  refuse_corrected(text, file);
+  refuse_done(text, file, corrector.back());
   const PositionTable table(text, file);
   const model::Machine& machine = corrector.machine();
   std::vector<std::optional<std::size_t>> column_of(machine.axes.size());
@@ -189,7 +189,9 @@ std::string corrected_positions(const std::string& text, const std::string& file
     }
     return fmt::format("{:.{}f}", value, kDigits);
   };
-  std::string result = fmt::format("# {}: machine {}\n", kCorrectedMark, machine.name);
+  const char *mark = corrector.back() ? kBackMark : kCorrectedMark,
+             *undone = corrector.back() ? kCorrectedMark : kBackMark;
+  std::string result = fmt::format("# {}: machine {}\n", mark, machine.name);
   std::istringstream lines(text);
   std::size_t row = 0, number = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -198,7 +200,7 @@ std::string corrected_positions(const std::string& text, const std::string& file
     const bool head = number == table.csv().header_line;
     const bool data = row < table.csv().line.size() && number == table.csv().line[row];
     if (!head && !data) {
-      result += line + "\n";
+      if (line.find(undone) == std::string::npos) result += line + "\n";
       continue;
     }
     std::vector<std::string> cells;

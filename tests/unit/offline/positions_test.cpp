@@ -40,8 +40,25 @@ TEST(Positions, ComeToTheIdealPointAndBack) {
   EXPECT_LT((actual.col(0) - Eigen::Vector3d(100, 80, -100)).norm(), 1e-6);
   EXPECT_LT((actual.col(1) - Eigen::Vector3d(333.3, 90, -110)).norm(), 1e-6);
   EXPECT_GT(std::abs(states.axis[0][0] - 100), 0.001);
-  const CsvFile again = parse_csv(list_corrected(there.substr(there.find('\n') + 1), true), "back");
+  const CsvFile again = parse_csv(list_corrected(there, true), "back");
   EXPECT_NEAR(*parse_number(again.rows[1][1]), 333.3, 1e-6);
+}
+
+TEST(Positions, ConvertedBackMayBeCorrectedAgain) {
+  // GIVEN a corrected list
+  const std::string there = list_corrected("# a list\nX[mm],Y[mm],Z[mm]\n100,50,-20\n");
+  // WHEN it is converted back
+  const std::string back = list_corrected(there, true);
+  // THEN it is marked as such, and only a second conversion is refused
+  EXPECT_EQ(back.find(kCorrectedMark), std::string::npos);
+  EXPECT_NE(back.find("# a list\n"), std::string::npos);
+  EXPECT_THROW(list_corrected(back, true), InputError);
+  const std::string again = list_corrected(back);
+  EXPECT_EQ(again.find(kBackMark), std::string::npos);
+  EXPECT_THROW(list_corrected(again), InputError);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(*parse_number(parse_csv(again, "again").rows[0][axis]),
+                *parse_number(parse_csv(there, "there").rows[0][axis]), 1e-6);
 }
 
 TEST(Positions, TargetsAreSolvedFirst) {

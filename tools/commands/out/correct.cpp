@@ -168,9 +168,9 @@ void register_correct(CLI::App& vernier) {
                     "correct with all axes, tool point and tool direction; default: as in the machine file");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "What was corrected is marked, and refused a second time. Exit status 0 done, 1 bad input (nothing\n"
-      "written), 2 some position cannot be corrected with these axes, a target cannot be reached, or the\n"
-      "blocks of a program leave the corrected path by more than --deviation.");
+      "What was corrected, or converted back, is marked, and refused a second time. Exit status 0 done,\n"
+      "1 bad input (nothing written), 2 some position cannot be corrected with these axes, a target cannot\n"
+      "be reached, or the blocks of a program leave the corrected path by more than --deviation.");
   command->callback([arguments] { run_correct(*arguments); });
 }
 
