@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <Eigen/Geometry>
+#include <optional>
 #include <string>
 
 #include "tools/offline/corrector.h"
@@ -13,7 +15,10 @@ namespace vernier::offline {
 /// y z, optionally with rx ry rz (rotation vector) or i j k (tool direction). For such targets the inverse
 /// kinematics of the nominal chain gives the axes; their columns are written first. Throws InputError with
 /// file, line and word; LimitNotMet if a target cannot be reached.
+///
+/// place: of the targets' coordinates in workpiece coordinates, mm. Throws InputError if a place is given and
+/// the file has axis columns.
 std::string corrected_positions(const std::string& text, const std::string& file, const model::States& at,
-                                Corrector& corrector);
+                                Corrector& corrector, const std::optional<Eigen::Isometry3d>& place = {});
 
 }  // namespace vernier::offline

@@ -5,6 +5,7 @@
 
 #include "tests/unit/offline/machine.h"
 #include "tools/format/csv_file.h"
+#include "tools/kinematics/at.h"
 #include "tools/model/chain/chain.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
@@ -67,6 +68,24 @@ TEST(Positions, TargetsAreSolvedFirst) {
   EXPECT_NEAR(*parse_number(csv.rows[0][0]), 100, 0.1);
   EXPECT_NE(*parse_number(csv.rows[0][0]), 100);
   EXPECT_THROW(list_corrected("x[mm],y[mm],z[mm]\n9000,80,-100\n"), LimitNotMet);
+}
+
+TEST(Positions, TargetsOfAProgramArePlacedWithSixDegreesOfFreedom) {
+  const Machine machine = bridge();
+  const auto positions = [&](const std::string& text, const std::optional<Eigen::Isometry3d>& place) {
+    Corrector corrector(machine, {});
+    const CsvFile csv =
+        parse_csv(corrected_positions(text, "p.csv", at_rest(machine), corrector, place), "out");
+    return Eigen::Vector3d(*parse_number(csv.rows[0][0]), *parse_number(csv.rows[0][1]),
+                           *parse_number(csv.rows[0][2]));
+  };
+  // By hand: rZ = 90 turns x to y, rX = 90 then turns y to z.
+  const Eigen::Isometry3d place = kinematics::placement("100,80,-130,90,0,90", "place");
+  EXPECT_NEAR((positions("x[mm],y[mm],z[mm]\n30,0,0\n", place) -
+               positions("x[mm],y[mm],z[mm]\n100,80,-100\n", std::nullopt))
+                  .norm(),
+              0, 1e-6);
+  EXPECT_THROW(positions("X[mm],Y[mm],Z[mm]\n1,2,-3\n", place), InputError);
 }
 
 TEST(Positions, AreRefusedASecondTimeAndWithoutAnAxis) {
