@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tools/format/columns.h"
+#include "tools/model/chain/chain_rows.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
@@ -92,6 +93,18 @@ std::vector<double> number_list(const std::string& text, const std::vector<std::
   if (std::find(counts.begin(), counts.end(), result.size()) == counts.end())
     throw text::InputError({}, text, std::to_string(result.size()) + " numbers do not make " + what);
   return result;
+}
+
+Eigen::Isometry3d placement(const std::string& text, const std::string& what) {
+  Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+  if (text.empty()) return place;
+  std::vector<double> dof = number_list(text, {3, 4, 6}, what);
+  if (dof.size() == 4) dof.insert(dof.begin() + 3, 2, 0.0);  // the turn is rZ
+  dof.resize(6, 0);
+  const model::Frame frame = model::sixdof_frame({dof[0], dof[1], dof[2], dof[3], dof[4], dof[5]});
+  place.linear() = frame.rotation;
+  place.translation() = frame.origin;
+  return place;
 }
 
 }  // namespace vernier::kinematics

@@ -72,14 +72,16 @@ void Corrector::count(const model::States& states, const Eigen::MatrixXd& comman
   summary_.positions += states.count;
 }
 
-void refuse_corrected(const std::string& text, const std::string& file) {
-  const auto at = text.find(kCorrectedMark);
+void refuse_done(const std::string& text, const std::string& file, bool back) {
+  const char* mark = back ? kBackMark : kCorrectedMark;
+  const auto at = text.find(mark);
   if (at == std::string::npos) return;
   const auto line = 1 + static_cast<std::size_t>(
                             std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
   throw text::InputError(
-      {file, line}, kCorrectedMark,
-      "this file was already corrected; a second correction would reverse the sign of the error");
+      {file, line}, mark,
+      back ? "these positions are already those of an ideal machine; a second conversion would add the error"
+           : "this file was already corrected; a second correction would reverse the sign of the error");
 }
 
 }  // namespace vernier::offline

@@ -43,6 +43,7 @@ class Corrector {
   /// Adds positions to the summary.
   void count(const model::States& states, const Eigen::MatrixXd& commands);
   const CorrectionSummary& summary() const { return summary_; }
+  bool back() const { return options_.back; }
 
  private:
   const model::Machine& machine_;
@@ -51,10 +52,13 @@ class Corrector {
   CorrectionSummary summary_;
 };
 
-/// First words of the output, by which a file that was corrected before is recognised.
+/// First words of the output, by which a file that was corrected before is recognised, and a file that was
+/// converted back.
 inline constexpr const char* kCorrectedMark = "corrected by vernier";
+inline constexpr const char* kBackMark = "converted back by vernier";
 
-/// Throws InputError with the line if a text states that the text was already corrected.
-void refuse_corrected(const std::string& text, const std::string& file);
+/// Throws InputError with the line if a text states that the same was already done with it: corrected, or
+/// with `back` converted back.
+void refuse_done(const std::string& text, const std::string& file, bool back);
 
 }  // namespace vernier::offline

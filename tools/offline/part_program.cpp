@@ -397,7 +397,7 @@ class Translator {
 PartProgram corrected_program(const std::string& text, const std::string& file, const model::States& at,
                               const std::vector<char>& known, const PartProgramOptions& options,
                               Corrector& corrector) {
-  refuse_corrected(text, file);
+  refuse_done(text, file, false);
   return Translator(file, at, known, options, corrector).translate(text);
 }
 

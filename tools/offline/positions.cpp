@@ -133,9 +133,12 @@ model::Poses targets_of(const PositionTable& table, bool& with_direction) {
 }
 
 /// Axis positions at which the nominal chain has the tool at the targets.
-model::States solved(const PositionTable& table, const model::Machine& machine, model::States states) {
+model::States solved(const PositionTable& table, const model::Machine& machine, model::States states,
+                     const Eigen::Isometry3d& place) {
   bool with_direction = false;
-  const model::Poses target = targets_of(table, with_direction);
+  model::Poses target = targets_of(table, with_direction);
+  target.position = place * target.position;
+  for (Eigen::Matrix3d& rotation : target.rotation) rotation = place.linear() * rotation;
   kinematics::InverseOptions options;
   options.match = with_direction ? kinematics::Match::kDirection : kinematics::Match::kPosition;
   if (!with_direction && !kinematics::linear_axes(machine).empty())
@@ -160,8 +163,8 @@ model::States solved(const PositionTable& table, const model::Machine& machine, 
 }  // namespace
 
 std::string corrected_positions(const std::string& text, const std::string& file, const model::States& at,
-                                Corrector& corrector) {
-  refuse_corrected(text, file);
+                                Corrector& corrector, const std::optional<Eigen::Isometry3d>& place) {
+  refuse_done(text, file, corrector.back());
   const PositionTable table(text, file);
   const model::Machine& machine = corrector.machine();
   std::vector<std::optional<std::size_t>> column_of(machine.axes.size());
@@ -171,8 +174,11 @@ std::string corrected_positions(const std::string& text, const std::string& file
     found += column_of[i] ? 1 : 0;
   }
   model::States states = states_of(table, machine, at);
+  if (place && found > 0)
+    throw text::InputError({file, table.csv().header_line}, "--place",
+                           "needs targets x y z, not positions of axes");
   if (found == 0 && table.find(format::columns::kPoint.front()))
-    states = solved(table, machine, states);
+    states = solved(table, machine, states, place.value_or(Eigen::Isometry3d::Identity()));
   else
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       if (!column_of[i])
@@ -189,7 +195,9 @@ std::string corrected_positions(const std::string& text, const std::string& file
     }
     return fmt::format("{:.{}f}", value, kDigits);
   };
-  std::string result = fmt::format("# {}: machine {}\n", kCorrectedMark, machine.name);
+  const char *mark = corrector.back() ? kBackMark : kCorrectedMark,
+             *undone = corrector.back() ? kCorrectedMark : kBackMark;
+  std::string result = fmt::format("# {}: machine {}\n", mark, machine.name);
   std::istringstream lines(text);
   std::size_t row = 0, number = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -198,7 +206,7 @@ std::string corrected_positions(const std::string& text, const std::string& file
     const bool head = number == table.csv().header_line;
     const bool data = row < table.csv().line.size() && number == table.csv().line[row];
     if (!head && !data) {
-      result += line + "\n";
+      if (line.find(undone) == std::string::npos) result += line + "\n";
       continue;
     }
     std::vector<std::string> cells;

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "tools/format/columns.h"
@@ -173,12 +172,11 @@ PartDrawing parse_part(const std::string& text, const std::string& file) {
   return part;
 }
 
-PartDrawing placed_at(const PartDrawing& part, const Eigen::Vector3d& shift_mm, double turn_deg) {
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(turn_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+PartDrawing placed_at(const PartDrawing& part, const Eigen::Isometry3d& place) {
+  const Eigen::Matrix3d turn = place.linear();
   PartDrawing placed = part;
   for (PartFeature& feature : placed.features) {
-    feature.at = turn * feature.at + shift_mm;
+    feature.at = place * feature.at;
     feature.direction = turn * feature.direction;
     if (feature.tool) feature.tool = turn * *feature.tool;
   }

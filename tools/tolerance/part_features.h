@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -52,7 +52,7 @@ struct PartDrawing {
 /// InputError with file, line and word.
 PartDrawing parse_part(const std::string& text, const std::string& file);
 
-/// Returns the part after a motion: turned about the workpiece's z by `turn_deg`, then shifted, mm.
-PartDrawing placed_at(const PartDrawing& part, const Eigen::Vector3d& shift_mm, double turn_deg);
+/// Returns the part after a rigid motion, mm.
+PartDrawing placed_at(const PartDrawing& part, const Eigen::Isometry3d& place);
 
 }  // namespace vernier::tolerance

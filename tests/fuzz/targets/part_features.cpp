@@ -12,7 +12,7 @@ namespace {
 
 void take(Bytes bytes) {
   try {
-    placed_at(parse_part(text_of(bytes), "f.csv"), {1, 2, 3}, 30);
+    placed_at(parse_part(text_of(bytes), "f.csv"), Eigen::Isometry3d(Eigen::Translation3d(1, 2, 3)));
   } catch (const InputError& error) {
     expect_place(error.what(), "f.csv");
   }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/tolerance/plate.h"
+#include "tools/kinematics/at.h"
 #include "tools/model/chain/chain.h"
 #include "tools/text/error.h"
 #include "tools/tolerance/placed_part.h"
@@ -65,9 +66,17 @@ TEST(PartFeatures, BadOnesAreNamedByLineAndWord) {
 
 TEST(PartFeatures, TurnThenShift) {
   PartDrawing part = parse_part("feature,kind,x,y,z,nx,ny,nz\na,point,10,0,0,1,0,0\n", "p.csv");
-  part = placed_at(part, {100, 200, 300}, 90);
+  part = placed_at(part, kinematics::placement("100,200,300,90", "place"));
   EXPECT_NEAR((part.features[0].at - Eigen::Vector3d(100, 210, 300)).norm(), 0, 1e-12);
   EXPECT_NEAR((part.features[0].direction - Eigen::Vector3d(0, 1, 0)).norm(), 0, 1e-12);
+}
+
+TEST(PartFeatures, PlaceOfSixDegreesOfFreedomIsASixdofTransform) {
+  // By hand: rZ = 90 turns x to y, rX = 90 then turns y to z.
+  const Eigen::Isometry3d place = kinematics::placement("1,2,3,90,0,90", "place");
+  EXPECT_NEAR((place * Eigen::Vector3d(10, 0, 0) - Eigen::Vector3d(1, 2, 13)).norm(), 0, 1e-12);
+  EXPECT_NEAR((place * Eigen::Vector3d(0, 0, 10) - Eigen::Vector3d(1, -8, 3)).norm(), 0, 1e-12);
+  EXPECT_THROW(kinematics::placement("1,2,3,4,5", "place"), InputError);
 }
 
 TEST(PlacedPart, PointsStandOnTheSurface) {
@@ -92,7 +101,7 @@ TEST(PlacedPart, ATiltedToolTurnsTheRotaryAxes) {
   const Eigen::Vector3d tool = Eigen::Vector3d(0.3, 0.2, 1).normalized();
   PartDrawing part =
       parse_part("feature,kind,x,y,z,i,j,k,diameter\na,cylinder,10,20,60,0.3,0.2,1,20\n", "p.csv");
-  part = placed_at(part, middle, 0);
+  part = placed_at(part, Eigen::Isometry3d(Eigen::Translation3d(middle)));
   const PlacedPart placed = place_part(machine, part, at);
   const Poses poses = forward(nominal_machine(machine), placed.states);
   for (std::size_t i = 0; i < placed.states.count; ++i) {

@@ -302,8 +302,9 @@ void add_conformity(CLI::App& part) {
       ->add_option("MEAS", a->measurements,
                    "measurement files (CSV) to fit the machine to first; none: the state of its file")
       ->type_name(kReads);
-  command->add_option("--place", a->part.place,
-                      "zero of the list in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\" (mm, deg)");
+  command->add_option(
+      "--place", a->part.place,
+      "zero of the list in workpiece coordinates: \"X,Y,Z\", \"X,Y,Z,TURN\" or \"X,Y,Z,rX,rY,rZ\" (mm, deg)");
   command->add_option("--zero", a->part.zero,
                       "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
   command->add_option("--at", a->part.at,

@@ -31,10 +31,7 @@ tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine
           std::pair(source.form_mm, "--form")})
       if (value > 0) throw text::InputError({}, name, "needs a part program; in a list use its columns");
     tolerance::PartDrawing part = tolerance::parse_part(text, source.path);
-    if (!source.place.empty()) {
-      const std::vector<double> place = kinematics::number_list(source.place, {3, 4}, "--place");
-      part = tolerance::placed_at(part, {place[0], place[1], place[2]}, place.size() > 3 ? place[3] : 0);
-    }
+    part = tolerance::placed_at(part, kinematics::placement(source.place, "--place"));
     return tolerance::place_part(machine, part, at);
   }
   if (!source.place.empty())

@@ -289,8 +289,9 @@ void register_plan(CLI::App& vernier) {
       ->add_option("--part", arguments->part.path,
                    "accuracy for the features of this part (CSV, or a part program)")
       ->type_name(kReads);
-  command->add_option("--place", arguments->part.place,
-                      "zero of the part in workpiece coordinates: \"X,Y,Z\" or \"X,Y,Z,TURN\"");
+  command->add_option(
+      "--place", arguments->part.place,
+      "zero of the part in workpiece coordinates: \"X,Y,Z\", \"X,Y,Z,TURN\" or \"X,Y,Z,rX,rY,rZ\"");
   command->add_option("--zero", arguments->part.zero, "machine position of a part program's zero");
   command->add_option("--at", arguments->part.at,
                       "inputs, and positions of axes that the part does not need");

@@ -21,7 +21,7 @@ namespace vernier::commands::correct_cli {
 namespace {
 
 struct CorrectArguments {
-  std::string machine, path, output, json, at, zero, tool;
+  std::string machine, path, output, json, at, zero, tool, place;
   double deviation_um = 0.5;
   bool back = false, with_rotary = false, chords = false;
 };
@@ -86,10 +86,15 @@ void run_correct(const CorrectArguments& arguments) {
   std::string result;
   std::optional<double> path_um;  // of a program: how far its blocks leave the corrected path
   if (is_table(arguments.path, text)) {
-    result = offline::corrected_positions(text, arguments.path, at, corrector);
+    std::optional<Eigen::Isometry3d> place;
+    if (!arguments.place.empty()) place = kinematics::placement(arguments.place, "--place");
+    result = offline::corrected_positions(text, arguments.path, at, corrector, place);
   } else {
     if (arguments.back)
       throw text::InputError({arguments.path, 0}, "--back", "needs a CSV of positions, not a part program");
+    if (!arguments.place.empty())
+      throw text::InputError({arguments.path, 0}, "--place",
+                             "needs a list of targets; for a program use --zero");
     offline::PartProgramOptions program;
     program.deviation_mm = 1e-3 * arguments.deviation_um;
     program.arcs = !arguments.chords;
@@ -152,6 +157,9 @@ void register_correct(CLI::App& vernier) {
                       "inputs, and positions of the axes before a program begins: \"T=25,X=0,Z=100\"");
   command->add_option("--zero", arguments->zero,
                       "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
+  command->add_option("--place", arguments->place,
+                      "zero of the targets in workpiece coordinates: \"X,Y,Z\", \"X,Y,Z,TURN\" or "
+                      "\"X,Y,Z,rX,rY,rZ\" (mm, deg)");
   command->add_option("--tool", arguments->tool,
                       "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command
@@ -168,9 +176,9 @@ void register_correct(CLI::App& vernier) {
                     "correct with all axes, tool point and tool direction; default: as in the machine file");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "What was corrected is marked, and refused a second time. Exit status 0 done, 1 bad input (nothing\n"
-      "written), 2 some position cannot be corrected with these axes, a target cannot be reached, or the\n"
-      "blocks of a program leave the corrected path by more than --deviation.");
+      "What was corrected, or converted back, is marked, and refused a second time. Exit status 0 done,\n"
+      "1 bad input (nothing written), 2 some position cannot be corrected with these axes, a target cannot\n"
+      "be reached, or the blocks of a program leave the corrected path by more than --deviation.");
   command->callback([arguments] { run_correct(*arguments); });
 }
 
