@@ -145,16 +145,16 @@ class TouchPlanner {
     if (artefact_.place)
       shape_.point = Eigen::Map<const Vector3d>(artefact_.place->data());
     else
-      shape_.point = model::forward(model::nominal_machine(machine_), middle()).position.col(0);
+      shape_.point = middle_of_volume();
   }
 
-  model::States middle() const {
-    model::States states = model::select_states(planned_.offered, {0});
-    for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-      const auto range = model::work_range(machine_, axis);
-      states.axis[axis][0] = ((*range)[0] + (*range)[1]) / 2;
-    }
-    return states;
+  /// The tool point of an offered pose that is nearest to the mean of all: it can be reached.
+  Vector3d middle_of_volume() const {
+    const Eigen::Matrix3Xd points =
+        model::forward(model::nominal_machine(machine_), planned_.offered).position;
+    Index nearest = 0;
+    (points.colwise() - points.rowwise().mean()).colwise().squaredNorm().minCoeff(&nearest);
+    return points.col(nearest);
   }
 
   double tip() const {
@@ -220,11 +220,11 @@ class TouchPlanner {
 
   MatrixXd prior() const {
     const Index n = planned_.scale.size(), m = jacobian_.cols() - n;
-    constexpr double kAnywhere = 1e3;  // mm, rad: an unknown place may be anywhere
+    constexpr double kUnknown = 1e3;  // mm, rad: an unknown place may be anywhere
     MatrixXd covariance = MatrixXd::Identity(n + m, n + m);
     const model::ThingUnknowns known = model::known_values(artefact_, shape_).precision;
     for (Index k = 0; k < m; ++k)
-      covariance(n + k, n + k) = known[k] > 0 ? 1 / known[k] : kAnywhere * kAnywhere;
+      covariance(n + k, n + k) = known[k] > 0 ? 1 / known[k] : kUnknown * kUnknown;
     return covariance;
   }
 
@@ -321,8 +321,8 @@ std::string touch_plan_text(const TouchPlan& plan, const std::string& artefact) 
     text +=
         "The size of the machine cannot be found: no length is known. Give the radius of the artefact, or "
         "the distance of two points.\n";
-  constexpr std::size_t kNamed = 12;
-  const std::size_t more = plan.not_seen.size() - std::min(kNamed, plan.not_seen.size());
+  constexpr std::size_t kListed = 12;  // entries of a printed list
+  const std::size_t more = plan.not_seen.size() - std::min(kListed, plan.not_seen.size());
   const std::vector<std::string> named(plan.not_seen.begin(),
                                        plan.not_seen.end() - static_cast<std::ptrdiff_t>(more));
   if (!named.empty())

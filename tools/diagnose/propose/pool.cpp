@@ -47,7 +47,7 @@ bool is_position_times_another(const effects::EffectForm& form) {
 /// across the axis, then anywhere; last what has a position in it beside another quantity. The steps are far
 /// below any evidence.
 double rank_of(const effects::Candidate& candidate, double step) {
-  constexpr double kBesideAnother = 4;
+  constexpr double kBesideAnother = 4;  // steps: behind all places
   const effects::EffectForm& form = *candidate.choice.form;
   return step * (rank_of_place(form.place) + (is_position_times_another(form) ? kBesideAnother : 0));
 }
