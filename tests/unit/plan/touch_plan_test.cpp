@@ -25,10 +25,11 @@ model::Machine arm(const std::string& artefacts) {
   return model::parse_machine(R"XML(<machine name="arm"><variables>
   <static><a value="300" nominal="300" unit="mm"/><b value="200" nominal="200" unit="mm"/>
     <zero value="0" nominal="0" unit="deg"/><far value="0" nominal="0" unit="mm"/></static>
-  <machineaxes><P rotary="true" min="-170" max="170"/><Q rotary="true" min="-150" max="150"/></machineaxes>)XML" +
+  <machineaxes><P rotary="true" min="-170" max="170"/><Q rotary="true" min="-170" max="170"/>
+    <R rotary="true" min="-150" max="150"/></machineaxes>)XML" +
                                   artefacts + R"XML(
-  </variables><transforms branch="tool"><sixdof n="1" rZ="P" Z="far"/><sixdof n="2" X="a"/>
-    <sixdof n="3" rZ="Q+zero"/><sixdof n="4" X="b"/></transforms></machine>)XML",
+  </variables><transforms branch="tool"><sixdof n="1" Z="far" rZ="P"/><sixdof n="2" rY="Q"/>
+    <sixdof n="3" X="a"/><sixdof n="4" rY="R+zero"/><sixdof n="5" X="b"/></transforms></machine>)XML",
                               "arm.xml");
 }
 
@@ -69,7 +70,7 @@ TEST(TouchPlan, APointShowsAMachineOfThreeLinearAxesNothing) {
   EXPECT_THAT(touch_plan_text(plan, "p"), HasSubstr("do not determine: sq, sz"));
 }
 
-// An arm in a plane reaches a point elbow left and elbow right. A shift of the whole arm stays unseen.
+// An arm reaches a point elbow up and down, and over its back. A shift of the whole arm stays unseen.
 TEST(TouchPlan, APointFromAllPosturesShowsAnArmAllButItsSize) {
   const TouchPlan plan = touch_plan(arm(R"(<artefact name="p" type="point"/>)"), "p");
   EXPECT_FALSE(plan.has_length);
