@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <ranges>
 
 #include "tools/fit/convention.h"
 #include "tools/fit/coverage/alternatives.h"
@@ -103,16 +102,15 @@ StatedPriors stated_priors(FitResult& result, const FitOptions& options, const C
 /// are held. Returns true if rotations are held now.
 bool hold_turned_away(const Settled& end, Convention& convention) {
   constexpr double kAligned_deg = 5;  // an instrument that is aligned to a machine by eye
-  const auto unseen = [&](std::size_t i) { return convention.unseen_turn[i]; };
-  const auto away = [&](std::size_t i) {
+  bool away = false;
+  for (std::size_t i = 0; i < convention.unseen_turn.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    return unseen(i) && std::abs(end.point[at] - convention.centre[at]) >= kAligned_deg;
-  };
-  const auto all = std::views::iota(std::size_t{0}, convention.unseen_turn.size());
-  if (std::ranges::none_of(all, away)) return false;
-  for (const std::size_t i : all | std::views::filter(unseen))
-    convention.scale[static_cast<Eigen::Index>(i)] = kHeldTurn_deg;
-  return true;
+    away = away ||
+           (convention.unseen_turn[i] && std::abs(end.point[at] - convention.centre[at]) >= kAligned_deg);
+  }
+  for (std::size_t i = 0; away && i < convention.unseen_turn.size(); ++i)
+    if (convention.unseen_turn[i]) convention.scale[static_cast<Eigen::Index>(i)] = kHeldTurn_deg;
+  return away;
 }
 
 /// A model without free parameters: only its residual is computed.

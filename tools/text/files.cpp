@@ -24,7 +24,7 @@ FileHooks& hooks() {
 
 }  // namespace
 
-void set_file_hooks(FileHooks of_process) { hooks() = std::move(of_process); }
+void set_file_hooks(FileHooks hooks) { text::hooks() = std::move(hooks); }
 
 std::string read_file(const std::string& path) {
   if (std::filesystem::is_directory(path)) throw InputError({path, 0}, "", "is a folder, not a file");
