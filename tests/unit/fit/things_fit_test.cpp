@@ -10,6 +10,7 @@
 #include <random>
 
 #include "tools/fit/fit.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
