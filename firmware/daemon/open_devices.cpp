@@ -130,7 +130,7 @@ std::unique_ptr<OutputDevice> open_modbus_out(const std::vector<OutputAxis>& axe
   constexpr std::int64_t kLast = 65535;
   settings.unit = static_cast<int>(first.whole("unit", 1, 1, 247));
   settings.echo = static_cast<int>(first.whole("echo", 0, kLast));
-  settings.period = TimeUs(1000 * first.whole("period_ms", 5, 1, 50));
+  settings.period = TimeUs(1000 * first.whole("period_ms", 5, 1, ModbusOutputSettings::kLongestPeriod_ms));
   settings.timeout = TimeUs(1000 * first.whole("timeout_ms", 100, 2, 10'000));
   if (settings.timeout.count < 4 * settings.period.count)
     first.fail("timeout_ms must be at least four times period_ms");

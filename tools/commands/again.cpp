@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -16,13 +13,13 @@
 #include "tools/commands/command.h"
 #include "tools/commands/provenance.h"
 #include "tools/text/error.h"
+#include "tools/text/process.h"
+#include "tools/text/words.h"
 
 namespace vernier::commands::again_cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string as_text(const std::string& text) { return text; }
 
 struct Arguments {
   std::string file, json;
@@ -65,31 +62,26 @@ class Mirror {
   std::string root_;
 };
 
-/// Runs this program in a folder, without output. Returns its exit status.
+/// Runs this program in a folder. Returns its exit status.
 int run_in(const fs::path& folder, const std::vector<std::string>& words) {
-  std::vector<std::string> all = {"vernier"};
-  all.insert(all.end(), words.begin(), words.end());
-  std::vector<char*> argv;
-  for (std::string& word : all) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  const pid_t child = fork();
-  if (child < 0) throw std::runtime_error("no process can be started");
-  if (child == 0) {
-    const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
-    if (nothing < 0 || chdir(folder.c_str()) != 0) _exit(127);
-    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, stream);
-    execv("/proc/self/exe", argv.data());
-    _exit(127);
-  }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // that the command may print
+  text::RunningProcess running;
+  return text::run_process(
+             "/proc/self/exe", words, folder.string(), kMostBytes, [](std::string_view) {}, running)
+      .exit;
 }
 
-void replace_all(std::string& text, const std::string& what, const std::string& by) {
-  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
-    text.replace(at, what.size(), by);
+/// Position of the path in a word of a command line: FILE, --option=FILE, -oFILE.
+std::size_t path_begin(const std::string& word) {
+  constexpr std::size_t kShortOption = 2;
+  if (word.starts_with("--")) return word.find('=') == std::string::npos ? 0 : word.find('=') + 1;
+  return word.starts_with('-') && word.size() > kShortOption ? kShortOption : 0;
+}
+
+/// Replaces a text as it stands in a page, and as it stands in the record of the page.
+void replace_in_file(std::string& text, const std::string& what, const std::string& by) {
+  text::replace_all(text, what, by);
+  text::replace_all(text, in_comment(what), in_comment(by));
 }
 
 /// The first difference of two texts.
@@ -187,10 +179,9 @@ class Again {
   /// The text as this command would have written it at the place of the file.
   std::string as_made(const fs::path& made, const Mirror& mirror) const {
     std::string text = text::read_file(made.string());
-    for (const auto written : {as_text, in_comment}) replace_all(text, written(mirror.root()), "");
+    replace_in_file(text, mirror.root(), "");
     if (const std::optional<Provenance> by = provenance_of(text, made.string()))
-      for (const auto written : {as_text, in_comment})
-        replace_all(text, written(by->program), written(made_.program));
+      replace_in_file(text, by->program, made_.program);
     return text;
   }
 
@@ -221,22 +212,15 @@ class Again {
 
   /// A word of the command line can name an output in a folder that exists: so it exists in the mirror.
   void make_folder_of(const std::string& word, const Mirror& mirror) const {
-    const auto value = word.starts_with("--") ? word.find('=') : std::string::npos;
-    const fs::path folder = at(value == std::string::npos ? word : word.substr(value + 1)).parent_path();
+    const fs::path folder = at(word.substr(path_begin(word))).parent_path();
     std::error_code none;
     if (fs::is_directory(folder, none)) fs::create_directories(mirror.of(folder));
   }
 
   /// An absolute path in the command line moves into the mirror.
   static void move(std::string& word, const Mirror& mirror) {
-    const auto value = word.starts_with("--") ? word.find("=/") : std::string::npos;
-    constexpr std::size_t kShortOption = 2;  // -o/a/file
-    if (word.starts_with('/'))
-      word = mirror.root() + word;
-    else if (value != std::string::npos)
-      word.insert(value + 1, mirror.root());
-    else if (word.size() > kShortOption && word.starts_with('-') && word[kShortOption] == '/')
-      word.insert(kShortOption, mirror.root());
+    const std::size_t begin = path_begin(word);
+    if (begin < word.size() && word[begin] == '/') word.insert(begin, mirror.root());
   }
 
   std::string file_, content_;

@@ -13,14 +13,10 @@
 #include "tools/format/columns.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
+#include "tools/text/words.h"
 
 namespace vernier::effects {
 namespace {
-
-void replace_all(std::string& text, std::string_view what, const std::string& with) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
-    text.replace(at, what.size(), with);
-}
 
 /// Returns the text without the characters that a name may not have.
 std::string plain(std::string_view text) {
@@ -355,11 +351,11 @@ class Maker {
   }
 
   std::string unit(std::string text, const DofPlace& at) const {
-    replace_all(text, "{dof}", is_angle(machine_, at) ? "deg" : "mm");
-    if (choice_.axis) replace_all(text, "{q}", machine_.axes[*choice_.axis].rotary ? "deg" : "mm");
+    text::replace_all(text, "{dof}", is_angle(machine_, at) ? "deg" : "mm");
+    if (choice_.axis) text::replace_all(text, "{q}", machine_.axes[*choice_.axis].rotary ? "deg" : "mm");
     if (!choice_.units.empty())
       for (const char* mark : {"{T}", "{L}", "{F}", "{V}"})
-        replace_all(text, mark, choice_.units[0].empty() ? "1" : choice_.units[0]);
+        text::replace_all(text, mark, choice_.units[0].empty() ? "1" : choice_.units[0]);
     if (text == "mm/mm" || text == "deg/deg" || text == "{}") return {};
     return text;
   }

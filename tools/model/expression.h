@@ -137,6 +137,11 @@ bool any_node(const Expr& expr, const Is& is) {
   return found;
 }
 
+/// True if the node is a symbol with this name.
+inline bool is_symbol(const Expr& node, std::string_view name) {
+  return node.op == Op::kSymbol && node.name == name;
+}
+
 /// True if the expression depends on the symbol.
 inline bool has_symbol(const Expr& expr, const Symbol& symbol) {
   return any_node(expr, [&](const Expr& node) { return node.op == Op::kSymbol && node.symbol == symbol; });

@@ -68,14 +68,26 @@ std::vector<std::size_t> nearest_way(const model::Machine& machine, const model:
   return way;
 }
 
+std::string input_headings(const model::Machine& machine) {
+  std::string text;
+  for (const model::Input& input : machine.inputs)
+    text += input.unit.empty() ? input.name + "," : fmt::format("{}[{}],", input.name, input.unit);
+  return text;
+}
+
+std::string input_references(const model::Machine& machine) {
+  std::string text;
+  for (const model::Input& input : machine.inputs) text += fmt::format("{:g},", input.reference);
+  return text;
+}
+
 std::string pose_rows_csv(const model::Machine& machine, const model::States& states,
                           const std::vector<char>& check, double reading_um, const std::string& run) {
   std::string text;
   for (const model::Axis& axis : machine.axes)
     for (const auto quantity : {format::AxisQuantity::kPosition, format::AxisQuantity::kSense})
       text += format::axis_heading(quantity, axis.name, axis.rotary) + ",";
-  for (const model::Input& input : machine.inputs)
-    text += input.unit.empty() ? input.name + "," : fmt::format("{}[{}],", input.name, input.unit);
+  text += input_headings(machine);
   namespace columns = format::columns;
   text += format::headings(columns::kPoint) + "," +
           format::headings(std::array{columns::kUncertainty, columns::kRun, columns::kRole}) + "\n";
@@ -83,7 +95,7 @@ std::string pose_rows_csv(const model::Machine& machine, const model::States& st
     const auto at = static_cast<Index>(row);
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       text += fmt::format("{:.6g},{:g},", states.axis[i][at], states.direction[i][at]);
-    for (const model::Input& input : machine.inputs) text += fmt::format("{:g},", input.reference);
+    text += input_references(machine);
     text += fmt::format(",,,{:g},{},{}\n", 1e-3 * reading_um, run, check[row] != 0 ? "check" : "fit");
   }
   return text;

@@ -19,6 +19,11 @@ model::States offered_poses(const model::Machine& machine, std::size_t count, st
 std::vector<std::size_t> nearest_way(const model::Machine& machine, const model::States& offered,
                                      const std::vector<std::size_t>& chosen);
 
+/// Returns the headings of the inputs in a measurement file, and cells with their references: each with a
+/// comma.
+std::string input_headings(const model::Machine& machine);
+std::string input_references(const model::Machine& machine);
+
 /// Returns the rows of a measurement file with x, y, z to be filled in; check: the role of each; reading_um:
 /// u of a coordinate.
 std::string pose_rows_csv(const model::Machine& machine, const model::States& states,

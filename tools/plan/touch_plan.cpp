@@ -112,7 +112,6 @@ class TouchPlanner {
     TouchPlan plan;
     plan.place_mm = shape_.point;
     plan.place_is_assumed = !artefact_.place;
-    plan.radius_mm = artefact_.has_radius() ? shape_.radius : 0;
     covariance_ = prior();
     plan.before_um = expanded_um(covariance_);
     std::vector<std::size_t> all(postures_.count);
@@ -337,14 +336,13 @@ std::string touch_plan_csv(const model::Machine& machine, const TouchPlan& plan,
       "# Replace the positions of the axes by those at the touch. Check the poses for collisions.\n";
   for (const model::Axis& axis : machine.axes)
     text += format::axis_heading(format::AxisQuantity::kPosition, axis.name, axis.rotary) + ",";
-  for (const model::Input& input : machine.inputs)
-    text += input.unit.empty() ? input.name + "," : fmt::format("{}[{}],", input.name, input.unit);
+  text += input_headings(machine);
   text += std::string(format::columns::kOn) + "," +
           format::headings(std::array{format::columns::kUncertainty}) + "\n";
   for (std::size_t row = 0; row < plan.states.count; ++row) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       text += fmt::format("{:.4f},", plan.states.axis[i][static_cast<Index>(row)]);
-    for (const model::Input& input : machine.inputs) text += fmt::format("{:g},", input.reference);
+    text += input_references(machine);
     text += fmt::format("{},{:g}\n", artefact, 1e-3 * reading_um);
   }
   return text;

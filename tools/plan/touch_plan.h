@@ -20,7 +20,6 @@ struct TouchPlan {
   model::States states;           // in the order in which they are measured
   Eigen::Vector3d place_mm;       // of the artefact, workpiece coordinates; of the file if it is known there
   bool place_is_assumed = false;  // the file does not know the place: the middle of the volume
-  double radius_mm = 0;           // of a sphere or cylinder
   double before_um = 0, after_um = 0;  // expanded uncertainty of the tool point over the volume (k = 2)
   double least_um = 0;                 // from all touches that were looked at: lower limit of this artefact
   /// Parameters that no touch of this artefact determines: their uncertainty stays.

@@ -54,6 +54,11 @@ std::string with_question_marks(std::string_view text, bool without_controls) {
 
 }  // namespace
 
+void replace_all(std::string& text, std::string_view what, std::string_view with) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
+    text.replace(at, what.size(), with);
+}
+
 std::string printable(std::string_view text) { return with_question_marks(text, true); }
 
 std::string utf8_only(std::string_view text) { return with_question_marks(text, false); }

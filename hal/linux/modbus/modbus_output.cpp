@@ -15,8 +15,8 @@ using std::chrono::microseconds;
 
 constexpr std::size_t kDelayBins = 10'000;  // of 0.1 ms: one second
 constexpr int kTries = 10;                  // of the first exchange
-/// Another board writes at least once in its period, which is at most this long (board_file.cpp).
-constexpr TimeUs kLongestPeriod(50'000);
+/// Another board writes at least once in its period.
+constexpr std::chrono::milliseconds kLookForAnother(4 * ModbusOutputSettings::kLongestPeriod_ms);
 
 std::int64_t ns_of(Steady::time_point when) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(when.time_since_epoch()).count();
@@ -65,7 +65,7 @@ std::string ModbusOutput::begin() {
   };
   std::uint16_t before = 0, after = 0;
   if (!look(before)) return "the controller does not answer, or has no such register";
-  for (const auto end = Clock::now() + 4 * span_of(kLongestPeriod); Clock::now() < end;) {
+  for (const auto end = Clock::now() + kLookForAnother; Clock::now() < end;) {
     std::this_thread::sleep_for(span_of(settings_.period));
     if (!look(after)) return "the controller does not answer";
     if (before != after) return "in use: another board writes the sequence number";
@@ -164,9 +164,10 @@ void ModbusOutput::judge(bool answered, std::uint16_t echo, Clock::time_point no
   losses_ += silent || corrects ? 1 : 0;
 }
 
-/// Has the controller still one of the blocks since the last one that it surely took? A controller that was
-/// restarted has not, and applies no correction. False as well: it does not answer.
-bool ModbusOutput::controller_kept_the_block() {
+/// Reads the block's sequence number after an exchange without an answer; false: no answer. A controller that
+/// was restarted has none of the blocks since the last one that it surely took, and applies no correction: a
+/// loss.
+bool ModbusOutput::find_restart() {
   std::uint16_t now = 0;
   if (!line_->read(settings_.unit, ModbusLine::Registers::kHolding, settings_.address, 1, &now)) return false;
   if (static_cast<std::uint16_t>(now - kept_) <= static_cast<std::uint16_t>(sequence_ - kept_)) return true;
@@ -180,7 +181,7 @@ bool ModbusOutput::controller_kept_the_block() {
 void ModbusOutput::exchange(bool last) {
   const Clock::time_point began = Clock::now();
   const bool ticks_are_on = ticks_run(began);
-  if (unanswered_ && !last && !controller_kept_the_block()) {
+  if (unanswered_ && !last && !find_restart()) {
     {
       const std::scoped_lock lock(guard_);
       ++exchanges_, ++failed_;

@@ -22,6 +22,8 @@ struct ModbusOutputSettings {
   static constexpr int kSequence = RegisterBlock::kSequence, kValid = RegisterBlock::kValid,
                        kValues = RegisterBlock::kValues, kPlaces = RegisterBlock::kPlaces;
 
+  static constexpr int kLongestPeriod_ms = 50;
+
   struct Axis {
     AnalogueScale scale;                     // the register holds code - scale.zero
     int place = 0;                           // 0 .. kPlaces - 1
@@ -87,7 +89,7 @@ class ModbusOutput : public OutputDevice {
   std::string begin();
   void run();
   void exchange(bool last = false);
-  bool controller_kept_the_block();
+  bool find_restart();
   void choose_values(Clock::time_point now, bool ticks_are_on);
   bool echo_is_new(std::uint16_t echo, Clock::time_point now) const;
   void judge(bool answered, std::uint16_t echo, Clock::time_point now, bool ticks_are_on);

@@ -75,6 +75,12 @@ Json plan_json(const plan::Plan& plan, double confidence) {
   return json;
 }
 
+Json poses_json(const model::Machine& machine, const model::States& states) {
+  Json rows = Json::array();
+  for (std::size_t row = 0; row < states.count; ++row) rows.push_back(pose_json(machine, states, row));
+  return rows;
+}
+
 /// A short measurement that sees the likeliest changes.
 void run_check_plan(const PlanArguments& arguments) {
   const model::Machine machine = read_model(arguments.machine);
@@ -90,8 +96,7 @@ void run_check_plan(const PlanArguments& arguments) {
                              {"change", one.change},
                              {"unit", one.quantity.unit},
                              {"tool_um", one.tool_um}});
-  for (std::size_t row = 0; row < plan.states.count; ++row)
-    json["rows"].push_back(pose_json(machine, plan.states, row));
+  json["rows"] = poses_json(machine, plan.states);
   const double worst = plan.shows.empty() ? 0 : plan.shows.front().tool_um;
   if (arguments.accuracy_um > 0 && (worst > arguments.accuracy_um || plan.shows.empty()))
     throw text::LimitNotMet(
@@ -130,8 +135,7 @@ void run_touch_plan(const PlanArguments& arguments) {
                {"size_known", plan.has_length},
                {"not_seen", plan.not_seen},
                {"rows", Json::array()}};
-  for (std::size_t row = 0; row < plan.states.count; ++row)
-    json["rows"].push_back(pose_json(machine, plan.states, row));
+  json["rows"] = poses_json(machine, plan.states);
   if (!arguments.output.empty())
     text::write_file(arguments.output,
                      plan::touch_plan_csv(machine, plan, arguments.artefact, options.reading_um));

@@ -19,9 +19,7 @@
 namespace vernier::diagnose {
 namespace {
 
-bool is_symbol(const model::Expr& node, std::string_view name) {
-  return node.op == model::Op::kSymbol && node.name == name;
-}
+using model::is_symbol;
 
 bool is_wave(const model::Expr& node) { return node.op == model::Op::kSin || node.op == model::Op::kCos; }
 

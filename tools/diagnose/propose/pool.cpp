@@ -37,8 +37,7 @@ double rank_of_place(effects::PlaceRule place) {
 /// well.
 bool is_position_times_another(const effects::EffectForm& form) {
   const auto is = [&](std::string_view name) {
-    return form.any(
-        [&](const model::Expr& node) { return node.op == model::Op::kSymbol && node.name == name; });
+    return form.any([&](const model::Expr& node) { return model::is_symbol(node, name); });
   };
   return is("{q}") && (form.asks_for_input() || is("t"));
 }
