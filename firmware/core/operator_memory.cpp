@@ -8,22 +8,28 @@
 namespace vernier {
 namespace {
 
+constexpr std::uint8_t kErased = 0xff;  // flash memory
+
 std::uint32_t number_of(const Wiring::Axis& axis) noexcept {
   return operator_axis(axis.name.c_str(), static_cast<std::uint32_t>(axis.name.size()));
 }
 
 }  // namespace
 
-// Erased flash reads as ones. A store of an earlier version has no such place.
+// Erased flash reads as ones. A store of an earlier version has no such place. A file that is longer than a
+// record was not written by this board.
 OperatorPlace OperatorMemory::read(std::uint32_t number) noexcept {
   OperatorPlace place;
-  std::uint8_t bytes[sizeof(OperatorRecord)];
+  constexpr std::uint32_t kSize = sizeof(OperatorRecord);
+  std::uint8_t bytes[kSize + 1];
   const HalFault first = store_.read_record(number, bytes, 1);
   if (first == HalFault::kNoReading || first == HalFault::kNoDevice) return place;
   place.written = true;
-  if (store_.read_record(number, bytes, sizeof(bytes)) != HalFault::kNone) return place;
+  if (store_.read_record(number, bytes, kSize + 1) == HalFault::kNone && bytes[kSize] != kErased)
+    return place;
+  if (store_.read_record(number, bytes, kSize) != HalFault::kNone) return place;
   place.written = false;
-  for (const std::uint8_t byte : bytes) place.written = place.written || byte != 0xff;
+  for (std::uint32_t i = 0; i < kSize; ++i) place.written = place.written || bytes[i] != kErased;
   std::memcpy(&place.record, bytes, sizeof(place.record));
   return place;
 }

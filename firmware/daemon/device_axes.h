@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
 
 #include "comp/quantity.h"
 #include "firmware/daemon/settings/signal_source.h"
 
 namespace vernier {
+
+class ModbusLine;
+class OutputDevice;
 
 /// An axis whose correction leaves through an output.
 struct OutputAxis {
@@ -20,5 +26,12 @@ struct PositionAxis {
   const SignalSource* source = nullptr;
   bool rotary = false;
 };
+
+/// Opens a device whose settings are read and checked already. Null with `error` set if it is missing.
+/// Not real-time safe.
+template <class Device, class Pointer = std::unique_ptr<Device>>
+using Opener = std::function<Pointer(std::string& error)>;
+using OutputOpener = Opener<OutputDevice>;
+using ModbusLineOpener = Opener<ModbusLine, std::shared_ptr<ModbusLine>>;
 
 }  // namespace vernier

@@ -53,6 +53,12 @@ struct RealOutput {
   std::uint32_t number;  // of the axis in the device
 };
 
+/// An output of the board file with its settings read. open: empty for a simulated output.
+struct NamedOutput {
+  std::vector<std::uint32_t> axes;  // of the board, in the device's order
+  OutputOpener open;
+};
+
 }  // namespace
 
 struct Devices::Parts {
@@ -90,15 +96,21 @@ struct Devices::Parts {
   void note_file(const std::string& name, const std::string& missing) {
     findings.push_back({name, missing, {}, true});
   }
+  /// Moves the findings from `first` to the end to the place `to`.
+  void list_at(std::size_t to, std::size_t first) {
+    const auto at = [&](std::size_t i) { return findings.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::rotate(at(to), at(first), findings.end());
+  }
   void make_plant(unsigned long seed);
   void make_bus(const std::string& interface, std::vector<Route<AxisReader>>& routes);
   void make_drives(const std::string& interface, std::vector<Route<AxisReader>>& routes);
   void make_register_axes(const std::string& block, std::vector<Route<AxisReader>>& routes);
   void make_counter(std::uint32_t axis, std::vector<Route<AxisReader>>& routes);
   std::vector<Route<AxisReader>> make_positions();
-  std::vector<Route<CorrectionWriter>> make_outputs();
-  void make_output(std::uint32_t first, std::vector<Route<CorrectionWriter>>& routes,
-                   std::set<std::uint32_t>& opened);
+  std::vector<NamedOutput> read_outputs() const;
+  NamedOutput read_output(std::uint32_t first) const;
+  std::vector<Route<CorrectionWriter>> open_outputs(const std::vector<NamedOutput>& named);
+  void open_output(const NamedOutput& output, std::vector<Route<CorrectionWriter>>& routes);
   std::vector<Route<InputReader>> make_inputs();
   void make_buffer(const std::string& device, std::vector<Route<InputReader>>& routes);
   void vibrate(std::uint32_t input, const SignalSource& source);
@@ -239,33 +251,33 @@ std::vector<Route<AxisReader>> Devices::Parts::make_positions() {
   return routes;
 }
 
-std::vector<Route<CorrectionWriter>> Devices::Parts::make_outputs() {
-  std::vector<Route<CorrectionWriter>> routes(file.axes.size());
-  std::set<std::uint32_t> opened;
+/// Reads the settings of all outputs. No device is opened: a board file with an error elsewhere must not
+/// write to the machine.
+std::vector<NamedOutput> Devices::Parts::read_outputs() const {
+  std::vector<NamedOutput> named;
+  std::set<std::uint32_t> known;
   for (std::uint32_t i = 0; i < file.axes.size(); ++i) {
-    const AxisEntry& axis = file.axes[i];
-    if (axis.output.kind.empty()) continue;
-    const std::string name = std::string("axis.") + axis.wiring.name.c_str() + ".output  " + axis.output.kind;
-    if (axis.output.kind == "sim") {
-      axis.output.only({});
-      routes[i] = {plant.get(), i};
-      note(name, "");
+    const SignalSource& source = file.axes[i].output;
+    if (source.kind.empty()) continue;
+    if (const double delay = source.number("delay_ms", 0); !(delay >= 0 && delay <= kMostDelayMs))
+      source.fail("delay_ms must be between 0 and 10000");
+    if (known.contains(i)) continue;
+    if (source.kind == "sim") {
+      source.only({});
+      named.push_back({{i}, {}});
       continue;
     }
-    if (const double delay = axis.output.number("delay_ms", 0); !(delay >= 0 && delay <= kMostDelayMs))
-      axis.output.fail("delay_ms must be between 0 and 10000");
-    look_for_calibration(axis);
-    if (!opened.contains(i)) make_output(i, routes, opened);
+    named.push_back(read_output(i));
+    known.insert(named.back().axes.begin(), named.back().axes.end());
   }
-  return routes;
+  return named;
 }
 
 /// The device of an output, for all axes that share the device.
-void Devices::Parts::make_output(std::uint32_t first, std::vector<Route<CorrectionWriter>>& routes,
-                                 std::set<std::uint32_t>& opened) {
+NamedOutput Devices::Parts::read_output(std::uint32_t first) const {
   const std::string shared = device_of_output(file.axes[first].output);
   std::vector<OutputAxis> sharing;
-  std::vector<std::uint32_t> served;
+  NamedOutput output;
   for (std::uint32_t i = first; i < file.axes.size(); ++i) {
     const AxisEntry& axis = file.axes[i];
     if (i != first && (shared.empty() || axis.output.kind != file.axes[first].output.kind ||
@@ -273,18 +285,36 @@ void Devices::Parts::make_output(std::uint32_t first, std::vector<Route<Correcti
       continue;
     sharing.push_back({&axis.output, axis.wiring.rotary, file.service.limits.axis[i].motion.slew,
                        file.service.upload.tick});
-    served.push_back(i);
+    output.axes.push_back(i);
   }
+  output.open = output_of(sharing);
+  return output;
+}
+
+std::vector<Route<CorrectionWriter>> Devices::Parts::open_outputs(const std::vector<NamedOutput>& named) {
+  std::vector<Route<CorrectionWriter>> routes(file.axes.size());
+  for (const NamedOutput& output : named) open_output(output, routes);
+  return routes;
+}
+
+void Devices::Parts::open_output(const NamedOutput& output, std::vector<Route<CorrectionWriter>>& routes) {
   std::string error;
-  auto device = open_output(sharing, error);
+  std::unique_ptr<OutputDevice> device;
+  if (output.open) device = output.open(error);
   if (device && !device->lock()) error = "in use by another axis or another process";
-  for (std::uint32_t k = 0; k < served.size(); ++k) {
-    const AxisEntry& axis = file.axes[served[k]];
-    opened.insert(served[k]);
-    routes[served[k]] = {device.get(), k};
-    note(std::string("axis.") + axis.wiring.name.c_str() + ".output  " + axis.output.kind, error,
-         [device = device.get(), k] { return device->attempt(k); });
-    if (device) real_outputs.push_back({served[k], device.get(), k});
+  for (std::uint32_t k = 0; k < output.axes.size(); ++k) {
+    const std::uint32_t i = output.axes[k];
+    const AxisEntry& axis = file.axes[i];
+    const std::string name = std::string("axis.") + axis.wiring.name.c_str() + ".output  " + axis.output.kind;
+    if (!output.open) {
+      routes[i] = {plant.get(), i};
+      note(name, "");
+      continue;
+    }
+    look_for_calibration(axis);
+    routes[i] = {device.get(), k};
+    note(name, error, [device = device.get(), k] { return device->attempt(k); });
+    if (device) real_outputs.push_back({i, device.get(), k});
   }
   if (device) output_devices.push_back(std::move(device));
 }
@@ -439,16 +469,23 @@ void Devices::Parts::look_at_files() {
 Devices::Devices(const BoardFile& file, unsigned long seed) : parts_(std::make_unique<Parts>(file)) {
   refuse_shared_registers(file);
   require_sync_of_drives(file);
-  parts_->make_store();
   parts_->make_plant(seed);
+  const std::vector<NamedOutput> outputs = parts_->read_outputs();
   parts_->axes = std::make_unique<RoutedAxes>(parts_->make_positions());
-  parts_->outputs = std::make_unique<RoutedOutputs>(parts_->make_outputs());
+  const std::size_t before_outputs = parts_->findings.size();
   parts_->inputs = std::make_unique<RoutedInputs>(parts_->make_inputs());
   parts_->make_features();
   parts_->make_sync();
   parts_->make_lines();
   parts_->make_links();
   parts_->look_at_files();
+  // Every setting is read now. The store makes its folder, and the outputs can write to the machine.
+  std::size_t others = parts_->findings.size();
+  parts_->outputs = std::make_unique<RoutedOutputs>(parts_->open_outputs(outputs));
+  parts_->list_at(before_outputs, others);
+  others = parts_->findings.size();
+  parts_->make_store();
+  parts_->list_at(0, others);
 }
 
 std::vector<std::string> Devices::not_looked_at() const {
@@ -458,8 +495,10 @@ std::vector<std::string> Devices::not_looked_at() const {
     const std::string name = std::string("axis.") + axis.wiring.name.c_str();
     if (axis.position.kind != "sim")
       lines.push_back(name + ".position: whether the position is right; one reading came");
-    if (!axis.output.kind.empty() && axis.output.kind != "sim")
-      lines.push_back(name + ".output: what reaches the drive; only the value that it has was written again");
+    const auto output = std::find_if(parts_->real_outputs.begin(), parts_->real_outputs.end(),
+                                     [&](const RealOutput& one) { return &file.axes[one.axis] == &axis; });
+    if (output != parts_->real_outputs.end())
+      lines.push_back(name + ".output: what reaches the drive; " + output->device->trial());
   }
   if (!file.probe.kind.empty()) lines.emplace_back("probe.line: whether the line changes at a touch");
   if (!file.enable.kind.empty()) lines.emplace_back("digital.enable: whether the line changes");

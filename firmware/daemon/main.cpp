@@ -254,7 +254,7 @@ std::vector<CalibrationPoint> measured_points(const Arguments& arguments, const 
   source.numbers["span"] = static_cast<double>(codes) * (axis.wiring.rotary ? 1e-6 : 4e-6);
   const AnalogueScale scale =
       analogue_scale(source, axis.wiring.rotary, codes, source.kind == "pwm" ? "_ns" : "");
-  const auto output = open_output({{&source, axis.wiring.rotary, INT32_MAX, {}}}, error);
+  const auto output = output_of({{&source, axis.wiring.rotary, INT32_MAX, {}}})(error);
   if (!output) throw BoardError{std::string("axis.") + axis.wiring.name.c_str() + ".output: " + error};
   if (!output->lock())
     throw BoardError{std::string("axis.") + axis.wiring.name.c_str() + ".output: in use by another process"};

@@ -109,22 +109,27 @@ const DeviceKind<Open>& kind_of(const std::vector<DeviceKind<Open>>& kinds, cons
   source.fail("no " + std::string(port) + " of kind " + source.kind + "; drivers: " + known);
 }
 
-std::unique_ptr<OutputDevice> open_pwm(const std::vector<OutputAxis>& axes, std::string& error) {
+OutputOpener pwm_of(const std::vector<OutputAxis>& axes) {
   const auto& [source, rotary, most_per_tick, tick] = axes.front();
   const std::int64_t period = source->whole("period_ns", 2, 1'000'000'000);
-  return AnalogueOutput::pwm(source->text("path"), period, analogue_scale(*source, rotary, period, "_ns"),
-                             error);
+  const AnalogueScale scale = analogue_scale(*source, rotary, period, "_ns");
+  return [path = source->text("path"), period, scale](std::string& error) {
+    return AnalogueOutput::pwm(path, period, scale, error);
+  };
 }
 
-std::unique_ptr<OutputDevice> open_iio_dac(const std::vector<OutputAxis>& axes, std::string& error) {
+OutputOpener iio_dac_of(const std::vector<OutputAxis>& axes) {
   const auto& [source, rotary, most_per_tick, tick] = axes.front();
   const AnalogueScale scale = analogue_scale(*source, rotary, source->whole("codes", 1, (1 << 24) - 1), "");
   const auto channel = static_cast<unsigned>(source->whole("channel", 0, 0, 63));
-  const std::string device = find_iio_device(source->text("root", kIioRoot), source->text("device"), error);
-  return device.empty() ? nullptr : AnalogueOutput::iio_dac(device, channel, scale, error);
+  return [root = source->text("root", kIioRoot), name = source->text("device"), channel,
+          scale](std::string& error) -> std::unique_ptr<OutputDevice> {
+    const std::string device = find_iio_device(root, name, error);
+    return device.empty() ? nullptr : AnalogueOutput::iio_dac(device, channel, scale, error);
+  };
 }
 
-std::unique_ptr<OutputDevice> open_modbus_out(const std::vector<OutputAxis>& axes, std::string& error) {
+OutputOpener modbus_out_of(const std::vector<OutputAxis>& axes) {
   const SignalSource& first = *axes.front().source;
   ModbusOutputSettings settings;
   constexpr std::int64_t kLast = 65535;
@@ -144,29 +149,32 @@ std::unique_ptr<OutputDevice> open_modbus_out(const std::vector<OutputAxis>& axe
     places = std::max(places, place + 1);
   }
   settings.address =
-      static_cast<int>(first.whole("register", 0, kLast - ModbusOutputSettings::kValues - 2 * places));
+      static_cast<int>(first.whole("register", 0, kLast + 1 - ModbusOutputSettings::kValues - 2 * places));
   if (settings.echo >= settings.address &&
       settings.echo < settings.address + ModbusOutputSettings::kValues + 2 * places)
     first.fail("echo is among the registers that the board writes");
-  const auto line = open_modbus_line(first, TimeUs(settings.timeout.count / 2), error);
-  return line ? ModbusOutput::open(line, settings, error) : nullptr;
+  return [open_line = modbus_line_of(first, TimeUs(settings.timeout.count / 2)),
+          settings](std::string& error) -> std::unique_ptr<OutputDevice> {
+    const auto line = open_line(error);
+    return line ? ModbusOutput::open(line, settings, error) : nullptr;
+  };
 }
 
-using OpenOutput = decltype(&open_pwm);
-const std::vector<DeviceKind<OpenOutput>> kOutputs = {
+using OutputOf = decltype(&pwm_of);
+const std::vector<DeviceKind<OutputOf>> kOutputs = {
     {"pwm",
      {"path", "period_ns", "span", "zero_ns", "low_ns", "high_ns", "polarity", "calibration", "delay_ms"},
-     open_pwm},
+     pwm_of},
     {"iio-dac",
      {"root", "device", "channel", "codes", "span", "zero", "low", "high", "polarity", "calibration",
       "delay_ms"},
-     open_iio_dac},
+     iio_dac_of},
     {"modbus-out",
      {"address", "port", "device", "baud", "parity", "unit", "register", "echo", "place", "resolution",
       "range", "polarity", "period_ms", "timeout_ms", "delay_ms"},
-     open_modbus_out,
+     modbus_out_of,
      modbus_block},
-    {"canopen", kCanopenOutputSettings, open_canopen_output},
+    {"canopen", kCanopenOutputSettings, canopen_output_of},
 };
 
 std::unique_ptr<SampledInput> open_modbus(const SignalSource& source, ModbusLines& lines,
@@ -226,11 +234,13 @@ const std::vector<DeviceKind<OpenLinkKind>> kLinks = {
 
 }  // namespace
 
-std::shared_ptr<ModbusLine> open_modbus_line(const SignalSource& source, TimeUs wait, std::string& error) {
-  if (!source.text("device", "").empty())
-    return ModbusLine::rtu(source.text("device"), baud(source, 19200), parity(source), wait, error);
-  return ModbusLine::tcp(modbus_address(source), static_cast<int>(source.whole("port", 502, 1, 65535)), wait,
-                         error);
+ModbusLineOpener modbus_line_of(const SignalSource& source, TimeUs wait) {
+  if (const std::string device = source.text("device", ""); !device.empty())
+    return [device, rate = baud(source, 19200), bit = parity(source), wait](std::string& error) {
+      return ModbusLine::rtu(device, rate, bit, wait, error);
+    };
+  return [address = modbus_address(source), port = static_cast<int>(source.whole("port", 502, 1, 65535)),
+          wait](std::string& error) { return ModbusLine::tcp(address, port, wait, error); };
 }
 
 std::string device_of_output(const SignalSource& source) {
@@ -238,10 +248,10 @@ std::string device_of_output(const SignalSource& source) {
   return kind.device == nullptr ? "" : kind.device(source);
 }
 
-std::unique_ptr<OutputDevice> open_output(const std::vector<OutputAxis>& axes, std::string& error) {
-  OpenOutput open = nullptr;
-  for (const OutputAxis& axis : axes) open = kind_of(kOutputs, "output", *axis.source).open;
-  return open(axes, error);
+OutputOpener output_of(const std::vector<OutputAxis>& axes) {
+  OutputOf settings_of = nullptr;
+  for (const OutputAxis& axis : axes) settings_of = kind_of(kOutputs, "output", *axis.source).open;
+  return settings_of(axes);
 }
 
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines,

@@ -25,14 +25,14 @@ using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
 // Each function opens one device of the board file. Null with `error` set if it is missing; a wrong kind or
 // setting throws BoardError. setup.
 
-/// Opens a line for one use: `device`, `baud` and `parity`, or `address` and `port`. wait: longest time for
-/// an answer.
-std::shared_ptr<ModbusLine> open_modbus_line(const SignalSource& source, TimeUs wait, std::string& error);
+/// Reads the settings of a line for one use: `device`, `baud` and `parity`, or `address` and `port`. wait:
+/// longest time for an answer.
+ModbusLineOpener modbus_line_of(const SignalSource& source, TimeUs wait);
 /// Returns a text that is the same for all outputs of one device; empty: each output is a separate device.
 std::string device_of_output(const SignalSource& source);
-/// Opens the device of these axes, which is their number k for axes[k]: an output, or several outputs that
-/// share a device.
-std::unique_ptr<OutputDevice> open_output(const std::vector<OutputAxis>& axes, std::string& error);
+/// Reads the settings of the device of these axes, which is their number k for axes[k]: an output, or several
+/// outputs that share a device. Opening an output can write to the machine: open it last.
+OutputOpener output_of(const std::vector<OutputAxis>& axes);
 /// Opens a sensor. lines: the open Modbus lines; a line that the sensor needs is added.
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines, std::string& error);
 /// Opens the buffer of the device that inputs of kind "iio-buffer" name, one channel per input. The trigger

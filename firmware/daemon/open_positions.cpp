@@ -69,7 +69,7 @@ std::unique_ptr<ModbusAxes> open_modbus_axes(const std::vector<PositionAxis>& ax
     first.fail_at("sequence", "sequence is too far from the positions: one request reads at most " +
                                   std::to_string(ModbusAxesSettings::kMostRegisters) + " registers");
   const TimeUs wait(1000 * first.whole("timeout_ms", 100, 2, 10'000));
-  const auto line = open_modbus_line(first, wait, error);
+  const auto line = modbus_line_of(first, wait)(error);
   return line ? std::make_unique<ModbusAxes>(line, settings) : nullptr;
 }
 

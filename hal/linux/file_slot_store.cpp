@@ -92,13 +92,14 @@ HalFault FileSlotStore::read_record(std::uint32_t place, std::uint8_t* bytes, st
 }
 
 // A record that was begun must not look like the record before: what was not written as a whole is cut, which
-// needs no room.
+// needs no room. Bytes behind the record are cut too.
 HalFault FileSlotStore::write_record(std::uint32_t place, const std::uint8_t* bytes,
                                      std::uint32_t size) noexcept {
   if (place >= std::size(records_)) return HalFault::kNoDevice;
   File file(records_[place], O_WRONLY | O_CREAT);
   if (!file.opened()) return HalFault::kRefused;
-  if (!write_all(file.fd(), 0, bytes, size) || ::fsync(file.fd()) != 0) {
+  if (!write_all(file.fd(), 0, bytes, size) || ::ftruncate(file.fd(), off_t{size}) != 0 ||
+      ::fsync(file.fd()) != 0) {
     if (::ftruncate(file.fd(), 0) == 0) ::fsync(file.fd());
     return HalFault::kRefused;
   }

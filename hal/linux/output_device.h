@@ -20,6 +20,8 @@ class OutputDevice : public CorrectionWriter {
   virtual HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept = 0;
   /// Tries the device without a motion: empty, or the error. Not real-time safe.
   virtual std::string attempt(std::uint32_t axis) = 0;
+  /// Returns what open() and attempt() did to the device: "only the value that it has was written again".
+  virtual std::string trial() const = 0;
   /// Returns the number of writes whose correction was beyond the range.
   virtual std::uint64_t held_at_end(std::uint32_t axis) const noexcept = 0;
   virtual const AnalogueScale& scale(std::uint32_t axis) const noexcept = 0;

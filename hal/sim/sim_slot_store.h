@@ -35,7 +35,10 @@ class SimSlotStore : public SlotStore {
   }
   HalFault write_record(std::uint32_t place, const std::uint8_t* bytes,
                         std::uint32_t size) noexcept override {
-    return place < 4 ? write(records_[place], 0, bytes, size) : HalFault::kNoDevice;
+    if (place >= 4) return HalFault::kNoDevice;
+    const HalFault fault = write(records_[place], 0, bytes, size);
+    if (fault == HalFault::kNone) records_[place].resize(size);
+    return fault;
   }
   HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
                       std::uint32_t size) noexcept override {

@@ -3,6 +3,8 @@
 // and what a daemon does to a converter that holds a value from before.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -319,6 +321,11 @@ TEST_F(Check, TablesOfAxesAndOutputsAreRead) {
         "missing  axis.X.output  modbus-out: the controller does not answer",
         "ok       axis.C.output  iio-dac", "budget   axis.C.output: -124.51 to 125.49 mdeg"})
     EXPECT_NE(said.text.find(line), std::string::npos) << line << said.text;
+  // The last block of the registers; `valid` is the register after `sequence` if it is not given.
+  write(replaced(
+      replaced(replaced(kTables, "sequence = 100", "sequence = 65532"), "register = 104", "register = 65534"),
+      "valid = 101\n", ""));
+  EXPECT_EQ(run("--check").status, 2);
   // An [[output]] belongs to an [axis.NAME] as well.
   write(std::string(kPublished) +
         "[axis.C]\nkind = \"rotary\"\nmax_speed = 100\nmax_correction = 0.2\nmax_step = 0.001\n"
@@ -350,6 +357,12 @@ TEST_F(Check, WrongTablesOfAxesAndOutputsAreNamedWithTheLineOfTheSetting) {
        "board.toml:33: output of X: valid must be the register after sequence (101)"},
       {"echo = 50\n", "", "board.toml:25: output of X: echo is missing"},
       {"scale = 0.01", "scale = 0", "board.toml:35: output of X: scale must be above 0"},
+      {"max_step = 0.001", "missing_ticks = 3.5",
+       "board.toml:8: axis X: missing_ticks must be a whole number"},
+      {"store = \"store\"", "activate = 1", "board.toml:2: board: activate must be true or false"},
+      {"store = \"store\"", "public_key = \"no.pub\"", "board.toml:2: board: "},
+      {"sequence = 100\n", "sequence = 65533\n",
+       "board.toml:32: output of X: sequence must be a whole number from 0 to 65532"},
       {"scale = 0.01", "resolution = 1", "unknown setting resolution of kind modbus"}};
   for (const auto& [setting, wrong, said_of_it] : kWrong) {
     write(replaced(kTables, setting, wrong));
@@ -387,6 +400,22 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
       {board_of(sim, output + "object = \"0x60B0:1g\"", sync), "'0x60B0:1g' is no object"},
       {board_of(sim, output + "pdo_test = \"no\"", sync), "pdo_test: 'no' is neither sdo nor none"},
       {board_of(sim, output + "rpdo = 0x81", sync), "two frames of the drive have one identifier"},
+      {board_of(sim, output + "rpdo = 0x201", sync),
+       "board.toml:18: output of X: rpdo: 0x201 belongs to RPDO 1, the controller's controlword (0x201 to "
+       "0x27F)"},
+      {board_of(sim, output + "rpdo = 0x482", sync), "rpdo: 0x482 belongs to TPDO 4 of the drives"},
+      {board_of(sim, output + "rpdo = 0x601", sync), "rpdo: 0x601 belongs to SDO requests (0x601 to 0x67F)"},
+      {board_of(sim, output + "object = \"0x607A\"", sync),
+       "board.toml:18: output of X: object: '0x607A' is no position offset: give 0x60B0"},
+      {board_of(sim, output + "object = \"0x6040:00\"", sync), "'0x6040:00' is no position offset"},
+      {board_of("kind = \"can\"\ninterface = \"nocan\"\nid = 0x501", output, sync),
+       "board.toml:12: axis X: id: a frame of the drive of "},
+      {board_of(replaced(drive, "scale", "tpdo = 0x501\nscale"),
+                replaced(output, "node = 1", "node = 2\nrpdo = 0x501"), sync),
+       "tpdo: a frame of the drive of "},
+      {board_of(sim, output, sync) +
+           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x700\ntransmit = 0x501\n",
+       "link: transmit: a frame of the drive of "},
       {board_of(sim, output + "span = 1", sync),
        "board.toml:18: output of X: unknown setting span of kind canopen"},
       {board_of(sim, replaced(output, "scale = 0.1", "scale = -1"), sync), "scale must be above 0"},
@@ -406,6 +435,63 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
     EXPECT_EQ(said.status, 1) << said.text;
     EXPECT_NE(said.text.find(said_of_it), std::string::npos) << said_of_it << "\n" << said.text;
   }
+}
+
+/// A port of this computer at which nobody accepts a connection; the system completes it all the same.
+class QuietPort {
+ public:
+  QuietPort() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0)) {
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof place;
+    EXPECT_EQ(::bind(socket_, reinterpret_cast<sockaddr*>(&place), size), 0);
+    EXPECT_EQ(::listen(socket_, 8), 0);
+    ::getsockname(socket_, reinterpret_cast<sockaddr*>(&place), &size);
+    port_ = ntohs(place.sin_port);
+  }
+  ~QuietPort() { ::close(socket_); }
+  QuietPort(const QuietPort&) = delete;
+  QuietPort& operator=(const QuietPort&) = delete;
+  int port() const { return port_; }
+  /// Connections since the last call.
+  int connections() const {
+    int count = 0;
+    for (int one = 0; (one = ::accept(socket_, nullptr, nullptr)) >= 0; ++count) ::close(one);
+    return count;
+  }
+
+ private:
+  int socket_, port_ = 0;
+};
+
+// A block in the controller's registers was overwritten before the error was found.
+TEST_F(Check, AnErrorAnywhereInTheFileIsFoundBeforeAControllerIsReached) {
+  const QuietPort controller;
+  const std::string board =
+      board_of("kind = \"sim\"",
+               "kind = \"modbus-out\"\naddress = \"127.0.0.1\"\nport = " + std::to_string(controller.port()) +
+                   "\nregister = 100\necho = 50\nresolution = 1e-6\nrange = 0.2\ntimeout_ms = 20\n");
+  const char* const kWrong[] = {
+      "[[link]]\nkind = \"bogus\"\n",
+      "[[link]]\nkind = \"modbus-tcp\"\nfoo = 1\n",
+      "[[link]]\nkind = \"modbus-tcp\"\naddress = \"x\"\n",
+      "[digital]\nenable = { kind = \"bogus\" }\n",
+      "[probe]\nline = { kind = \"bogus\" }\n",
+      "[input.T]\nsource = { kind = \"bogus\" }\n",
+      "[input.T]\nsource = { kind = \"feature\", of = \"T\", feature = \"RMS\" }\n",
+      "[input.T]\nsource = { kind = \"iio-buffer\", device = \"a\", channel = \"b/c\", scale = 1 }\n"};
+  for (const std::string wrong : kWrong)
+    for (const char* const mode : {"--check", "--zero", "--seconds 0.1"}) {
+      write(board + wrong);
+      const Said said = run(mode);
+      EXPECT_EQ(said.status, 1) << wrong << mode << said.text;
+      EXPECT_EQ(controller.connections(), 0) << wrong << mode << said.text;
+      EXPECT_FALSE(std::filesystem::exists(files_.path() + "/store")) << wrong << mode;
+    }
+  write(replaced(board, "name = \"X\"", "name = \"X\"\nrotary = false"));
+  EXPECT_EQ(run("--check").status, 2);
+  EXPECT_GT(controller.connections(), 0) << "the port is that of the output";
 }
 
 TEST_F(Check, DrivesCountersAndRegistersThatAreMissingAreNamed) {

@@ -88,6 +88,14 @@ TEST_P(SlotStoreConformance, RefusesWhatItDoesNotHave) {
   EXPECT_EQ(store_->read_image(2, 0, bytes, 1), HalFault::kNoDevice);
 }
 
+TEST_P(SlotStoreConformance, ARecordEndsWithItsLastByte) {
+  std::uint8_t bytes[42] = {};
+  ASSERT_EQ(store_->write_record(2, bytes, 42), HalFault::kNone);
+  ASSERT_EQ(store_->write_record(2, bytes, 32), HalFault::kNone);
+  EXPECT_EQ(store_->read_record(2, bytes, 32), HalFault::kNone);
+  EXPECT_NE(store_->read_record(2, bytes, 33), HalFault::kNone);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Backends, SlotStoreConformance,
     testing::Values(Backend{"sim",

@@ -78,7 +78,7 @@ class Table {
     asked_.insert(name);
     const toml::node* const node = table_.get(name);
     if (node == nullptr) return otherwise;
-    const auto value = node->value<T>();
+    const auto value = node->value_exact<T>();
     if (!value) fail(name + " must be " + kind, node);
     return *value;
   }
@@ -87,11 +87,21 @@ class Table {
   }
   bool flag(const std::string& name, bool otherwise) { return get<bool>(name, otherwise, "true or false"); }
   double number(const std::string& name, double otherwise, double low, double high) {
-    const double value = get<double>(name, otherwise, "a number");
+    asked_.insert(name);
+    const toml::node* const node = table_.get(name);
     // A default may be outside the range: it means "not given".
-    if (table_.get(name) != nullptr && !(value >= low && value <= high))
-      fail(name + " must be between " + number_text(low) + " and " + number_text(high), table_.get(name));
+    if (node == nullptr) return otherwise;
+    if (!node->is_number()) fail(name + " must be a number", node);
+    const double value = *node->value<double>();
+    if (!(value >= low && value <= high))
+      fail(name + " must be between " + number_text(low) + " and " + number_text(high), node);
     return value;
+  }
+  std::int64_t whole(const std::string& name, std::int64_t otherwise, std::int64_t low, std::int64_t high) {
+    const double value =
+        number(name, static_cast<double>(otherwise), static_cast<double>(low), static_cast<double>(high));
+    if (value != std::trunc(value)) fail(name + " must be a whole number", table_.get(name));
+    return static_cast<std::int64_t>(value);
   }
   bool has(const std::string& name) const { return table_.get(name) != nullptr; }
   const toml::table* table(const std::string& name) {
@@ -161,7 +171,7 @@ AxisSetting setting_of(Table& settings, bool rotary, TimeUs tick) {
   const double largest = settings.number("max_correction", 0, 1e-6, 1e3);
   if (largest > 0) setting.largest = std::clamp<std::int64_t>(counts(largest * scale), 1, INT32_MAX);
   setting.limits.missing_ticks =
-      static_cast<std::uint32_t>(settings.number("missing_ticks", setting.limits.missing_ticks, 0, 10000));
+      static_cast<std::uint32_t>(settings.whole("missing_ticks", setting.limits.missing_ticks, 0, 10000));
   return setting;
 }
 
@@ -336,6 +346,15 @@ Name board_name(Table& settings, const char* setting) {
   return std::string_view(name);
 }
 
+/// The key of a file, or the error with the line of the board file that names it.
+PublicKey public_key(const Table& settings, const toml::node* at, const std::string& path) {
+  try {
+    return read_public_key(path);
+  } catch (const BoardError& error) {
+    settings.fail(error.what, at);
+  }
+}
+
 void read_key(BoardFile& board, const toml::table& table) {
   Table settings(table, board.path, "key");
   TrustedKey key;
@@ -347,7 +366,7 @@ void read_key(BoardFile& board, const toml::table& table) {
     settings.fail("role: '" + role + "' is not one of all, command, upload, retired");
   key.name = std::string_view(name);
   board.key_files.push_back(beside(board.path, file));
-  key.key = read_public_key(board.key_files.back());
+  key.key = public_key(settings, table.get("file"), board.key_files.back());
   key.command = role != "upload", key.upload = role != "command";
   key.retired = role == "retired";
   settings.nothing_else();
@@ -370,13 +389,12 @@ void require_name(const BoardFile& board, const Table& general) {
 
 void read_board(BoardFile& board, const toml::table& table) {
   Table settings(table, board.path, "board");
-  board.service.upload.tick =
-      TimeUs(static_cast<std::int64_t>(settings.number("tick_us", 1000, 100, 100000)));
+  board.service.upload.tick = TimeUs(settings.whole("tick_us", 1000, 100, 100000));
   board.store = beside(board.path, settings.text("store", "store"));
-  board.slot_bytes = static_cast<std::uint32_t>(settings.number("slot_bytes", 1 << 20, 4096, kMaxImageBytes));
+  board.slot_bytes = static_cast<std::uint32_t>(settings.whole("slot_bytes", 1 << 20, 4096, kMaxImageBytes));
   board.service.upload.trial_time = TimeUs(counts(1e6 * settings.number("trial_s", 60, 0.1, 86400)));
   board.service.activate = settings.flag("activate", false);
-  board.priority = static_cast<int>(settings.number("priority", 80, 1, 99));
+  board.priority = static_cast<int>(settings.whole("priority", 80, 1, 99));
   board.service.overruns.lost_share_q16 =
       static_cast<std::uint32_t>(65536 * settings.number("max_lost_ticks", 0.05, 0, 0.99));
   board.watchdog = settings.text("watchdog", "");
@@ -390,7 +408,8 @@ void read_board(BoardFile& board, const toml::table& table) {
   const std::string key = settings.text("public_key", "");
   if (!key.empty()) {
     board.key_files.push_back(beside(board.path, key));
-    identity.keys.push_back({read_public_key(board.key_files.back()), "public_key"});
+    identity.keys.push_back(
+        {public_key(settings, table.get("public_key"), board.key_files.back()), "public_key"});
   }
   settings.nothing_else();
 }

@@ -8,6 +8,8 @@ namespace vernier {
 namespace {
 
 constexpr std::int64_t kLastRegister = 65535;
+/// Of a block: sequence number, valid bits and one value.
+constexpr std::int64_t kLastBlock = kLastRegister - RegisterBlock::kValues - 1;
 
 }  // namespace
 
@@ -19,8 +21,8 @@ void use_short_names(SignalSource& output, double max_correction) {
   output.only({"address", "port", "device", "baud", "parity", "unit", "register", "scale", "sequence",
                "valid", "echo", "range", "polarity", "period_ms", "timeout_ms", "delay_ms"});
   const std::int64_t value = output.whole("register", 0, kLastRegister - 1);
-  const std::int64_t sequence = output.whole("sequence", 0, kLastRegister);
-  const std::int64_t valid = output.whole("valid", 0, kLastRegister);
+  const std::int64_t sequence = output.whole("sequence", 0, kLastBlock);
+  const std::int64_t valid = output.whole("valid", sequence + 1, 0, kLastRegister);
   const double scale = output.number("scale");
   if (!(scale > 0 && scale <= 1e6)) output.fail_at("scale", "scale must be above 0, and at most 1e6 um");
   // One request writes all registers, so that the controller never reads a new value with an old number.

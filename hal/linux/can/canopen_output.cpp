@@ -123,6 +123,8 @@ HalFault CanopenOutput::read_back(std::uint32_t, AxisTravel& correction) noexcep
 
 std::string CanopenOutput::attempt(std::uint32_t) { return listen(kPatience, true); }
 
+std::string CanopenOutput::trial() const { return "no offset was sent"; }
+
 std::string CanopenOutput::account() const {
   const CanopenCounts& c = drive_.counts();
   char text[360];

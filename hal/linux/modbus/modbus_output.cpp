@@ -239,6 +239,11 @@ std::string ModbusOutput::attempt(std::uint32_t) {
   return healthy_ ? "" : "the controller does not return the sequence number";
 }
 
+std::string ModbusOutput::trial() const {
+  return "blocks with valid bits 0 and values 0 were written; the controller removes a correction that the "
+         "registers held";
+}
+
 std::string ModbusOutput::account() const {
   const std::scoped_lock lock(guard_);
   std::uint64_t all = 0;

@@ -66,6 +66,7 @@ class ModbusOutput : public OutputDevice {
     return correction = AxisTravel{}, HalFault::kNone;
   }
   std::string attempt(std::uint32_t axis) override;
+  std::string trial() const override;
   std::uint64_t held_at_end(std::uint32_t axis) const noexcept override { return places_[axis].held_at_end; }
   const AnalogueScale& scale(std::uint32_t axis) const noexcept override {
     return settings_.axes[axis].scale;

@@ -212,6 +212,11 @@ TEST_F(OperatorSetting, AnyDamageOfOneRecordKeepsTheCorrectionOut) {
       const std::uint8_t zeros[sizeof(OperatorRecord)] = {};
       store.write_record(place, zeros, sizeof(zeros));
       expect_out(store, "zeros");
+      store = sound;
+      std::uint8_t longer[sizeof(OperatorRecord) + 10] = {};
+      store.read_record(place, longer, sizeof(OperatorRecord));
+      store.write_record(place, longer, sizeof(longer));
+      expect_out(store, "ten bytes longer");
       // A copy of the other record, as from a backup.
       store = sound;
       std::uint8_t other[sizeof(OperatorRecord)];
