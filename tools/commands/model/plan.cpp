@@ -191,6 +191,12 @@ void run_plan(const PlanArguments& arguments) {
   if (arguments.check && !(arguments.measurements.empty() && arguments.separate.empty()))
     throw text::InputError({}, "--check", "--check needs only the fitted machine, no measurements");
   if (arguments.check) return run_check_plan(arguments);
+  if (!arguments.positioning.axis.empty()) {
+    if (!arguments.measurements.empty() || !arguments.separate.empty())
+      throw text::InputError({}, "--positioning",
+                             "--positioning needs only the machine file, no measurements");
+    return run_positioning_plan(arguments);
+  }
   if (!arguments.artefact.empty()) {
     if (!arguments.measurements.empty() || !arguments.separate.empty())
       throw text::InputError({}, "--artefact", "--artefact needs only the machine file, no measurements");
@@ -244,7 +250,8 @@ void register_plan(CLI::App& vernier) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = vernier.add_subcommand(
       "plan",
-      "Plan the next measurement: a first survey, poses for accuracy, or poses that distinguish two effects");
+      "Plan the next measurement: a first survey, poses for accuracy, poses that distinguish two effects, or "
+      "the test of one axis");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command->add_option("MEAS", arguments->measurements, "measurement files (CSV); none: the first plan")
       ->type_name(kReads);
@@ -289,6 +296,29 @@ void register_plan(CLI::App& vernier) {
   command->add_option("--artefact", arguments->artefact,
                       "touches of this <artefact> of the machine file (default: 40 at most), and what no "
                       "touch of it determines");
+  plan::PositioningTestOptions& test = arguments->positioning;
+  CLI::Option* const positioning = command->add_option(
+      "--positioning", test.axis,
+      "AXIS: the test of ISO 230-2 with a laser or a dial gauge, its program (--gcode) and its rows (-o); "
+      "--points: targets (default: as the standard requires)");
+  command->add_option("--from", test.from, "first target, mm or deg (default: the range less --overrun)")
+      ->needs(positioning);
+  command->add_option("--to", test.to, "last target, mm or deg")->needs(positioning);
+  command
+      ->add_option("--overrun", test.overrun,
+                   "travel beyond the end targets, mm or deg (default: 1 % of the range)")
+      ->check(CLI::PositiveNumber)
+      ->needs(positioning);
+  command
+      ->add_option(
+          "--period", test.period,
+          "of a possible periodic error, mm or deg: the targets vary by at most one period (default: "
+          "30 % of the interval)")
+      ->check(CLI::PositiveNumber)
+      ->needs(positioning);
+  command->add_option("--runs", test.runs, "runs in both directions (default: 5; 1 on an axis beyond 2 m)")
+      ->check(CLI::Range(1, 50))
+      ->needs(positioning);
   command
       ->add_option("--part", arguments->part.path,
                    "accuracy for the features of this part (CSV, or a part program)")
@@ -297,21 +327,27 @@ void register_plan(CLI::App& vernier) {
       "--place", arguments->part.place,
       "zero of the part in workpiece coordinates: \"X,Y,Z\", \"X,Y,Z,TURN\" or \"X,Y,Z,rX,rY,rZ\"");
   command->add_option("--zero", arguments->part.zero, "machine position of a part program's zero");
-  command->add_option("--at", arguments->part.at,
-                      "inputs, and positions of axes that the part does not need");
+  command->add_option(
+      "--at", arguments->part.at,
+      "inputs, and positions of axes that the part does not need; --positioning: positions of the other "
+      "axes (default: mid-range)");
   command->add_option("--region", arguments->region,
                       "accuracy for this part of the volume: \"X=100:200,Y=0:50\"");
   command->add_option(
       "--tool", arguments->tool,
       "accuracy for this tool alone: one of <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command
-      ->add_option("--feed", arguments->feed_mm_min,
-                   "speed from pose to pose, mm/min, to estimate the duration")
+      ->add_option(
+          "--feed", arguments->feed_mm_min,
+          "speed from pose to pose, mm/min (deg/min), to estimate the duration and in the program of "
+          "--positioning")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command
-      ->add_option("--dwell", arguments->dwell_s,
-                   "time to settle and read one pose, s, to estimate the duration")
+      ->add_option(
+          "--dwell", arguments->dwell_s,
+          "time to settle and read one pose, s, to estimate the duration; --positioning: dwell of the "
+          "program, 0: it stops at each target")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);

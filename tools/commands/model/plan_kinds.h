@@ -8,6 +8,7 @@
 #include "tools/commands/judge/part_kinds.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
+#include "tools/plan/standard/positioning_test.h"
 
 namespace vernier::commands::plan_cli {
 
@@ -21,10 +22,14 @@ struct PlanArguments {
   double accuracy_um = 0, expected_um = 0;
   double feed_mm_min = 5000, dwell_s = 5;
   bool check = false;
+  plan::PositioningTestOptions positioning;  // axis: empty if no such test is asked for
 };
 
 /// Returns one pose of a plan as JSON: axes and approach directions.
 nlohmann::ordered_json pose_json(const model::Machine& machine, const model::States& states, std::size_t row);
+
+/// The program and the measurement file of a test of positioning (ISO 230-2).
+void run_positioning_plan(const PlanArguments& arguments);
 
 /// The next poses for accuracy at the required locations. Throws LimitNotMet if the accuracy cannot be
 /// reached.
