@@ -34,6 +34,7 @@ constexpr Allowed kAllowed[] = {
     {"import probe", false, true,
      "file map separator decimal skip header column set check-every radius output"},
     {"import laser", false, true, "file output"},
+    {"import printer", false, true, "file profile on offset u output"},
     {"fit", false, true, "machine meas images loss output!"},
     {"compare", false, false, "machine meas! datum images header output"},
     {"diagnose", false, false, "machine meas images most machine-out header output"},

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Layouts: Klipper (bed_mesh.py, probe.py, statistics.py, heaters.py), RepRapFirmware (Grid.cpp), Marlin
+// (G30).
+#include "tools/import/logs/printer_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tools/text/error.h"
+
+namespace vernier::printer_file_test {
+
+using namespace vernier::importer;
+using testing::HasSubstr;
+namespace {
+
+std::string read(const std::string& text, const PrinterOptions& options = {}) {
+  try {
+    return measurement_csv(read_printer_file(text, "p.cfg", options).table);
+  } catch (const text::InputError& error) {
+    return std::string("refused: ") + error.what();
+  }
+}
+
+const std::string kConfiguration =
+    "[stepper_x]\nposition_max: 235\n\n[bltouch]\nx_offset: -40.0  # left of the nozzle\ny_offset = 10\n\n"
+    "#*# <---------------------- SAVE_CONFIG ---------------------->\n#*#\n"
+    "#*# [bed_mesh default]\n#*# version = 1\n#*# points =\n#*# \t  -0.10, 0.02, 0.05\n#*# \t0.07, 0.08, "
+    "-0.03\n"
+    "#*# tension = 0.2\n#*# min_x = 20.0\n#*# x_count = 3\n#*# y_count = 2\n#*# max_x = 220.0\n"
+    "#*# min_y = 30.0\n#*# max_y = 200.0\n";
+
+TEST(PrinterFile, SavedMeshOfKlipperIsPositionsOfTheNozzle) {
+  EXPECT_EQ(read(kConfiguration),
+            "X[mm],Y[mm],Z[mm],on\n60,20,-0.1,bed\n160,20,0.02,bed\n260,20,0.05,bed\n60,190,0.07,bed\n"
+            "160,190,0.08,bed\n260,190,-0.03,bed\n");
+  PrinterOptions options;
+  options.offset_mm = {0, 0}, options.artefact = "plate", options.u_um = 8;
+  EXPECT_THAT(read(kConfiguration, options),
+              testing::StartsWith("X[mm],Y[mm],Z[mm],on,u[um]\n20,30,-0.1,plate,8\n"));
+}
+
+TEST(PrinterFile, MeshIsChosenByName) {
+  const std::string second =
+      "#*# [bed_mesh warm]\n#*# points =\n#*# \t1, 2\n#*# x_count = 2\n#*# y_count = 1\n"
+      "#*# min_x = 0\n#*# max_x = 10\n#*# min_y = 5\n#*# max_y = 5\n";
+  PrinterOptions options;
+  options.profile = "warm", options.offset_mm = {0, 0};
+  EXPECT_EQ(read(kConfiguration + second, options), "X[mm],Y[mm],Z[mm],on\n0,5,1,bed\n10,5,2,bed\n");
+  options.profile = "hot";
+  EXPECT_THAT(read(kConfiguration + second, options), HasSubstr("has these meshes: default, warm"));
+}
+
+TEST(PrinterFile, WrongMeshesAreNamedWithTheirLine) {
+  const auto with = [](const std::string& from, const std::string& to) {
+    std::string text = kConfiguration;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_THAT(read(with("x_count = 3", "x_count = 4")), HasSubstr("p.cfg:13: "));
+  EXPECT_THAT(read(with("y_count = 2", "y_count = 3")), HasSubstr("the mesh has 2 rows, y_count says 3"));
+  EXPECT_THAT(read(with("0.02", "nan")), HasSubstr("p.cfg:13: "));
+  EXPECT_THAT(read(with("min_x", "mix_x")), HasSubstr("lacks this setting"));
+  EXPECT_THAT(read(with("x_count = 3", "x_count = 3000000000")), HasSubstr("from 1 to 1000"));
+  EXPECT_THAT(read("[stepper_x]\n"), HasSubstr("the file has none"));
+}
+
+TEST(PrinterFile, LogOfKlipperHasTimesAndTemperatures) {
+  const std::string log =
+      "Start printer at Wed\nStats 1000.5: gcodein=0  heater_bed: target=60 temp=59.8 pwm=0.25 "
+      "raspberry_pi: temp=48.3 print_time=12.5\n"
+      "// probe at 30.000,40.000 is z=2.012500\nprobe at 30.000,40.000 is z=2.900000 [discarded]\n"
+      "Stats 1003.5: gcodein=0  heater_bed: target=60 temp=60.1 pwm=0.2 raspberry_pi: temp=48.5\n"
+      "probe: at 130.000,40.000 bed will contact at z=-0.003000\n";
+  EXPECT_EQ(
+      read(log),
+      "X[mm],Y[mm],Z[mm],on,t[s],T_heater_bed[degC],T_raspberry_pi[degC]\n30,40,2.0125,bed,0,59.8,48.3\n"
+      "130,40,-0.003,bed,3,60.1,48.5\n");
+  EXPECT_EQ(read_printer_file(log, "k.log", {}).left_out, 1U);
+  // A touch before the first state has no time: no column of times at all.
+  EXPECT_EQ(read("probe at 1.000,2.000 is z=3.000000\n" + log).substr(0, 21), "X[mm],Y[mm],Z[mm],on\n");
+}
+
+TEST(PrinterFile, LogOfMarlin) {
+  EXPECT_EQ(read("Bed X: 100.00 Y: 50.50 Z: -0.02\nok\nBed X:10 Y:20 Z:0.11\n"),
+            "X[mm],Y[mm],Z[mm],on\n100,50.5,-0.02,bed\n10,20,0.11,bed\n");
+}
+
+TEST(PrinterFile, HeightMapsOfBothVersions) {
+  const std::string title = "RepRapFirmware height map file v2 generated at 2026-01-01 00:00\n";
+  const std::string present =
+      title +
+      "axis0,axis1,min0,max0,min1,max1,radius,spacing0,spacing1,num0,num1\n"
+      "X,Y,5.00,25.00,5.00,15.00,-1.00,10.00,10.00,3,2\n  0.100, -0.050,  0.000\n -0.000,  0.200,      0\n";
+  EXPECT_EQ(read(present),
+            "X[mm],Y[mm],Z[mm],on\n5,5,0.1,bed\n15,5,-0.05,bed\n25,5,0,bed\n5,15,-0,bed\n15,15,0.2,bed\n");
+  EXPECT_EQ(read_printer_file(present, "h.csv", {}).not_probed, 1U);
+  EXPECT_EQ(read(title +
+                 "xmin,xmax,ymin,ymax,radius,xspacing,yspacing,xnum,ynum\n0,10,0,0,-1,10,10,2,1\n0.1,0.2\n"),
+            "X[mm],Y[mm],Z[mm],on\n0,0,0.1,bed\n10,0,0.2,bed\n");
+  EXPECT_THAT(read(title + "axis0\nX\n"), HasSubstr("lacks this value"));
+  EXPECT_THAT(read(present.substr(0, present.size() - 26)), HasSubstr("fewer than 2 rows"));
+}
+
+}  // namespace
+}  // namespace vernier::printer_file_test

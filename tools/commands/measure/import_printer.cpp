@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "tools/commands/command.h"
+#include "tools/commands/measure/import_kinds.h"
+#include "tools/import/logs/printer_file.h"
+#include "tools/text/files.h"
+
+namespace vernier::commands::import_cli {
+namespace {
+
+struct PrinterArguments {
+  std::string file;
+  std::vector<double> offset;
+  importer::PrinterOptions options;
+  ImportOutput output;
+};
+
+const char* name_of(importer::PrinterFile::Kind kind) {
+  switch (kind) {
+    case importer::PrinterFile::Kind::kSavedMesh:
+      return "saved mesh";
+    case importer::PrinterFile::Kind::kHeightMap:
+      return "height map";
+    case importer::PrinterFile::Kind::kProbeLog:
+      return "log of touches";
+  }
+  return "";
+}
+
+void run_printer(PrinterArguments& arguments) {
+  if (!arguments.offset.empty()) arguments.options.offset_mm = {arguments.offset[0], arguments.offset[1]};
+  const importer::PrinterFile read =
+      importer::read_printer_file(text::read_file(arguments.file), arguments.file, arguments.options);
+  text::write_file(arguments.output.csv_path, importer::measurement_csv(read.table));
+  const std::size_t rows = read.table.line.size();
+  write_json(arguments.output.json_path, {{"kind", "printer"},
+                                          {"source", name_of(read.kind)},
+                                          {"profile", read.name},
+                                          {"offset_mm", read.offset_mm},
+                                          {"n_not_probed", read.not_probed},
+                                          {"n_left_out", read.left_out},
+                                          {"n_rows", rows}});
+  std::FILE* out = human_stream(arguments.output.json_path);
+  fmt::print(out, "{}{}: {} touches of the artefact \"{}\"\n", name_of(read.kind),
+             read.name.empty() ? "" : " " + read.name, rows, arguments.options.artefact);
+  if (read.kind != importer::PrinterFile::Kind::kProbeLog)
+    fmt::print(out, "axes: the point of the probe less its offset ({:g}, {:g}) mm\n", read.offset_mm[0],
+               read.offset_mm[1]);
+  if (read.not_probed > 0)
+    fmt::print(out, "{} places of the map have no reading: omitted\n", read.not_probed);
+  if (read.left_out > 0) fmt::print(out, "{} touches that the printer discarded: omitted\n", read.left_out);
+  fmt::print(out,
+             "{}: {} rows. The machine file needs <artefact name=\"{}\" type=\"plane\"/> in <variables>.\n",
+             arguments.output.csv_path, rows, arguments.options.artefact);
+}
+
+}  // namespace
+
+void add_printer_kind(CLI::App& kind) {
+  const auto arguments = std::make_shared<PrinterArguments>();
+  kind.add_option("file", arguments->file,
+                  "printer.cfg with a saved mesh, klippy.log or console text, or heightmap.csv")
+      ->type_name(kReads)
+      ->required();
+  kind.add_option("--profile", arguments->options.profile, "name of the saved mesh; default: the only one");
+  kind.add_option("--on", arguments->options.artefact, "name of the bed's <artefact> in the machine file")
+      ->capture_default_str();
+  kind.add_option(
+          "--offset", arguments->offset,
+          "X,Y mm, probe less nozzle, for a mesh or height map; default: the configuration's own, else 0")
+      ->delimiter(',')
+      ->expected(2);
+  kind.add_option("--u", arguments->options.u_um, "standard uncertainty of a touch, um")
+      ->check(CLI::PositiveNumber);
+  add_import_output(kind, arguments->output);
+  kind.footer("vernier fit, compare and diagnose read the output (tools/docs/touch.md).");
+  kind.callback([arguments] { run_printer(*arguments); });
+}
+
+}  // namespace vernier::commands::import_cli

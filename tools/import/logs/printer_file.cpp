@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/logs/printer_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string_view>
+
+#include "tools/format/columns.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+using Point = std::array<double, 3>;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+struct Touch {
+  Point axes = {};
+  double t = kUnknown;
+  std::map<std::string, double> temperature;  // by the name of the heater or sensor
+  std::size_t line = 0;
+};
+
+double number_in(const text::Place& place, std::string_view word) {
+  const auto value = text::parse_number(text::trimmed(word));
+  if (!value) throw text::InputError(place, std::string(word), "not a number");
+  return *value;
+}
+
+std::size_t count_in(const text::Place& place, std::string_view word) {
+  constexpr std::size_t kMost = 1000;  // of a row or column of a mesh
+  const auto value = text::parse_count(text::trimmed(word));
+  if (!value || *value < 1 || *value > kMost)
+    throw text::InputError(place, std::string(word), "not a number of points from 1 to 1000");
+  return *value;
+}
+
+/// Positions from `low` to `high`, `count` of them.
+double station(double low, double high, std::size_t count, std::size_t i) {
+  return count < 2 ? low : low + (high - low) * static_cast<double>(i) / static_cast<double>(count - 1);
+}
+
+std::vector<double> numbers_in(const text::Place& place, const std::string& line) {
+  std::vector<double> numbers;
+  for (const std::string& word : text::words_in(line, ", \t\r")) numbers.push_back(number_in(place, word));
+  return numbers;
+}
+
+// ---- Klipper: saved meshes
+
+struct Setting {
+  std::string value;
+  std::vector<std::pair<std::string, std::size_t>> more;  // lines of a value of several lines
+  std::size_t line = 0;
+};
+using Section = std::map<std::string, Setting>;
+
+/// Sections of a configuration; those that the printer saved begin each line with "#*#".
+std::map<std::string, Section> sections_of(const std::string& text) {
+  std::map<std::string, Section> sections;
+  Section* section = nullptr;
+  Setting* setting = nullptr;
+  std::size_t number = 0;
+  for (std::string raw : text::parts_of(text, '\n')) {
+    ++number;
+    if (raw.starts_with("#*#")) raw.erase(0, std::string_view("#*# ").size());
+    for (const char* const comment : {" #", " ;", "\t#", "\t;"}) raw = raw.substr(0, raw.find(comment));
+    const std::string line = text::trimmed(raw);
+    if (line.empty() || line.front() == '#' || line.front() == ';') continue;
+    const bool indented = raw.front() == ' ' || raw.front() == '\t';
+    const auto sign = line.find_first_of("=:");
+    if (line.front() == '[' && line.find(']') != std::string::npos) {
+      section = &sections[line.substr(1, line.find(']') - 1)];
+      setting = nullptr;
+    } else if (section != nullptr && !indented && sign != std::string::npos) {
+      setting = &(*section)[text::in_small_letters(text::trimmed(line.substr(0, sign)))];
+      *setting = {text::trimmed(line.substr(sign + 1)), {}, number};
+    } else if (setting != nullptr && indented) {
+      setting->more.emplace_back(line, number);
+    }
+  }
+  return sections;
+}
+
+constexpr std::string_view kMesh = "bed_mesh ";
+
+/// The mesh that the user names, the only one, or "default".
+std::string mesh_name(const std::map<std::string, Section>& sections, const std::string& file,
+                      const std::string& profile) {
+  std::vector<std::string> names;
+  for (const auto& [name, section] : sections)
+    if (name.starts_with(kMesh) && section.contains("points")) names.push_back(name.substr(kMesh.size()));
+  const auto has = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (!profile.empty() && has(profile)) return profile;
+  if (profile.empty() && names.size() == 1) return names.front();
+  if (profile.empty() && has("default")) return "default";
+  throw text::InputError({file, 0}, profile.empty() ? "--profile" : profile,
+                         names.empty() ? "the file has no saved mesh (section [bed_mesh NAME] with points)"
+                                       : "the file has these meshes: " + text::joined(names, ", ") +
+                                             "; name one with --profile");
+}
+
+class Mesh {
+ public:
+  Mesh(const std::map<std::string, Section>& sections, const std::string& file, const std::string& name)
+      : section_(sections.at(std::string(kMesh) + name)), file_(file) {}
+
+  std::vector<Touch> touches(const std::array<double, 2>& offset) const {
+    const std::size_t columns = count("x_count"), rows = count("y_count");
+    const Setting& points = setting("points");
+    if (points.more.size() != rows)
+      throw text::InputError({file_, points.line}, "points",
+                             fmt::format("the mesh has {} rows, y_count says {}", points.more.size(), rows));
+    std::vector<Touch> touches;
+    for (std::size_t j = 0; j < rows; ++j) {
+      const auto& [line, number] = points.more[j];
+      const std::vector<double> heights = numbers_in({file_, number}, line);
+      if (heights.size() != columns)
+        throw text::InputError({file_, number}, line.substr(0, 30),
+                               fmt::format("{} numbers, x_count says {}", heights.size(), columns));
+      for (std::size_t i = 0; i < columns; ++i) {
+        Touch touch;
+        touch.axes = {station(at("min_x"), at("max_x"), columns, i) - offset[0],
+                      station(at("min_y"), at("max_y"), rows, j) - offset[1], heights[i]};
+        touch.line = number;
+        touches.push_back(std::move(touch));
+      }
+    }
+    return touches;
+  }
+
+ private:
+  const Setting& setting(const std::string& name) const {
+    const auto found = section_.find(name);
+    if (found == section_.end())
+      throw text::InputError({file_, 0}, name, "the saved mesh lacks this setting");
+    return found->second;
+  }
+  double at(const std::string& name) const {
+    const Setting& found = setting(name);
+    return number_in({file_, found.line}, found.value);
+  }
+  std::size_t count(const std::string& name) const {
+    const Setting& found = setting(name);
+    return count_in({file_, found.line}, found.value);
+  }
+
+  const Section& section_;
+  const std::string& file_;
+};
+
+/// Offset of the probe in the configuration, if it has one.
+std::array<double, 2> offset_in(const std::map<std::string, Section>& sections, const std::string& file) {
+  std::array<double, 2> offset = {};
+  for (const auto& [name, section] : sections) {
+    if (name.starts_with(kMesh)) continue;
+    for (std::size_t k = 0; k < 2; ++k)
+      if (const auto found = section.find(k == 0 ? "x_offset" : "y_offset"); found != section.end())
+        offset[k] = number_in({file, found->second.line}, found->second.value);
+  }
+  return offset;
+}
+
+// ---- RepRapFirmware: height map
+
+constexpr std::string_view kHeightMap = "RepRapFirmware height map file v2";
+
+/// Columns of the second line: in the present version with the names of the axes before them.
+struct HeightMapGrid {
+  double low[2], high[2];
+  std::size_t count[2];
+};
+
+HeightMapGrid grid_of(const text::Place& place, const std::string& labels, const std::string& values) {
+  const auto names = text::parts_of(labels, ','), words = text::parts_of(values, ',');
+  if (names.size() != words.size())
+    throw text::InputError(place, values.substr(0, 30),
+                           "the line has another number of values than the labels");
+  const auto value = [&](std::string_view a, std::string_view b) -> std::string {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string name = text::trimmed(names[i]);
+      if (name == a || name == b) return words[i];
+    }
+    throw text::InputError(place, std::string(a), "the height map lacks this value");
+  };
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (const auto& [label, axis] : {std::pair("axis0", "X"), std::pair("axis1", "Y")})
+      if (text::trimmed(names[i]) == label && text::trimmed(words[i]) != axis)
+        throw text::InputError(place, words[i], "only height maps over X and Y are read");
+  HeightMapGrid grid{};
+  grid.low[0] = number_in(place, value("min0", "xmin")),
+  grid.high[0] = number_in(place, value("max0", "xmax"));
+  grid.low[1] = number_in(place, value("min1", "ymin")),
+  grid.high[1] = number_in(place, value("max1", "ymax"));
+  grid.count[0] = count_in(place, value("num0", "xnum")),
+  grid.count[1] = count_in(place, value("num1", "ynum"));
+  return grid;
+}
+
+/// Spacing as the file states it: the last point can lie before the maximum.
+void add_height_map(const std::string& text, const std::string& file, const std::array<double, 2>& offset,
+                    PrinterFile& result, std::vector<Touch>& touches) {
+  const std::vector<std::string> lines = text::parts_of(text, '\n');
+  if (lines.size() < 3) throw text::InputError({file, 1}, "height map", "the file ends after its title");
+  const HeightMapGrid grid = grid_of({file, 3}, lines[1], lines[2]);
+  if (lines.size() < 3 + grid.count[1])
+    throw text::InputError({file, lines.size()}, "height map",
+                           fmt::format("the map has fewer than {} rows", grid.count[1]));
+  for (std::size_t j = 0; j < grid.count[1]; ++j) {
+    const text::Place place{file, 4 + j};
+    const std::vector<std::string> cells = text::parts_of(lines[3 + j], ',');
+    if (cells.size() != grid.count[0])
+      throw text::InputError(place, lines[3 + j].substr(0, 30),
+                             fmt::format("{} numbers, the map has {} columns", cells.size(), grid.count[0]));
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::string cell = text::trimmed(cells[i]);
+      if (cell == "0") {  // a reading has decimals
+        ++result.not_probed;
+        continue;
+      }
+      Touch touch;
+      touch.axes = {station(grid.low[0], grid.high[0], grid.count[0], i) - offset[0],
+                    station(grid.low[1], grid.high[1], grid.count[1], j) - offset[1], number_in(place, cell)};
+      touch.line = place.line;
+      touches.push_back(std::move(touch));
+    }
+  }
+}
+
+// ---- logs
+
+/// Number that begins at `at`; moves `at` behind it.
+std::optional<double> number_at(const std::string& line, std::size_t& at) {
+  while (at < line.size() && line[at] == ' ') ++at;
+  const std::size_t end = std::min(line.find_first_not_of("+-.0123456789eE", at), line.size());
+  const auto value = text::parse_number(std::string_view(line).substr(at, end - at));
+  at = end;
+  return value;
+}
+
+/// The numbers behind these texts, in their order; nullopt: the line has another form.
+template <std::size_t kCount>
+std::optional<std::array<double, kCount>> numbers_behind(const std::string& line,
+                                                         const std::array<std::string_view, kCount>& texts) {
+  std::array<double, kCount> numbers{};
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < kCount; ++k) {
+    at = line.find(texts[k], at);
+    if (at == std::string::npos) return std::nullopt;
+    at += texts[k].size();
+    const auto number = number_at(line, at);
+    if (!number) return std::nullopt;
+    numbers[k] = *number;
+  }
+  return numbers;
+}
+
+std::optional<Point> touch_in(const std::string& line) {
+  static constexpr std::array<std::string_view, 3> kForms[] = {
+      {"probe at ", ",", " is z="}, {"probe: at ", ",", " bed will contact at z="}, {"Bed X:", "Y:", "Z:"}};
+  for (const auto& form : kForms)
+    if (const auto point = numbers_behind(line, form)) return point;
+  return std::nullopt;
+}
+
+class ProbeLog {
+ public:
+  explicit ProbeLog(PrinterFile& result) : result_(result) {}
+
+  std::vector<Touch> read(const std::string& text) {
+    std::size_t number = 0;
+    for (const std::string& line : text::parts_of(text, '\n')) {
+      ++number;
+      if (const auto stats = numbers_behind<1>(line, {"Stats "}); stats && line.starts_with("Stats "))
+        state(line, (*stats)[0]);
+      else if (const auto point = touch_in(line))
+        touch(*point, line, number);
+    }
+    return std::move(touches_);
+  }
+
+ private:
+  /// "heater_bed: target=60 temp=59.9 pwm=0.3" names a temperature.
+  void state(const std::string& line, double t) {
+    now_.t = t;
+    std::string name;
+    for (const std::string& word : text::words_in(line, " \t\r")) {
+      if (word.ends_with(':')) name = word.substr(0, word.size() - 1);
+      if (!word.starts_with("temp=") || !text::is_name(name)) continue;
+      if (const auto value = text::parse_number(std::string_view(word).substr(5)))
+        now_.temperature[name] = *value;
+    }
+  }
+
+  void touch(const Point& point, const std::string& line, std::size_t number) {
+    const std::string words = text::in_small_letters(line);
+    if (words.find("discarded") != std::string::npos || words.find("skipped") != std::string::npos) {
+      ++result_.left_out;
+      return;
+    }
+    Touch one = now_;
+    one.axes = point;
+    one.line = number;
+    touches_.push_back(std::move(one));
+  }
+
+  PrinterFile& result_;
+  Touch now_;  // time and temperatures of the last state
+  std::vector<Touch> touches_;
+};
+
+// ---- the table
+
+ImportTable table_of(const std::string& file, const std::vector<Touch>& touches,
+                     const PrinterOptions& options) {
+  ImportTable table;
+  table.file = file;
+  const auto add = [&](const std::string& name, const std::string& unit, const auto& value_of) {
+    std::vector<double> values;
+    for (const Touch& touch : touches) values.push_back(value_of(touch));
+    table.add(name, unit, values);
+  };
+  for (const Touch& touch : touches) table.line.push_back(touch.line);
+  const char* const names[] = {"X", "Y", "Z"};
+  for (std::size_t k = 0; k < 3; ++k) add(names[k], "mm", [&](const Touch& touch) { return touch.axes[k]; });
+  table.columns.push_back(
+      {format::columns::kOn, "", std::vector<std::string>(touches.size(), options.artefact)});
+  if (options.u_um) add(format::columns::kUncertainty, "um", [&](const Touch&) { return *options.u_um; });
+  const auto all = [&](const auto& has) { return std::all_of(touches.begin(), touches.end(), has); };
+  if (all([](const Touch& touch) { return !std::isnan(touch.t); }))
+    add(format::columns::kTime, "s", [&](const Touch& touch) { return touch.t - touches.front().t; });
+  for (const auto& [name, first] : touches.front().temperature)
+    if (all([&, key = name](const Touch& touch) { return touch.temperature.contains(key); }))
+      add("T_" + name, "degC", [&, key = name](const Touch& touch) { return touch.temperature.at(key); });
+  return table;
+}
+
+}  // namespace
+
+PrinterFile read_printer_file(const std::string& text, const std::string& file,
+                              const PrinterOptions& options) {
+  PrinterFile result;
+  std::vector<Touch> touches;
+  result.offset_mm = options.offset_mm.value_or(std::array<double, 2>{});
+  if (text.starts_with(kHeightMap)) {
+    result.kind = PrinterFile::Kind::kHeightMap;
+    add_height_map(text, file, result.offset_mm, result, touches);
+  } else if (text.find("probe at ") == std::string::npos && text.find("probe: at ") == std::string::npos &&
+             text.find('[' + std::string(kMesh)) != std::string::npos) {
+    const auto sections = sections_of(text);
+    result.kind = PrinterFile::Kind::kSavedMesh;
+    result.name = mesh_name(sections, file, options.profile);
+    if (!options.offset_mm) result.offset_mm = offset_in(sections, file);
+    touches = Mesh(sections, file, result.name).touches(result.offset_mm);
+  } else {
+    touches = ProbeLog(result).read(text);
+    result.offset_mm = {};
+  }
+  if (touches.empty())
+    throw text::InputError(
+        {file, 0}, "touches",
+        "the file has none: it is no configuration with a saved mesh (Klipper), no log with "
+        "lines \"probe at X,Y is z=Z\" or \"Bed X: X Y: Y Z: Z\", and no heightmap.csv of "
+        "RepRapFirmware");
+  result.table = table_of(file, touches, options);
+  return result;
+}
+
+}  // namespace vernier::importer
