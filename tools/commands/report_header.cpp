@@ -2,8 +2,11 @@
 #include "tools/commands/report_header.h"
 
 #include <algorithm>
+#include <iterator>
+#include <string_view>
 
 #include "tools/commands/command.h"
+#include "tools/report/assets.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/text/words.h"
@@ -12,6 +15,37 @@ namespace vernier::commands {
 namespace {
 
 using Entries = std::vector<std::pair<std::string, std::string>>;
+
+std::string signs_of(const std::string& text) {
+  std::string signs;
+  std::copy_if(text.begin(), text.end(), std::back_inserter(signs),
+               [](char c) { return c == '#' || c == '*'; });
+  return signs;
+}
+
+/// Reads the texts of a language for the pages: {"language": "de", "decimal": ",", "texts": {English:
+/// translation}}. In a text # is a number and * any words, in the translation the same signs in the same
+/// order.
+nlohmann::ordered_json parse_catalogue(std::string_view json, const std::string& file) {
+  constexpr std::size_t kDeepest = 8;
+  const auto fail = [&](const std::string& word, const std::string& what) {
+    throw text::InputError({file, 0}, word, what);
+  };
+  if (text::nests_deeper_than(json, kDeepest)) fail("catalogue", "the JSON is nested too deeply");
+  nlohmann::ordered_json catalogue = nlohmann::ordered_json::parse(json, nullptr, false);
+  if (!catalogue.is_object() || !catalogue.contains("texts") || !catalogue["texts"].is_object())
+    fail("catalogue",
+         "a catalogue of texts is JSON: {\"language\": \"fr\", \"decimal\": \",\", \"texts\": {\"Summary\": "
+         "…}}");
+  for (const char* const name : {"language", "decimal"})
+    if (catalogue.contains(name) && !catalogue[name].is_string()) fail(name, "must be a text");
+  for (const auto& [text, translation] : catalogue["texts"].items()) {
+    if (!translation.is_string()) fail(text, "the translation must be a text");
+    if (signs_of(text) != signs_of(translation.get<std::string>()))
+      fail(text, "the signs # and * of the translation must be those of the text, in the same order");
+  }
+  return catalogue;
+}
 
 bool take(Entries& entries, const std::string& words) {
   const auto at = words.find('=');
@@ -47,6 +81,10 @@ Entries ReportHeader::entries() const {
 }
 
 nlohmann::ordered_json ReportHeader::on(nlohmann::ordered_json page) const {
+  if (!translation.empty())
+    page["catalogue"] = parse_catalogue(text::read_file(translation), translation);
+  else if (!language.empty())
+    page["catalogue"] = parse_catalogue(report::report_german(), "de");
   const Entries list = entries();
   if (list.empty()) return page;
   page["header"] = nlohmann::ordered_json::array();
@@ -65,6 +103,15 @@ void add_report_header(CLI::App& command, ReportHeader& header) {
       .add_option("--letterhead", header.file,
                   "a file of such entries, a line each, for every report of a shop")
       ->type_name(kReads);
+  CLI::Option* const language =
+      command
+          .add_option("--language", header.language, "language of the report's texts: de (default: English)")
+          ->check(CLI::IsMember({"de"}));
+  command
+      .add_option("--translation", header.translation,
+                  "a file (JSON) with the texts of another language; tools/docs/languages.md has its form")
+      ->type_name(kReads)
+      ->excludes(language);
 }
 
 }  // namespace vernier::commands

@@ -5,8 +5,9 @@
 namespace vernier::report {
 
 /// report_script: the bundled plots (tools/report/web, one script). report_style: the style sheet of the
-/// reports.
+/// reports. report_german: the catalogue tools/report/languages/de.json.
 std::string_view report_script();
+std::string_view report_german();
 std::string_view report_style();
 
 }  // namespace vernier::report

@@ -4,6 +4,7 @@ import { BarChart, LineChart, ScatterChart } from 'echarts/charts';
 import { GridComponent, LegendComponent, MarkLineComponent, PolarComponent, TitleComponent, TooltipComponent } from 'echarts/components';
 import { CanvasRenderer, SVGRenderer } from 'echarts/renderers';
 import { el, exportButtons } from './dom.js';
+import { t } from './translate.js';
 
 use([
   BarChart,
@@ -41,11 +42,31 @@ export function colours() {
   };
 }
 
+const named = (one) => (one && typeof one === 'object' && 'name' in one ? { ...one, name: t(one.name) } : one);
+const axis = (one) => {
+  const of = named(one);
+  return Array.isArray(of?.data) ? { ...of, data: of.data.map((text) => t(text)) } : of;
+};
+const each = (list, change) => (Array.isArray(list) ? list.map(change) : list && change(list));
+
+/** The names of series, axes and categories in the language of the report. */
+function localised({ height, option }) {
+  const translated = { ...option };
+  for (const [key, change] of [
+    ['series', named],
+    ['xAxis', axis],
+    ['yAxis', axis],
+  ])
+    if (option[key] !== undefined) translated[key] = each(option[key], change);
+  return { height, option: translated };
+}
+
 /**
  * A chart in a box. `options(width)` gives {height, option} for a width in px and is asked again when the width or the
  * colours change. Drawn when it comes near the window.
  */
-export function chart(label, options) {
+export function chart(label, untranslated) {
+  const options = (width) => localised(untranslated(width));
   const box = el('div', { class: 'chart', role: 'img', 'aria-label': label });
   const entry = { box, options, instance: null, width: 0 };
   // Charts that a choice has replaced.
@@ -107,9 +128,9 @@ const cell = (value) => {
 
 /** The numbers of a chart: a row a point, with the names of its axes. */
 function csv(option) {
-  const axis = (one) => [one].flat()[0] ?? {};
-  const x = axis(option.xAxis ?? option.angleAxis),
-    y = axis(option.yAxis ?? option.radiusAxis);
+  const first = (one) => [one].flat()[0] ?? {};
+  const x = first(option.xAxis ?? option.angleAxis),
+    y = first(option.yAxis ?? option.radiusAxis);
   const rows = [['series', x.name || 'x', y.name || 'y']];
   const categories = x.data ?? y.data;
   for (const series of [option.series ?? []].flat())

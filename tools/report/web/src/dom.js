@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Everything that comes from a file or a user goes in as text, never as markup.
 
-/** An element with attributes and children; strings become text nodes. */
+import { t } from './translate.js';
+
+/** Attributes that a person reads or hears. */
+const kSpoken = new Set(['title', 'aria-label', 'placeholder']);
+
+/** An element with attributes and children; strings become text nodes, in the language of the report. */
 export function el(name, attributes = {}, ...children) {
   const node = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
-    if (value !== undefined && value !== null) node.setAttribute(key, value);
+    if (value !== undefined && value !== null) node.setAttribute(key, kSpoken.has(key) ? t(value) : value);
   }
   for (const child of children.flat(Infinity)) {
-    if (child !== null && child !== undefined) node.append(child instanceof Node ? child : String(child));
+    if (child !== null && child !== undefined) node.append(child instanceof Node ? child : t(String(child)));
   }
   return node;
 }

@@ -7,6 +7,7 @@ import { curves, histogram, ladder } from './plots.js';
 import { volume } from './volume.js';
 import { candidates, causes, falling, next, pictures, simulated, verdict } from './diagnosis.js';
 import { failure, findingList } from './failure.js';
+import { t, useCatalogue } from './translate.js';
 
 const root = document.getElementById('report');
 
@@ -178,6 +179,11 @@ function part(one) {
 }
 
 const data = readData();
+useCatalogue(data.result.catalogue);
+// What the program wrote into the page before this script ran.
+document.title = t(document.title);
+for (const node of document.querySelectorAll('nav[aria-label]')) node.setAttribute('aria-label', t(node.getAttribute('aria-label')));
+for (const node of document.querySelectorAll('header h1, header dt, a.skip')) node.textContent = t(node.textContent);
 const pages = { compare: comparison, diagnose: diagnosis, improve: improvement };
 if (pages[data.type]) pages[data.type](data.result);
 else for (const one of data.result.sections) part(one);

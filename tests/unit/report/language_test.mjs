@@ -1,0 +1,43 @@
+#!/usr/bin/env node
+// SPDX-License-Identifier: GPL-3.0-or-later
+// language_test.mjs PAGE LANGUAGE [TEXT…]: the page states its language; in German no English sentence is left and numbers have a
+// comma; of another language the texts are there. Skipped without a browser.
+import { pathToFileURL } from 'node:url';
+import { Page, browserName } from '../workbench/browser.mjs';
+
+if (browserName() === null) {
+  console.log('language_test: Skipped, no headless browser');
+  process.exit(0);
+}
+const [, , path, language, ...wanted] = process.argv;
+const kEnglish = /\b(the|of|is|are|with|what|which|and|by|not|from|over|against|forward|backward|mean|value|rows|error)\b/i;
+const page = await Page.open({ width: 1280, height: 720 });
+const faults = [];
+try {
+  await page.send('Page.navigate', { url: pathToFileURL(path).href });
+  const value = async (expression) =>
+    (await page.send('Runtime.evaluate', { expression, returnByValue: true, awaitPromise: true })).result.value;
+  for (let tries = 0; tries < 100 && !(await value("document.documentElement.dataset.ready === 'yes'")); ++tries)
+    await new Promise((done) => setTimeout(done, 100));
+  const texts = await value(`(() => {
+    const found = [document.title];
+    const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT,
+      (node) => node.parentElement.closest('script, style, noscript') ? NodeFilter.FILTER_REJECT : NodeFilter.FILTER_ACCEPT);
+    while (walk.nextNode()) if (walk.currentNode.textContent.trim()) found.push(walk.currentNode.textContent.trim());
+    for (const node of document.querySelectorAll('[title], [aria-label]'))
+      for (const name of ['title', 'aria-label']) if (node.getAttribute(name)) found.push(node.getAttribute(name));
+    return found;
+  })()`);
+  if ((await value('document.documentElement.lang')) !== language) faults.push(`lang is not ${language}`);
+  if (texts.length < 50) faults.push(`the page has ${texts.length} texts only`);
+  for (const one of wanted) if (!texts.includes(one)) faults.push(`'${one}' is not on the page`);
+  if (language === 'de') {
+    for (const one of new Set(texts)) if (kEnglish.test(one)) faults.push(`English: ${one}`);
+    if (!texts.some((one) => /^[−-]?\d+,\d+$/.test(one))) faults.push('no number has a comma');
+    for (const one of new Set(texts)) if (/^[−-]?\d+\.\d+$/.test(one)) faults.push(`point: ${one}`);
+  }
+} finally {
+  await page.close();
+}
+for (const fault of faults) console.log(`language_test: ${fault}`);
+process.exit(faults.length ? 1 : 0);
