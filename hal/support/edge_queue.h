@@ -14,8 +14,9 @@ class EdgeQueue {
   static constexpr std::uint32_t kRoom = 128;
   static constexpr std::uint32_t kNoNumber = 0;
 
-  /// Adds an edge. number: increases by one with each edge, from 1; kNoNumber if the device gives no numbers.
-  /// If the queue is full, the edge is dropped and reported as lost. Real-time safe.
+  /// Adds an edge. number: the number that the device gave to the edge; it increases by one with each edge. A
+  /// device never gives 0. kNoNumber (0): the device does not number its edges. If the queue is full, the
+  /// edge is dropped and reported as lost. Real-time safe.
   void put(const ProbeEdge& edge, std::uint32_t number = kNoNumber) noexcept {
     if (count_ == kRoom) return put_loss();
     const bool out_of_turn = known_ && edge.made == last_made_;

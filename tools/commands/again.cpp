@@ -204,7 +204,9 @@ class Again {
       std::ptrdiff_t up = 0;
       for (std::size_t at = 0; (at = word.find("..", at)) != std::string::npos; at += 2) ++up;
       if (up > depth)
-        throw text::InputError({file_, 0}, word, "this name leaves the folder of the computer's files");
+        throw text::InputError({file_, 0}, word,
+                               "this file name has too many \"..\": it leads out of the temporary folder in "
+                               "which the command runs again");
     }
   }
 

@@ -237,12 +237,14 @@ TrialEnd ImageTrial::keep() {
       std::this_thread::sleep_for(kLookEvery);
     } while (!is_over(end));
   } catch (const text::InputError& error) {
-    return {Kind::kAway,
-            std::string("the board was asked to confirm the image and does not answer: ") + error.what()};
+    return {Kind::kAway, std::string("the program sent the command to confirm the correction image, and the "
+                                     "board does not answer:  ") +
+                             error.what()};
   } catch (const text::LimitNotMet& error) {
-    return {Kind::kNotInEffect, std::string("the board was asked to confirm the image: ") + error.what()};
+    return {Kind::kNotInEffect,
+            std::string("the board did not confirm the correction image: ") + error.what()};
   }
-  return {Kind::kNotInEffect, "the board was asked to confirm the image: " + why};
+  return {Kind::kNotInEffect, "the board did not confirm the correction image: " + why};
 }
 
 /// Gives the image up where the trial is this rollout's own.

@@ -295,7 +295,8 @@ class Oddities {
     if (scales || base || unit == "rad" || unit == "um/m" || unit == "%") return;
     if (known->dimension == format::Dimension::kLength || known->dimension == format::Dimension::kAngle)
       findings_.warn(line, unit,
-                     "a unit never scales the value of " + name + ": the chain takes it as " +
+                     "the unit does not convert the value of " + name +
+                         ": the equations of the machine use the value in " +
                          format::base_unit(known->dimension),
                      std::string("write the value in ") + format::base_unit(known->dimension) +
                          ", or the factor in the term");

@@ -182,7 +182,8 @@ class Meaning {
     for (std::size_t row = 0; same != nullptr && row < table_.rows.size(); ++row)
       if (!same->cell[row].empty() && !on->cell[row].empty())
         findings_.add_of_kind("same and on", LintWeight::kError, line(row), on->cell[row],
-                              "a row meets one thing: fill one of the columns same and on");
+                              "the columns same and on both have a label in this row: a touch belongs to an "
+                              "unknown point (same) or to an artefact (on); empty one of the two cells");
   }
 
   void look_at_points(const LintColumn& same) {

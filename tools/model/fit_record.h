@@ -53,8 +53,8 @@ struct FitRecord {
     std::array<double, 3> size{};
   };
   std::vector<Alternative> alternatives;
-  /// Correlation of the errors of the readings (fit::NoiseModel). The components are in units of u, or in mm
-  /// if no u was given. Kept if the errors were correlated or larger than u.
+  /// Noise model of the readings (fit::NoiseModel). The components are in units of u, or in mm if no u was
+  /// given. The record contains a noise model only if the errors were correlated or larger than u.
   struct Noise {
     double own = 1, pose = 0, run = 0, drift = 0;
     double time_constant = 0, step = 0;  // of the drift, and median of the intervals between rows: s or rows

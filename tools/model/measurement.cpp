@@ -406,7 +406,8 @@ class Builder {
       if (words[row].empty()) continue;
       if (result_.thing[row] != kNoThing)
         throw text::InputError(reader_.place(row), words[row],
-                               "a row meets one thing: fill one of the columns same and on");
+                               "the columns same and on both have a label in this row: a touch belongs to an "
+                               "unknown point (same) or to an artefact (on); empty one of the two cells");
       const auto [at, fresh] = known.try_emplace({words[row], set_up_of_thing(row)}, result_.things.size());
       if (fresh) {
         result_.things.push_back(make(row, words[row]));

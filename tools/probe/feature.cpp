@@ -392,9 +392,12 @@ struct BlockModel {
 };
 
 MeasuredFeature fit_block(const Touches& touches, const FeatureSetup& setup) {
-  if (!touches.n) throw text::InputError("a block needs the normal of the touched face in each row (nx, ny)");
+  if (!touches.n)
+    throw text::InputError(
+        "the rows of a gauge block must have the normal of the touched face (columns nx, ny)");
   if (!(setup.block_size_mm[0] > 0 && setup.block_size_mm[1] > 0))
-    throw text::InputError("a block needs its size (--size X,Y)");
+    throw text::InputError(
+        "the size of the gauge block is missing: give its lengths along X and Y in mm (--size X,Y)");
   BlockModel model{
       touches, {}, {}, {setup.block_size_mm[0] / 2, setup.block_size_mm[1] / 2}, setup.ball_radius_mm};
   std::set<int> faces;

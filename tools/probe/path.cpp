@@ -93,9 +93,9 @@ void turning_tail(std::string& text, int block) {
 }
 
 std::string turning_program(const ProbePath& path) {
-  if (!path.sphere) throw text::InputError("the turning dialect is for a sphere");
+  if (!path.sphere) throw text::InputError("--dialect turning (lathes) writes programs for a sphere only");
   if (path.feeds.size() != 1)
-    throw text::InputError("the turning dialect takes one feed: write one program for each");
+    throw text::InputError("--dialect turning (lathes) accepts one feed: write one program for each feed");
   std::string text;
   turning_head(path, text);
   auto out = std::back_inserter(text);

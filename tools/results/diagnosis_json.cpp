@@ -151,9 +151,10 @@ text::Assurance assurance_of(const diagnose::Diagnosis& diagnosis, const model::
                     std::string("The verdict is ") + diagnose::verdict_name(diagnosis.verdict) + ".");
   assurance.require("fit-converged", diagnosis.end.converged,
                     diagnosis.end.converged ? "The fit converged." : "The fit did not converge.");
-  assurance.require(
-      "readings-of-this-machine", diagnosis.end.absurd.empty(),
-      diagnosis.end.absurd.empty() ? "The readings are those of this machine." : diagnosis.end.absurd + ".");
+  assurance.require("readings-of-this-machine", diagnosis.end.absurd.empty(),
+                    diagnosis.end.absurd.empty() ? "The residuals are small enough for readings of this "
+                                                   "machine: units, signs and columns are plausible."
+                                                 : diagnosis.end.absurd + ".");
   assurance.at_least("residual-is-noise", diagnosis.left.omnibus_p,
                      diagnose::DiagnoseThresholds().verdict.structure,
                      "Probability that noise alone leaves a residual with as much structure.");

@@ -53,7 +53,9 @@ text::Assurance assurance_of(const fit::FitResult& result) {
   text::Assurance word(text::AssuranceKind::kFit);
   word.require("converged", result.converged, "The fit converged.");
   word.require("sensible", result.absurd.empty(),
-               result.absurd.empty() ? "The readings are those of this machine." : result.absurd);
+               result.absurd.empty() ? "The residuals are small enough for readings of this machine: units, "
+                                       "signs and columns are plausible."
+                                     : result.absurd);
   if (result.check_ratio)
     word.at_most(
         "check-rows", *result.check_ratio, 1,

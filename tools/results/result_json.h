@@ -8,7 +8,7 @@
 
 namespace vernier::results {
 
-/// {"X": 12.5, …}: axes of state 0, mm or deg.
+/// Returns {"X": 12.5, …}: the positions of the axes in the first of the states, mm or deg.
 nlohmann::ordered_json axes_json(const model::Machine& machine, const model::States& states);
 /// {"position_mm": [3], "rotation_deg": [3] (rotation vector), "direction": [3] (tool z axis)} of state 0.
 nlohmann::ordered_json pose_json(const model::Poses& poses);

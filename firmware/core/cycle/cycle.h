@@ -95,7 +95,8 @@ class Cycle {
   std::int64_t slew(std::uint32_t axis) const noexcept { return drive_[axis].slew; }
   /// The correction that a board's axis was given last.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
-  /// Returns the newest good state of a board's axis, and value of a board's input.
+  /// The newest valid motion of an axis of the board (axis_state), and the newest valid value of an input of
+  /// the board (input_value).
   const AxisInput& axis_state(std::uint32_t axis) const noexcept { return axes_[axis].state(); }
   InputMicro input_value(std::uint32_t input) const noexcept { return inputs_[input]; }
   const PathReading& path() const noexcept { return path_; }

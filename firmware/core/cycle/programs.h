@@ -115,7 +115,7 @@ class Programs {
   std::atomic<const LoadedProgram*> seen_{nullptr}, looked_at_{nullptr};
   std::uint32_t taken_over_ = 0;
   SharedCount until_us_;  // of the trial; 0: no trial. Used by the guardian
-  // Used by the guardian. A program is in none, one or several of these.
+  // Pointers that the guardian uses. Several of these pointers can point to the same program.
   LoadedProgram *running_ = nullptr, *offered_ = nullptr, *wanted_ = nullptr, *kept_ = nullptr,
                 *tried_ = nullptr;
   LoadedProgram empty_[2];  // removes all corrections if no image can be restored

@@ -151,7 +151,10 @@ void run_rollout(const RolloutArguments& arguments) {
     return;
   }
   const auto key = upload::given_key(arguments.key);
-  if (!key) throw text::InputError("--key is missing: the secret key that signs the images");
+  if (!key)
+    throw text::InputError(
+        "--key is missing: give the file of the secret key with which the command signs the correction "
+        "images");
   if (arguments.signed_by.empty())
     throw text::InputError("--signed-by is missing: name the person responsible for the images");
   RolloutArguments mine = arguments;

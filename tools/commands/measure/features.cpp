@@ -320,7 +320,9 @@ void register_features(CLI::App& vernier) {
   command->add_flag("--centre", arguments->centred, "take the record's mean off each signal");
   command->add_option("--align", arguments->align,
                       "SIGNAL=AXIS: find the record's clock from the axis' acceleration in the rows");
-  command->add_option("--offset", arguments->offset_s, "t of the rows at t 0 of the record, s (0)");
+  command->add_option("--offset", arguments->offset_s,
+                      "time difference of the two clocks, s: the value of column t in the rows at the time "
+                      "when the record begins (t = 0); default 0");
   command->add_option("--clock", arguments->clock_rate, "seconds of the rows per second of the record (1)")
       ->check(CLI::PositiveNumber);
   command

@@ -115,7 +115,9 @@ create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& comma
   if (!arguments.name.empty()) plan.name = arguments.name;
   plan.positioning_only = arguments.errors == "positioning";
   if (plan.positioning_only && !plan.arm.empty())
-    throw text::InputError("--errors positioning: of machines with slides; a robot's rows are all it has");
+    throw text::InputError(
+        "--errors positioning is only for machines with linear axes; a robot always has all errors of its "
+        "joints and links");
   return plan;
 }
 

@@ -67,7 +67,7 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
   command->add_option("--steps", arguments->steps, steps)->type_name("X,Y,Z");
   command
       ->add_option("--tolerance", arguments->common.tolerance_um,
-                   "largest error of the heights between two points of the mesh, um")
+                   "largest error of the interpolated height between the points of the mesh, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->footer(

@@ -284,9 +284,12 @@ void register_probe_path(CLI::App& vernier) {
   command->add_option("--name", path.name, "of the program")->capture_default_str();
   command->add_option("--title", path.title, "")->capture_default_str();
   command
-      ->add_option("--centre", path.centre_offset, "turning: from zero to the sphere's axis, program units")
+      ->add_option("--centre", path.centre_offset,
+                   "turning: distance from the program's zero to the axis of the spindle, on which the "
+                   "sphere is, in the unit of the program")
       ->capture_default_str();
-  command->add_option("--dwell", path.dwell, "turning: after a touch")->capture_default_str();
+  command->add_option("--dwell", path.dwell, "turning: dwell time after a touch, in the unit of the dialect")
+      ->capture_default_str();
   command->add_option("--comment", path.comments, "a comment line at the top of the program; again for each")
       ->allow_extra_args(false);
   command->add_option("-o", arguments->output, "program")->type_name(kWrites)->required();

@@ -93,7 +93,8 @@ std::uint64_t send(const Arguments& arguments, upload::Client& client) {
   const auto key = upload::given_key(arguments.key);
   if (!key)
     throw text::InputError(
-        "--key is missing: the secret key that signs the image (`vernier keys` makes one)");
+        "--key is missing: give the file of the secret key with which the command signs the correction image "
+        "(`vernier keys` makes a key)");
   const SlotsReply slots = client.slots();
   const auto upload = upload::make_upload(image, *key, time_of_signing(arguments, slots),
                                           security_of(arguments, slots), client.info().board);

@@ -151,10 +151,10 @@ struct FinePeriodThresholds {
   /// frequencies keeps nine tenths of its height.
   double per_range = 3;
   /// Limits of the search for short periods: periods over the range, and periods for each measured position.
-  /// The first limit is a ball screw of 1 mm pitch on a metre. The second limit: fewer positions per period
-  /// do not show the cyclic error. With twelve positions the best of a thousand periods explains 80 % of an
-  /// unrelated pattern, and other periods explain as much. A cyclic error that was found with so few
-  /// positions is reported with its aliases (Scanner::aliases).
+  /// The limit of the periods over the range (1000) is a ball screw of 1 mm lead on 1 m. The limit of the
+  /// periods per position: fewer positions per period do not show the cyclic error. With twelve positions the
+  /// best of a thousand periods explains 80 % of an unrelated pattern, and other periods explain as much. A
+  /// cyclic error that was found with so few positions is reported with its aliases (Scanner::aliases).
   double most_periods = 1000, per_position = 80;
   /// Number of peaks of a location that are scored in full, in addition to the slowest of those that fit
   /// nearly as well.

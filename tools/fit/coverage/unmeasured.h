@@ -31,9 +31,10 @@ std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters);
 std::vector<model::FitRecord::Unvaried> unvaried_dependences(const ReadingsBesideSetUp& readings);
 
 /// Returns those properties of the model that no reading confirms, as possible motions of the tool point at
-/// each state, one standard uncertainty: 3 N x e, mm. An unvaried dependence may be as in the model or
-/// absent. An alternative term may be the true term (tools/fit/coverage/alternatives.h). e depends only on
-/// machine and record. bare: without BaseShifts, fitted; parameters: those of `bare`.
+/// each state, one standard uncertainty: 3 N x e, mm. There are two kinds of properties. An unvaried
+/// dependence may be as in the model or absent. An alternative term may be the true term in place of the
+/// model's term (tools/fit/coverage/alternatives.h). e is the number of properties; it depends only on `bare`
+/// and `record`. bare: the fitted machine without its BaseShifts; parameters: the parameters of `bare`.
 Eigen::MatrixXd unmeasured_columns(const model::Machine& bare, const model::ParameterSet& parameters,
                                    const model::FitRecord& record, const model::States& states);
 

@@ -7,7 +7,7 @@
 
 namespace vernier::workbench {
 
-/// Texts that are one message between two processes.
+/// One message between two processes: a list of texts.
 using Message = std::vector<std::string>;
 
 /// Reads the next message of a stream. Returns false in three cases: the stream ended; `patience_s` passed
