@@ -40,7 +40,7 @@ class Mirror {
     std::error_code none;
     std::string name = (fs::temp_directory_path(none) / "vernier-again-XXXXXX").string();
     if (none || mkdtemp(name.data()) == nullptr)
-      throw text::InputError({name, 0}, "", "cannot be made: the folder for temporary files");
+      throw text::InputError({name, 0}, "", "the folder for temporary files cannot be created");
     root_ = fs::canonical(name).string();
   }
   ~Mirror() {
@@ -197,7 +197,8 @@ class Again {
     const auto& command = made_.command;
     if (command.empty() || std::ranges::find(kOfFiles, command.front()) == kOfFiles.end())
       throw text::InputError({file_, 0}, command.empty() ? "" : command.front(),
-                             "the record has a command that makes no file from files; it is not run");
+                             "the record contains a command that does not make output files from input "
+                             "files; `vernier again` does not run this command");
     // Above the root of the computer there is nothing, but above that of the temporary folder there is.
     const auto depth = std::distance(folder_.begin(), folder_.end()) - 1;
     for (const std::string& word : command) {

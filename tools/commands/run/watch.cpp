@@ -100,7 +100,9 @@ void register_watch(CLI::App& vernier) {
       ->capture_default_str();
   command->add_option("--seconds", arguments->seconds, "stop after so long (0: never)")
       ->check(CLI::Range(0.0, 1e9));
-  command->add_option("--json", arguments->json, "- : one JSON object a line on standard output")
+  command
+      ->add_option("--json", arguments->json,
+                   "output for programs; - writes one JSON object per line to standard output")
       ->check(CLI::IsMember({"-"}));
   command->callback([arguments] { watch(*arguments); });
 }
