@@ -166,7 +166,7 @@ class Decision {
     for (const std::size_t item : accepted_)
       if (const std::string doubt = doubt_of_shape(finder_.evidence(), pool_, accepted_, item);
           !doubt.empty())
-        return "The residual is reduced to the noise, but the cause cannot be named:  " + doubt + ".";
+        return "The residual is reduced to the noise, but the cause cannot be named: " + doubt + ".";
     return {};
   }
 

@@ -86,7 +86,7 @@ void set_errors(model::Machine& machine, const std::string& text) {
     if (equals == std::string::npos) throw text::InputError({"--errors", 0}, word, "expected NAME=VALUE");
     const auto index = machine.find_static(word.substr(0, equals));
     if (!index)
-      throw text::InputError({"--errors", 0}, word, "no constant (static) has this name in  " + machine.name);
+      throw text::InputError({"--errors", 0}, word, "no constant (static) has this name in " + machine.name);
     model::Static& target = machine.statics[*index];
     if (target.hidden)
       throw text::InputError({"--errors", 0}, word,

@@ -192,11 +192,10 @@ void run_or_stand(const RolloutArguments& arguments) {
 
 void add_rollout(CLI::App& fleet) {
   const auto arguments = std::make_shared<RolloutArguments>();
-  CLI::App* command =
-      fleet.add_subcommand("rollout",
-                           "send correction images to boards in stages: each board runs its image on trial, "
-                           "and the image is confirmed if the machine is not less accurate. At the first "
-                           "less accurate machine the rollout reverts the image and stops");
+  CLI::App* command = fleet.add_subcommand(
+      "rollout",
+      "send correction images to boards in stages: trial, judgement, confirmation. At the first machine that "
+      "becomes less accurate the rollout reverts the image and stops");
   command->add_option("NAME", arguments->options.name, "name of this rollout; a second call continues it")
       ->required();
   add_registry(*command, arguments->registry);

@@ -179,7 +179,7 @@ void add_field(nlohmann::ordered_json& json, const model::Machine& machine) {
   if (auto field = results::volume_json(machine, kNodes, why_not))
     json["field"] = std::move(*field);
   else
-    json["field_note"] = "The report has no diagram of the error over the working volume:  " + why_not;
+    json["field_note"] = "The report has no diagram of the error over the working volume: " + why_not;
 }
 
 /// Did it help?
