@@ -59,7 +59,8 @@ std::array<char, 2> plane_letters(int plane) {
 ProgramArc arc_of(const std::vector<Word>& words, const ArcReading& reading, const Eigen::VectorXd& from,
                   const Eigen::VectorXd& to, const text::Place& place) {
   if (const auto turns = value_of(words, 'P'); turns && *turns != 1)
-    throw text::InputError(place, "P", "an arc of several turns has to be written turn by turn");
+    throw text::InputError(place, "P",
+                           "an arc of several turns is not supported: write one arc for each turn");
   const Vector2d start(from[reading.axis[0]], from[reading.axis[1]]);
   const Vector2d end(to[reading.axis[0]], to[reading.axis[1]]);
   const auto radius = value_of(words, 'R');

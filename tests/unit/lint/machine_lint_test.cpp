@@ -51,7 +51,8 @@ TEST(MachineLint, EveryErrorIsSaidAtOnce) {
 </machine>)");
   some_line_has(lines, "m.xml:4: error: \"0,001\": value must be a number -- decimal comma?");
   some_line_has(lines, "m.xml:5: warning: \"inch\": unknown unit, of offset -- did you mean in?");
-  some_line_has(lines, "m.xml:6: error: \"5mm\": value must be a number -- a unit is written in unit=");
+  some_line_has(lines,
+                "m.xml:6: error: \"5mm\": value must be a number -- write the unit as the attribute unit=");
   some_line_has(lines, "m.xml:8: error: \"offset\": this name stands twice");
   some_line_has(lines,
                 "m.xml:11: error: \"maxcorection\": unknown attribute of <X> -- did you mean maxcorrection?");

@@ -59,7 +59,7 @@ class AccuracyPlanner {
         own_.push_back(static_cast<Index>(i));
     if (own_.empty())
       throw text::InputError({knowledge.machine.file, 0}, knowledge.machine.name,
-                             "the machine file has no free parameter that could be measured");
+                             "no reading can determine a free parameter of the machine file");
     aim_ = aim_rows(knowledge, aim, own_);
     size_ = static_cast<Index>(knowledge.parameters.size()) + 9;
     weight_ = MatrixXd::Zero(size_, size_);
