@@ -44,7 +44,7 @@ class AxisReader {
 /// A device that gives positions only: the firmware derives the motion.
 class PositionReader : public AxisReader {
  public:
-  /// Sets feed and curvature to zero: the device does not know them. Real-time safe.
+  /// Sets feed and curvature to zero, because the device does not measure them. Real-time safe.
   HalFault read_path(PathReading& reading) noexcept override { return reading = {}, HalFault::kNone; }
   bool gives_motion() const noexcept override { return false; }
 };

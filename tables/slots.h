@@ -33,7 +33,7 @@ static_assert(offsetof(SlotRecord, magic) == 0 && offsetof(SlotRecord, sequence)
               offsetof(SlotRecord, confirmed) == 36 && offsetof(SlotRecord, trial) == 37 &&
               offsetof(SlotRecord, reserved) == 38 && offsetof(SlotRecord, reserved2) == 40 &&
               offsetof(SlotRecord, checksum) == 44);
-/// Version of the record; the version is not stored. A new layout takes a new kSlotMagic and a new number
+/// Version of the record; the version is not stored. A new layout requires a new kSlotMagic and a new number
 /// here.
 constexpr std::uint32_t kSlotRecordVersion = 2;
 constexpr std::uint32_t kSlotMagic = 0x324f4c53;  // "SLO2"
@@ -77,8 +77,8 @@ class Slots {
   /// Returns the signing time of the confirmed image; 0 without a confirmed image.
   std::uint64_t issued() const noexcept { return now_.issued; }
   std::uint64_t trial_issued() const noexcept { return now_.trial_issued; }
-  /// Limits for a new upload: signing time above newest_issued(), security at least security(). Both are the
-  /// highest values of all images ever tried.
+  /// Limits for a new upload: signing time above newest_issued(), security at least security(). Both values
+  /// are the highest of all images that the board has run on trial.
   std::uint64_t newest_issued() const noexcept { return now_.newest_issued; }
   std::uint32_t security() const noexcept { return now_.security; }
   /// Returns the slot that may be overwritten: neither confirmed nor on trial; kNoSlot while a trial runs.

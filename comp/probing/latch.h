@@ -67,7 +67,8 @@ class LatchRing {
 
   LatchSample samples_[kSize];
   std::uint64_t count_ = 0, begin_ = 0;  // samples begin_ .. count_ - 1 belong together
-  // Of the last seek(): first of the four neighbours, and (when - t_i) / (t_j - t_i) in Q28.
+  // Result of the last seek(): index of the first of the four neighbouring samples, and (when - t_i) / (t_j -
+  // t_i) in Q28.
   std::uint64_t first_ = 0;
   std::int64_t r01_ = 0, r12_ = 0, r23_ = 0, r02_ = 0, r13_ = 0, r03_ = 0;
   std::int64_t gap_[3] = {};  // ns between the neighbours

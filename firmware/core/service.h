@@ -79,8 +79,8 @@ class Service : private CommandHandler {
   void set_probe_delay(InstantNs delay) noexcept {
     if (probing_) probing_->set_delay(delay);
   }
-  /// Gives a command of the board itself, like a command from a link. A command that is already waiting is
-  /// kept. Real-time safe.
+  /// Gives a command of the board itself, like a command from a link. If a command is already waiting, this
+  /// command stays and the new command is ignored. Real-time safe.
   void order(Command command) noexcept {
     Command none = Command::kNone;
     exchange_.command.compare_exchange_strong(none, command);
@@ -102,7 +102,7 @@ class Service : private CommandHandler {
   /// Not real-time safe.
   void look_after_programs() noexcept;
 
-  /// True if an operator deactivated the correction, or held it before this start. For the context of boot().
+  /// True if an operator deactivated or held the correction before this start. For the context of boot().
   bool deactivated() const noexcept { return taken_out_; }
   /// The stored state of the operator.
   const OperatorMemory& operator_memory() const noexcept { return operator_; }

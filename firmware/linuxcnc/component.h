@@ -61,7 +61,7 @@ class Component {
   pthread_t keeper_{}, store_thread_{};
   bool keeps_ = false, stores_ = false;
   std::atomic<std::uint32_t> tick_us_{0};  // of the thread; 0: it has not run yet
-  // Made when vernier-hal comes for the first time.
+  // The component creates this object when vernier-hal connects for the first time.
   std::unique_ptr<RemoteStore> store_;
   std::unique_ptr<PinProbe> probe_;
   std::unique_ptr<Service> made_;

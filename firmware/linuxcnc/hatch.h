@@ -35,7 +35,7 @@ void answer_call(Call& call) noexcept;
 /// Not real-time safe.
 bool make_call(Call& call, std::int32_t peer, const std::atomic<bool>& stop) noexcept;
 
-/// Requests to the component's store, which vernier-hal keeps (hal/slot_store.h).
+/// Requests of the component to its store, which the process vernier-hal manages (hal/slot_store.h).
 enum class StoreOp : std::uint32_t {
   kReadRecord,
   kWriteRecord,

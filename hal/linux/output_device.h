@@ -23,7 +23,8 @@ class OutputDevice : public CorrectionWriter {
   /// Returns the number of writes whose correction was beyond the range.
   virtual std::uint64_t held_at_end(std::uint32_t axis) const noexcept = 0;
   virtual const AnalogueScale& scale(std::uint32_t axis) const noexcept = 0;
-  /// Returns what the device reports of its work when the daemon ends; empty: nothing. Not real-time safe.
+  /// Returns the line of statistics that the daemon prints for the device at its end; an empty text: no line.
+  /// Not real-time safe.
   virtual std::string account() const { return {}; }
 };
 

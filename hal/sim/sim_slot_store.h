@@ -24,7 +24,7 @@ class SimSlotStore : public SlotStore {
   bool dead() const { return dead_; }
   /// Returns the number of bytes written so far.
   std::uint64_t written() const { return written_; }
-  /// Cuts a record to its first `size` bytes; with 0 bytes the place was never written.
+  /// Truncates a record to its first `size` bytes; with 0 bytes the record counts as never written.
   void cut_record(std::uint32_t place, std::uint32_t size) { records_[place].resize(size); }
   /// The medium has no room for more image bytes than that.
   void fill_up_to(std::uint32_t bytes) { room_ = bytes; }

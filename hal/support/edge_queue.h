@@ -51,7 +51,7 @@ class EdgeQueue {
   bool empty() const noexcept { return count_ == 0 && !loss_; }
   /// Edges that can still be put in.
   std::uint32_t room() const noexcept { return kRoom - count_; }
-  /// Times that edges were missing; only goes up.
+  /// Number of gaps in the sequence of edges since the start; never decreases.
   std::uint64_t losses() const noexcept { return losses_; }
 
  private:

@@ -14,7 +14,8 @@ class WrappedCount {
   /// range: number of different counts, 2 .. 2^40; a count is 0 .. range - 1. Not real-time safe.
   explicit constexpr WrappedCount(std::int64_t range) noexcept : range_(range) {}
 
-  /// Takes the newest count. False: the count is not in the range, and is not taken. Real-time safe.
+  /// Takes the newest count. Returns false, and ignores the count, if the count is not in the range.
+  /// Real-time safe.
   constexpr bool take(std::int64_t count) noexcept {
     if (count < 0 || count >= range_) return false;
     std::int64_t step = count - last_;

@@ -15,7 +15,8 @@ namespace vernier {
 Wiring wiring_of(const ImageView& view);
 
 /// A program, the state of its execution, and the devices of the board that the program uses. A BoundProgram
-/// is made outside the tick; Cycle::use takes it over in one tick. Refers to the image's bytes.
+/// is built outside the tick; Cycle::use() starts to use the BoundProgram within one tick. Refers to the
+/// image's bytes.
 struct BoundProgram {
   /// A program without work: no image.
   BoundProgram() noexcept : compensator(Program{}) {}

@@ -46,9 +46,9 @@ struct TickReport {
 
 /// One tick of the firmware: reads the devices, steps the compensator, writes the corrections. A Cycle never
 /// waits. From one successful write to the next, the value at a drive changes by at most the slew limit of
-/// its axis. This holds for all readings, commands and faults. AxisSetting limits the acceleration of the
-/// change. During the ramp-out after a fault the compensator keeps the last good input: the correction can
-/// only decrease. The images and the board must outlive the cycle.
+/// its axis. This limit is valid for all readings, commands and faults. AxisSetting limits the acceleration
+/// of the change. During the ramp-out after a fault the compensator uses the last valid input: the correction
+/// can only decrease. The images and the board must outlive the cycle.
 class Cycle {
  public:
   /// Constructs a cycle for a board whose devices are those of the image, in the order of the image. view:

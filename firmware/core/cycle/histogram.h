@@ -26,8 +26,8 @@ class HistogramOf {
   /// Returns the upper edge of the bin that contains the given share of all durations, at most the largest
   /// duration; 0 if the histogram is empty. per_million: 990000 for p99. realtime, one pass over the bins.
   std::int64_t percentile_ns(std::uint64_t per_million) const noexcept {
-    // Rounded up: the percentile of few values is one of them and not below all. No division, because it is
-    // called in ticks. Counts stay below 2^44.
+    // Rounded up: the percentile of few values is one of them and not below all. The function has no
+    // division, because the tick calls it. Counts stay below 2^44.
     const std::uint64_t wanted = count_ * per_million;
     std::uint64_t seen = 0;
     for (std::uint32_t bin = 0; bin < kBins; ++bin) {

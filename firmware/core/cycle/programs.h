@@ -10,8 +10,8 @@
 
 namespace vernier {
 
-/// Memory for one upload: header, image, and bound program. The bytes are in memory that is taken when the
-/// board is made.
+/// Memory for one upload: header, image, and bound program. The bytes are in memory that is allocated at the
+/// construction of the board.
 struct LoadedProgram {
   UploadHeader header{};
   std::unique_ptr<std::uint64_t[]> words;
@@ -65,8 +65,8 @@ class Programs {
   std::uint32_t image_bytes() const noexcept { return image_bytes_; }
   /// The confirmed image, when the board starts.
   void run_confirmed(ProgramRef program) noexcept;
-  /// Starts the trial of an image. The trial ends trial_time after the guardian takes the program. Call
-  /// run_trial() only in Trial::kNone.
+  /// Starts the trial of an image. The trial ends at the time trial_time after the guardian passes the
+  /// program to the tick. Call run_trial() only in Trial::kNone.
   void run_trial(ProgramRef program, TimeUs trial_time) noexcept;
   /// Begins to confirm the image on trial: the trial time stops. False if no image is on trial any more.
   bool begin_to_keep() noexcept { return change(Trial::kRunning, Trial::kConfirming); }

@@ -40,8 +40,8 @@ class Name {
   std::uint32_t size_ = 0;
 };
 
-/// A list of at most kMost values, stored in place. Values beyond kMost are dropped: the caller checks the
-/// number before.
+/// A list of at most kMost values, without heap memory. Values beyond kMost are dropped: the caller checks
+/// the number before.
 template <class T, std::uint32_t kMost>
 class FixedList {
  public:

@@ -26,8 +26,8 @@ struct WorkBudget {
 
 /// Measures the work that this board does in a quarter of a tick. The other three quarters are for devices,
 /// the link and the other tasks of the processor. The measurement takes some milliseconds: sums of products,
-/// and jumps through `memory` (its words are overwritten). `memory` must be larger than the caches. Without
-/// `memory`, reading a cache line has no cost, as on a processor without caches. The best of several
+/// and jumps through `memory` (its words are overwritten). `memory` must be larger than the caches. If
+/// `memory` is empty, reading a cache line has no cost, as on a processor without caches. The best of several
 /// measurements counts, because other tasks interrupted the slower ones. Returns kAnyWork if the clock does
 /// not move. Call before the first tick. Not real-time safe.
 WorkBudget measured_work_budget(Clock& clock, TimeUs tick, std::span<std::uint32_t> memory = {}) noexcept;

@@ -14,8 +14,8 @@ using ChallengeBytes = std::array<std::uint8_t, sizeof(ChallengeReply::challenge
 /// Random bytes of one start of a board that never leave it: challenges are made from them.
 using ChallengeSeed = std::array<std::uint8_t, 32>;
 
-/// Where a request comes from. link: any value that differs between the links of a board; connection: a
-/// number that the link uses once (hal/command_link.h), 0 for a link without connections.
+/// Sender of a request. link: any value that differs between the links of a board; connection: a number that
+/// the link uses once (hal/command_link.h), 0 for a link without connections.
 struct Caller {
   std::uintptr_t link = 0;
   std::uint64_t connection = 0;
@@ -34,7 +34,7 @@ class Gate {
        IdentityKey* own_key = nullptr) noexcept
       : identity_(identity), nonce_(nonce), seed_(seed), own_key_(own_key) {}
 
-  /// The request that may be executed, or the reason of a refusal. It lives until the next call.
+  /// The request that may be executed, or the reason of a refusal. The pointer is valid until the next call.
   struct Opened {
     LinkStatus status;
     const std::uint8_t* request;

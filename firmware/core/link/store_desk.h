@@ -10,7 +10,7 @@
 namespace vernier {
 
 /// Passes a request that needs the medium from a link to the store. A link never waits; the store may wait
-/// for its medium without limit. StoreDesk takes one request at a time.
+/// for its medium without limit. StoreDesk accepts one request at a time.
 class StoreDesk {
  public:
   // ---- the links

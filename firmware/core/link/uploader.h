@@ -23,7 +23,7 @@ struct UploadResult {
   BindFault bind = BindFault::kNone;
   Name offender;  // the name that does not fit
 };
-/// A line of text in place; longer text is cut.
+/// A line of text without heap memory; longer text is truncated.
 struct Line {
   char text[160] = {};
   const char* c_str() const noexcept { return text; }
@@ -62,7 +62,7 @@ class Uploader {
   /// kStore: no record of the store can be read, so the state is not known. Not real-time safe.
   UploadResult boot();
   /// Starts like boot(), but runs an image that the operator gives at the start of the board. This image is
-  /// not signed; the medium is not changed. Not real-time safe.
+  /// not signed, and the function does not change the medium. Not real-time safe.
   UploadResult boot_with(std::span<const std::uint8_t> image);
   /// Ends an upload: writes the received data to the medium, checks the image and starts its trial.
   /// Not real-time safe.

@@ -35,8 +35,8 @@ class CanAxes : public PositionReader {
   /// Returns null with `error` set if the kernel refuses the socket. Not real-time safe.
   static std::unique_ptr<CanAxes> open(const std::string& interface, const std::vector<std::uint32_t>& ids,
                                        std::string& error);
-  /// Takes over any socket that keeps frames apart, does not block, and gives frames as the kernel's
-  /// can_frame. Not real-time safe.
+  /// Takes ownership of the socket. Any socket is possible that preserves the boundaries of frames, does not
+  /// block, and transmits frames as the kernel's can_frame. Not real-time safe.
   CanAxes(int socket, const std::vector<std::uint32_t>& ids);
   ~CanAxes() override;
   CanAxes(const CanAxes&) = delete;

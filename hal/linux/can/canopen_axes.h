@@ -23,7 +23,8 @@ class CanopenAxes : public PositionReader {
   /// Returns null with `error` set if the kernel refuses the socket. Not real-time safe.
   static std::unique_ptr<CanopenAxes> open(const std::string& interface, const std::vector<Axis>& axes,
                                            std::string& error);
-  /// Takes over any socket that keeps frames apart and does not block. Not real-time safe.
+  /// Takes ownership of the socket. Any socket is possible that preserves the boundaries of frames and does
+  /// not block. Not real-time safe.
   CanopenAxes(int socket, const std::vector<Axis>& axes);
   ~CanopenAxes() override;
   CanopenAxes(const CanopenAxes&) = delete;
