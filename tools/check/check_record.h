@@ -31,7 +31,7 @@ struct CheckRecord {
 };
 
 /// True for a parameter of the machine that no reading of the fit determined (origin prior): a check cannot
-/// tell its change from its unknown value.
+/// distinguish a change of this parameter from its unknown value.
 bool is_unmeasured(const model::Machine& machine, const CheckedQuantity& quantity);
 
 /// Evaluates a measurement against a fitted machine; fit and check rows are treated alike. The set-up of the

@@ -14,7 +14,7 @@
 
 namespace vernier::diagnose {
 
-/// Another cause in place of an accepted one.
+/// Another cause in place of an accepted cause.
 struct Alternative {
   std::size_t item = 0;  // of the pool
   double distance = 0;   // its BIC minus that of the accepted set
@@ -65,8 +65,8 @@ class Finder {
   /// Returns the p-value of an item beside the accepted items; 1 for an item with the same columns as an
   /// accepted item.
   double p_value_beside(std::size_t item) const;
-  /// Returns the likelihood ratio (natural logarithm) of held-out runs with an accepted item against without
-  /// it. Each run is predicted from the other runs.
+  /// Returns the likelihood ratio (natural logarithm) of held-out runs: with an accepted item to without this
+  /// item. Each run is predicted from the other runs.
   double held_out_evidence(std::size_t item) const;
   /// Returns alternatives to an accepted item, by the linear estimate; the other items are unchanged.
   Alternatives alternatives_to(std::size_t item) const;
@@ -101,14 +101,15 @@ class Finder {
   void select_again();
   /// A form that contains a simpler form is accepted only if there is evidence for its additional terms
   /// themselves. Among forms with the same columns, the form nearest to the axis is used. share: if the
-  /// simpler form explains this share of what a richer form explains, the simpler form is used, whatever
-  /// explains the rest. A share above 1 never selects the simpler form in this way.
+  /// decrease of chi^2 by the simpler form is at least this share of the decrease by a richer form, the
+  /// simpler form is used. A share above 1 never selects the simpler form in this way.
   void simplify(double share = 2);
   /// Orders the effects: first the effect that lowers the present residual most, and so on. Beside
   /// correlated errors, the most certain effect need not be large.
   void order_by_size();
-  /// Without u, any remaining structure counts as noise. name_simplest then uses the simplest form that
-  /// explains nearly all, if the form passes the tests.
+  /// If the rows have no standard uncertainty u, any remaining structure counts as noise. In this case
+  /// name_simplest uses the simplest form that explains nearly the whole decrease of chi^2, if the form
+  /// passes the tests.
   void name_simplest();
   /// Returns the number of entries that contain a simpler form and additional terms.
   double holders_of(std::size_t simple) const;

@@ -29,8 +29,8 @@ std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_
 std::string cause_in_words(const CandidateFinding& cause, const std::string& next_best, double distance,
                            const std::vector<LadderStep>& steps, std::size_t accepted);
 
-/// Returns the sentence about a cyclic error whose period has aliases, and what to measure. `name`:
-/// of the effect with its location; period and aliases in mm or deg of the axis.
+/// Returns the sentence about a cyclic error whose period has aliases, with the positions to measure next.
+/// `name`: of the effect with its location; period and aliases in mm or deg of the axis.
 std::string aliases_in_words(const effects::Candidate& candidate, double period,
                              const std::vector<double>& aliases, const model::Axis& axis);
 

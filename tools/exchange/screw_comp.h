@@ -20,7 +20,7 @@ struct ScrewPoint {
 /// src/emc/motion/usrmotintf.cc, usrmotLoadComp.
 enum class ScrewType { kActual = 0, kTrim = 1 };
 
-/// Lines that the controller keeps at most (EMCMOT_COMP_SIZE).
+/// Largest number of lines that the controller stores (EMCMOT_COMP_SIZE).
 inline constexpr std::size_t kMostScrewPoints = 256;
 
 /// The lines of one axis, and the accuracy with which they represent its errors.

@@ -12,8 +12,8 @@ namespace vernier::fit {
 /// points by the lever reach_of().
 double reach_of(const model::Machine& machine, const model::Measurement& rows);
 
-/// Returns the machine with its free BaseShifts fitted to the fit rows. No other value of the machine
-/// changes.
+/// Returns the machine with its free BaseShifts fitted to the fit rows. The function changes no other value
+/// of the machine.
 model::Machine set_up(const model::Machine& machine, const model::Measurement& rows);
 
 /// Fits the BaseShifts of the machine to all rows, for any orientation of the instrument. Starts are the
@@ -23,8 +23,8 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
 /// hide swapped columns of a flat survey.
 model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& measured);
 
-/// A file whose set-up the machine does not know: the residual of its rows in the set-up of the machine, and
-/// in a set-up of its own, um.
+/// A measurement file whose set-up is not in the machine file: the residual of its rows with the set-up of
+/// the machine file, and with a separate set-up, um.
 struct OtherSetUp {
   std::string file;
   double before_um = 0, own_um = 0;

@@ -25,7 +25,7 @@ struct ExchangeArguments {
   bool leave_out = false, component = false;
 };
 
-/// How well the lines of one axis hold its errors.
+/// Error of the interpolation between the lines of the table of one axis.
 struct AxisLines {
   std::string axis;
   std::size_t lines = 0, probed = 0;

@@ -43,7 +43,7 @@ class Evidence {
   const Eigen::VectorXd& weights() const { return weight_; }
   /// (measured - model) / u of the fit observations, without the part that the model can absorb.
   const Eigen::VectorXd& residual() const { return residual_; }
-  /// Returns orthonormal columns that span what the free parameters can absorb.
+  /// Returns orthonormal columns that span the changes of the readings by the free parameters.
   const Eigen::MatrixXd& absorbed() const { return absorbed_; }
   bool noise_known() const { return noise_known_; }
   double chi_square() const { return residual_.squaredNorm(); }
@@ -72,7 +72,8 @@ class Evidence {
   /// readings of a stay share (NoiseModel::pose), also if u states this error.
   bool poses_are_visits() const;
   /// From this call on, the noise model `noise` gives the correlation of the readings' errors (generalised
-  /// least squares). assume() whitens the residual, the columns and the part that the model absorbs.
+  /// least squares). assume() whitens the residual, the columns and the columns of the model's free
+  /// parameters.
   void assume(const fit::NoiseModel& noise);
   const fit::NoiseModel& noise() const { return noise_; }
   /// Increases each time that the whitening changes.

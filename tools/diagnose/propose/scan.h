@@ -21,8 +21,9 @@ struct Scored {
   Eigen::Index unknowns = 0;    // coefficients and scanned values
 };
 
-/// Scores of all candidates against a residual. `beside`: orthonormal columns (in the complement of what the
-/// model absorbs) of effects already accepted. The parts of candidates along these columns do not count.
+/// Scores of all candidates against a residual. `beside`: orthonormal columns of the effects already
+/// accepted, in the orthogonal complement of the model's free parameters. The parts of candidates along these
+/// columns do not count.
 class Scanner {
  public:
   Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates);
@@ -61,15 +62,16 @@ class Scanner {
                      const Eigen::VectorXd& residual) const;
   /// Returns the residual beside the columns `beside`, which candidates must explain.
   Eigen::VectorXd residual_beside(const Eigen::MatrixXd& beside) const;
-  /// Returns the gain of a scored candidate at other scanned values; 0 if the candidate is not visible in the
-  /// data there.
+  /// Returns the gain of a scored candidate at other scanned values; 0 if the readings do not depend on the
+  /// candidate at these values.
   double gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
                  const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
   /// Returns frequencies at which a wave may fit as well as one at `own`, up to `most`: by the
   /// positions' own window, and, if affordable, all peaks of its exact gain near `mine`.
   std::vector<double> possible_aliases(const Scored& scored, double own, double most, double mine,
                                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
-  /// Sets gain, share and unknowns of a candidate at a point; false if the candidate is not visible there.
+  /// Sets gain, share and unknowns of a candidate at a point of scanned values; false if the readings do not
+  /// depend on the candidate at this point.
   bool score(const ProjectedPoint& point, const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual,
              Scored& scored) const;
   /// Returns the columns of a candidate at scanned values.

@@ -220,8 +220,9 @@ struct PoolThresholds {
   /// First value: share of an item's squares that a span may lack and still contains the item. Second value:
   /// the share for two equal items.
   double held_share = 0.02, same_share = 1e-3;
-  /// Without u, where any remaining structure counts as noise: the simpler form is the cause if it explains
-  /// more than this share of what the richer form explains. The rest then has another cause.
+  /// For rows without a standard uncertainty u, where any remaining structure counts as noise: the simpler
+  /// form is the cause if its decrease of chi^2 is more than this share of the decrease by the richer form.
+  /// The rest then has another cause.
   double simple_share = 0.9;
 
   template <class Visit>
@@ -259,8 +260,9 @@ struct AcceptanceThresholds {
   /// drift of the instrument (von Neumann 1941: 1 for random rows). Experiment: temperatures in a survey of
   /// random rows are at 0.01 to 0.1, multiplied by an axis position at 0.3 to 1.
   double slow_share = 0.15;
-  /// Share of the decrease on the fit rows that an effect must reach on held-out runs. An effect of the noise
-  /// explains nothing on held-out runs; a true effect explains nearly all.
+  /// Share of the decrease on the fit rows that an effect must reach on held-out runs. An effect that was
+  /// fitted to noise does not reduce chi^2 of held-out runs; a true effect reduces chi^2 by nearly the same
+  /// amount as on the fit rows.
   double held_out_share = 0.2;
   /// In this share of the held-out runs the contribution of an effect must keep its direction, by this cosine
   /// (60 degrees).
@@ -318,7 +320,7 @@ struct AcceptanceThresholds {
   }
 };
 
-/// Evidence that held-out rows must give for a step, and for the whole result.
+/// Minimum of the evidence from held-out rows, for a step and for the whole result.
 struct ProofThresholds {
   /// Logarithm of 20: an e-value of 20 is wrong for at most one in twenty absent steps, whatever was tested
   /// before (Ville's inequality).
@@ -360,10 +362,11 @@ struct VerdictThresholds {
   /// chi^2 per degree of freedom above which a too small uncertainty is excluded as the cause: a stated
   /// uncertainty is not three times too small.
   double implausible_uncertainty = 9;
-  /// Without u: share of chi^2 that an accepted stepwise model must explain for a named cause.
+  /// For rows without a standard uncertainty u: share of chi^2 that an accepted stepwise model must explain
+  /// for a named cause.
   double mostly_explained = 0.5;
-  /// Without u: factor by which chi^2 must increase without the named effect. The effect is then larger than
-  /// the residual beside it.
+  /// For rows without a standard uncertainty u: factor by which chi^2 must increase if the named effect is
+  /// removed. The effect is then larger than the residual beside it.
   double larger_than_rest = 2;
   /// Number of degrees of freedom above which noise larger than the stated value is accepted. Experiment:
   /// outside the catalogue, 160 rows of one reading do not show structure, 400 do.
@@ -411,7 +414,7 @@ struct ShapeThresholds {
   /// Half-waves of a smooth curve, at most and at least: an eighth of the range is the shortest
   /// that a table of 17 stations corrects.
   std::size_t most_half_waves = 8, fewest_half_waves = 3;
-  /// Largest share of what all half-waves explain that may come from shorter half-waves.
+  /// Largest permitted share of the shorter half-waves in the decrease of chi^2 by all half-waves.
   double fast_share = 0.15;
   /// Number of coefficients above which a function of an axis is a curve.
   double curve = 3;
@@ -424,8 +427,9 @@ struct ShapeThresholds {
   double own = 1e-3;
   /// Number of positions along the axis at which a jump is tried.
   std::size_t places_of_jump = 64;
-  /// Test for pieces of one function: largest numbers of functions that count as separate causes. In order:
-  /// of one axis; of position, if rows have one reading; beside a curve.
+  /// Test for pieces of one function: largest numbers of functions that count as separate causes. The values
+  /// in order: for an effect of one axis; for an effect of the position, if rows have one reading; for an
+  /// effect beside a curve.
   std::size_t most_of_one_axis = 2, most_of_one_reading = 3, most_beside_a_curve = 2;
   /// Number of periods in the range above which a cyclic error is a separate cause (a worm, its gear) and not
   /// a piece, and largest number of such cyclic errors.
