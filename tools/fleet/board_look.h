@@ -23,9 +23,9 @@ BoardLook look_at(upload::Client& board);
 /// held, and the whole correction of every axis is applied.
 std::string not_in_effect(const BoardLook& look, const upload::BoardInfo& info, std::uint64_t fingerprint);
 
-/// Returns the reason why no image can come into effect on this board before a user changes its state; empty:
-/// an image can come into effect. Reasons: a latched fault, held corrections, or an axis with a weight below
-/// 1.
+/// Returns the reason why the board cannot start to use an image until a user changes the state of the board;
+/// empty: the board can start to use an image. Reasons: a latched fault, held corrections, or an axis with a
+/// weight below 1.
 std::string blocked(const BoardLook& look, const upload::BoardInfo& info);
 
 }  // namespace vernier::fleet

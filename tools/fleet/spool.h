@@ -44,7 +44,8 @@ class Spool {
   /// The registry has all up to here.
   void stored(std::uint64_t number);
   std::uint64_t stored() const { return stored_; }
-  /// The last number that was given; records that were forgotten unsent for want of room.
+  /// The last number of a record; the number of records that were discarded before sending, because the spool
+  /// was full.
   std::uint64_t last() const { return last_; }
   std::uint64_t dropped() const { return dropped_; }
   /// The last number that is no longer here.

@@ -5,7 +5,8 @@
 
 namespace vernier::http {
 
-/// Limits of a server. The times are those of local networks: a header of a few kilobytes takes milliseconds.
+/// Limits of a server. The times are for local networks, in which a header of a few kilobytes takes
+/// milliseconds.
 struct ServerLimits {
   std::size_t threads = 8;  // requests that are answered together
   /// Connections whose request, header and body, is not complete; the library cannot serve sockets above

@@ -15,8 +15,8 @@ struct SetUpsOfFiles {
 };
 
 /// Adds a BaseShift (`setup` = file name without its ending, with its folder for a second file of
-/// one name) for each measurement file after the first. The
-/// instrument of a second file has its own place. No BaseShift is added for a file that
+/// one name) for each measurement file after the first. The instrument has another position for each file. No
+/// BaseShift is added for a file that
 /// - has a column `setup`, or has a run label that an earlier file has (one set-up as stated),
 /// - has only rows with role check, or only readings that need no set-up,
 /// - has a BaseShift in the machine file.

@@ -66,8 +66,8 @@ struct FitRecord {
   /// Source of each value: data, convention, prior, as in the JSON of `fit`. `origins` is empty in files of
   /// older versions.
   std::vector<std::string> origins;
-  /// Lower triangle L, n x n; covariance = L L^T in the units of the parameters. The factor comes from the
-  /// data, and from the scales where the data do not determine the parameters.
+  /// Lower triangle L, n x n; covariance = L L^T in the units of the parameters. The data determine the
+  /// factor; for parameters that the data do not determine, the scales determine the factor.
   Eigen::MatrixXd factor;
   /// Matrix O, n x m. O O^T is the part of the covariance that no reading determines: the spread of the
   /// scales that are used there. m = 0: the readings determine everything.

@@ -16,8 +16,8 @@ namespace vernier::offline {
 /// kinematics of the nominal chain gives the axes; their columns are written first. Throws InputError with
 /// file, line and word; LimitNotMet if a target cannot be reached.
 ///
-/// place: of the targets' coordinates in workpiece coordinates, mm. Throws InputError if a place is given and
-/// the file has axis columns.
+/// place: of the targets' coordinates in workpiece coordinates, mm. Throws InputError if a workpiece position
+/// is given and the file has axis columns.
 std::string corrected_positions(const std::string& text, const std::string& file, const model::States& at,
                                 Corrector& corrector, const std::optional<Eigen::Isometry3d>& place = {});
 

@@ -38,8 +38,8 @@ struct CheckPlan {
 /// without range.
 CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options = {});
 
-/// Describes for a person what the poses show: the largest changes, a count of the others, and parameters
-/// that are not identifiable.
+/// Returns a text for users about the changes that the poses can detect: the largest changes, the number of
+/// the other changes, and the parameters that are not identifiable.
 std::string check_plan_text(const CheckPlan& plan, double reading_um);
 /// Returns a measurement file with the poses of the plan. The readings must be filled in.
 std::string check_plan_csv(const model::Machine& machine, const CheckPlan& plan, double reading_um);

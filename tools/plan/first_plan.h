@@ -21,7 +21,7 @@ struct FirstPlanOptions {
   double check_share = 0.15;  // share of additional poses that only test the fit
 };
 
-/// The free parameters of a machine, in units of what each may plausibly be.
+/// The free parameters of a machine, each in units of its plausible size.
 struct PlannedParameters {
   model::ParameterSet all;
   std::vector<Eigen::Index> own, set_up;  // indices: of the machine, of its BaseShift

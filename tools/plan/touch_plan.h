@@ -35,7 +35,8 @@ struct TouchPlan {
 TouchPlan touch_plan(const model::Machine& machine, const std::string& artefact,
                      const TouchPlanOptions& options = {});
 
-/// Describes for a person what the touches determine and what they cannot.
+/// Returns a text for users: the values that the touches determine, and the values that the touches do not
+/// determine.
 std::string touch_plan_text(const TouchPlan& plan, const std::string& artefact);
 /// Returns a measurement file with the poses of the plan and the column `on`. The positions of the axes must
 /// be replaced by those of the touch.

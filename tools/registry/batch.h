@@ -9,7 +9,7 @@
 
 namespace vernier::registry {
 
-/// One vernier command for each of many machines, in a folder that a scheduler works through:
+/// One vernier command for each of many machines, in a folder from which a scheduler executes the commands:
 /// batch.json (this), machines (a name a line), a script for the scheduler, answers/MACHINE.json.
 struct Batch {
   std::string id;  // BLAKE2b-256 of batch.json
@@ -19,7 +19,7 @@ struct Batch {
   std::vector<std::string> machines;
 };
 
-/// The answer of a machine: what its command printed, and how it ended.
+/// The answer of a machine: the result and the exit status of its command.
 struct BatchAnswer {
   std::string machine;
   std::int64_t status = 0;        // exit status of the command: 0 done, 2 the answer is no
@@ -45,11 +45,11 @@ struct BookedAnswer {
   std::int64_t status = 0, at_us = 0;
 };
 
-/// Writes batch.json and machines into a new folder, and returns the batch with its id. Throws InputError for
-/// a folder that holds a batch already, for a machine's name that is not allowed, and for a machine that
-/// occurs twice.
+/// Writes batch.json and machines into a new folder, and returns the batch with its id. Throws InputError if
+/// the folder already contains a batch, if the name of a machine is not allowed, or if a machine occurs
+/// twice.
 Batch write_batch(const std::string& folder, Batch batch);
-/// Throws InputError if the folder holds no batch.
+/// Throws InputError if the folder contains no batch.
 Batch read_batch(const std::string& folder);
 /// The words of one machine. Throws InputError if the machine is not in the batch.
 std::vector<std::string> command_of(const Batch& batch, const std::string& machine);

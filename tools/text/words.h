@@ -35,8 +35,8 @@ std::string quotable(std::string_view word);
 constexpr std::size_t kMostQuotedBytes = 200;
 
 /// Returns a message as a terminal shows it: each line printable, and shortened if it is longer than
-/// kMostMessageBytes. For the place that prints the messages of all commands: a name of a file may have any
-/// characters.
+/// kMostMessageBytes. The function that prints the messages of all commands uses this function, because a
+/// file name may contain any characters.
 std::string shown_message(std::string_view message);
 constexpr std::size_t kMostMessageBytes = 4000;
 

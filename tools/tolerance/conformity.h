@@ -20,7 +20,7 @@ struct ConformityOptions {
   /// two: JCGM 101:2008, 7.9).
   double tolerance = 0.05;
   std::size_t most_trials = 500000;
-  /// Probability from which a tolerance counts as kept, or as not kept: the default conformance probability
+  /// Probability from which a tolerance counts as met, or as not met: the default conformance probability
   /// limit of ISO 14253-1:2017.
   double confidence = 0.95;
   /// Standard deviation of the independent error of each point, mm: repeatability, tool, cutting. The machine

@@ -17,7 +17,7 @@ struct SigningKey {
   std::array<std::uint8_t, kPublicKeyBytes> public_part() const;
 };
 
-/// Public half of a board's own key (vernierd keeps the pair in its store).
+/// Public key of the board (vernierd has the key pair in its store).
 using BoardPublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
 /// Returns a key as 64 hexadecimal digits, as `vernierd` and `vernier board identify` print it.
 std::string board_key_text(const BoardPublicKey& key);
