@@ -51,7 +51,7 @@ class CommandLink {
   virtual ~CommandLink() = default;
   /// Waits at most `wait` for requests and answers them. This function never waits for a peer that stops
   /// within a request or does not read the reply. kRefused: the connection was lost; this call or the next
-  /// call opens it again. A peer that misbehaves is no fault. Not real-time safe.
+  /// call opens it again. An error of the peer is not a fault of the board. Not real-time safe.
   virtual HalFault serve(CommandHandler& handler, TimeUs wait) noexcept = 0;
   /// Handles on which the operating system can wait for a request: at most `room` handles are put into
   /// `handles`. Returns how many; 0 if the link has no handle. Not real-time safe.

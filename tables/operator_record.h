@@ -37,7 +37,7 @@ static_assert(offsetof(OperatorRecord, magic) == 0 && offsetof(OperatorRecord, s
 /// number here.
 constexpr std::uint32_t kOperatorRecordVersion = 1;
 constexpr std::uint32_t kOperatorMagic = 0x3152504f;  // "OPR1"
-/// Places of the two records in the store, behind the two slot records.
+/// Indices of the two records in the store; the indices 0 and 1 are the slot records.
 constexpr std::uint32_t kOperatorPlace = 2, kOperatorRecordCount = 2;
 
 /// Number of an axis in a record, made from the name, so that a board file with another order of axes keeps
@@ -78,7 +78,7 @@ class OperatorRecords {
   const OperatorState& state() const noexcept { return now_.state; }
   /// Returns the change that stores another state. Not real-time safe.
   OperatorChange change_to(const OperatorState& state) const noexcept;
-  /// The change is on the medium. Not real-time safe.
+  /// Reports to the object that the change is on the medium. Not real-time safe.
   void stored(const OperatorChange& change) noexcept;
 
  private:

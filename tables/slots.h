@@ -84,14 +84,14 @@ class Slots {
   /// Returns the slot that may be overwritten: neither confirmed nor on trial; kNoSlot while a trial runs.
   std::uint8_t free_slot() const noexcept;
 
-  /// The image in free_slot() is to be tried. Only while no trial runs. Not real-time safe.
+  /// Starts the trial of the image in free_slot(). Only while no trial runs. Not real-time safe.
   SlotChange start_trial(std::uint64_t issued, std::uint32_t security) const noexcept;
   /// Returns the change that confirms the image on trial. Call confirm() only while an image is on trial.
   /// Not real-time safe.
   SlotChange confirm() const noexcept;
   /// Reverts the image on trial. Not real-time safe.
   SlotChange revert() const noexcept;
-  /// The change is on the medium. Not real-time safe.
+  /// Reports to the object that the change is on the medium. Not real-time safe.
   void stored(const SlotChange& change) noexcept;
 
  private:

@@ -33,9 +33,9 @@ struct LatchedPosition {
 };
 
 /// The latest samples of all axes. LatchRing computes positions between samples by the cubic through the four
-/// neighbours. The cubic is also right in acceleration and deceleration, and for samples at uneven distances.
-/// LatchRing needs no division; its work is bounded: at most six ratios of 33 steps per instant and six
-/// products per axis.
+/// neighbours. The cubic is also accurate during acceleration and deceleration, and for samples
+/// at uneven distances. LatchRing needs no division; its work is bounded: at most six ratios of 33 steps per
+/// instant and six products per axis.
 ///
 /// Error of an interpolated position: 1 count of rounding (linear axis below 2 m/s) plus the error of the
 /// cubic. The cubic has h^4/384 of the fourth derivative at even distance h, and h^2/16 of a jump in

@@ -42,20 +42,20 @@ struct FeatureValues {
   std::uint32_t undefined = 0;
 };
 
-/// Keeps the last n samples of one axis and computes their features. Each sample needs the same work. Four
-/// power sums and sum |x| add the new sample and subtract the oldest, exactly; a tree of groups updates the
-/// extremes; n/4 products update the first moment of the spectrum (spectral_weights.h). All values of the
-/// window are integers: they do not drift in any running time. Ranges for n <= 2^11, |x| < 2^19: sum x^2 <
-/// 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below 2^121, spectral sum below 2^82:
-/// 128-bit sums are exact. Bound of the error of features(): 0.501 of 1e-6 plus 2^-54 of the value. FREQUENCY
-/// adds rate n 2^-36 for its rounded weights (36 uHz at 1651 Hz and n = 1500). Beyond int64 a feature
-/// saturates.
+/// Stores the last n samples of one axis and computes the features of these samples. Each sample needs the
+/// same work. Four power sums and sum |x| add the new sample and subtract the oldest, exactly; a tree of
+/// groups updates the extremes; n/4 products update the first moment of the spectrum (spectral_weights.h).
+/// All values of the window are integers: they do not drift in any running time. Ranges for n <= 2^11, |x| <
+/// 2^19: sum x^2 < 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below 2^121, spectral sum
+/// below 2^82: 128-bit sums are exact. Bound of the error of features(): 0.501 of 1e-6 plus 2^-54 of the
+/// value. FREQUENCY adds rate n 2^-36 for its rounded weights (36 uHz at 1651 Hz and n = 1500). Beyond int64
+/// a feature saturates.
 class FeatureWindow {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts an empty window. `weights` must outlive the window; several axes may share `weights`. False if
-  /// scale or weights are out of range. Not real-time safe.
+  /// Starts an empty window. `weights` must outlive the window; several axes may share `weights`. Returns
+  /// false if scale or weights are out of range. Not real-time safe.
   bool start(const FeatureScale& scale, const SpectralWeights& weights) noexcept;
 
   /// Takes one sample, in LSB. A sample beyond +-kLimit is limited to +-kLimit and counted. Real-time safe.

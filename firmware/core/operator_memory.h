@@ -32,7 +32,7 @@ class OperatorMemory {
   std::uint32_t refused_ticks() const noexcept { return refused_ticks_.load(std::memory_order_acquire); }
   /// State of the records that load() found.
   OperatorRecordsState found() const noexcept { return found_; }
-  /// True from a load() that found damaged records until an operator activates the correction.
+  /// True if load() found damaged records, until an operator activates the correction.
   bool damaged() const noexcept { return damaged_.load(std::memory_order_relaxed); }
 
  private:

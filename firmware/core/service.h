@@ -92,7 +92,7 @@ class Service : private CommandHandler {
   /// does all other duties except the tick. Not real-time safe.
   HalFault serve(CommandLink& link, TimeUs wait, const LinkRights& rights = {}) noexcept;
   /// The store: executes the requests that a link has left for it and records the actions of the guardian.
-  /// True: a link can collect a reply. Not real-time safe.
+  /// Returns true if a link can collect a reply. Not real-time safe.
   bool look_after_store() noexcept;
   bool store_is_asked() const noexcept {
     return desk_.asked() ||

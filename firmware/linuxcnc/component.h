@@ -34,7 +34,7 @@ class Component {
   /// Ends the two threads. Ticks may still run; the hatch is not used any more. Not real-time safe.
   void stop() noexcept;
 
-  /// A cycle of the servo thread. period_ns: of the thread. Real-time safe.
+  /// A cycle of the servo thread. period_ns: period of the servo thread. Real-time safe.
   void tick(long period_ns) noexcept;
 
  private:

@@ -24,7 +24,7 @@ class Joints : public AxisReader, public CorrectionWriter {
   /// pins: outlive this object. mm_per_unit: unit of the machine's lengths, mm. Not real-time safe.
   Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit = 1) noexcept;
 
-  /// Reads the joints' pins. seconds: of the thread's period. Real-time safe.
+  /// Reads the joints' pins. seconds: period of the servo thread, s. Real-time safe.
   void read(double seconds) noexcept;
   /// Adds the corrections to the commands, and subtracts from the feedback the corrections that were added.
   /// Real-time safe.

@@ -18,7 +18,7 @@ class OutputDevice : public CorrectionWriter {
   /// Reads the correction that the device has now, and that the daemon must remove. kNoReading: the device
   /// does not report it. Not real-time safe.
   virtual HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept = 0;
-  /// Tries the device without a motion: empty, or the error. Not real-time safe.
+  /// Tests the device without a motion; returns the error, or an empty text. Not real-time safe.
   virtual std::string attempt(std::uint32_t axis) = 0;
   /// Returns the number of writes whose correction was beyond the range.
   virtual std::uint64_t held_at_end(std::uint32_t axis) const noexcept = 0;

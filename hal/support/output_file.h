@@ -18,7 +18,8 @@ namespace vernier {
 std::error_code write_output(const std::string& path, std::string_view text);
 
 /// Makes an output folder and the folders above it. A symbolic link to a folder that does not exist is
-/// followed, and the link stays. A folder that already exists is no error. Returns the reason of a failure.
+/// followed, and the link stays. If the folder already exists, this is not an error. Returns the reason of a
+/// failure.
 std::error_code make_output_folder(const std::string& path);
 
 }  // namespace vernier

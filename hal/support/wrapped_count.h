@@ -27,7 +27,7 @@ class WrappedCount {
   }
   /// Counts from the zero of the counter, over all its wraps.
   constexpr std::int64_t position() const noexcept { return position_; }
-  /// The next count is a first count again.
+  /// After this call the next count counts as the first count.
   constexpr void forget() noexcept { last_ = position_ = 0; }
 
  private:

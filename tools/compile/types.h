@@ -141,7 +141,7 @@ struct Register {
   std::vector<Use> uses;
 };
 
-/// A table of the program with its memory (comp/error_table.h defines the records).
+/// A table of the program that owns its memory (comp/error_table.h defines the records).
 struct LoweredTable {
   std::string name;
   std::uint16_t columns = 0, degree = 1;

@@ -104,8 +104,8 @@ class Finder {
   /// decrease of chi^2 by the simpler form is at least this share of the decrease by a richer form, the
   /// simpler form is used. A share above 1 never selects the simpler form in this way.
   void simplify(double share = 2);
-  /// Orders the effects: first the effect that lowers the present residual most, and so on. Beside
-  /// correlated errors, the most certain effect need not be large.
+  /// Orders the effects: first the effect that lowers the present residual most, and so on. If the readings
+  /// have correlated errors, the most significant effect is not always the largest effect.
   void order_by_size();
   /// If the rows have no standard uncertainty u, any remaining structure counts as noise. In this case
   /// name_simplest uses the simplest form that explains nearly the whole decrease of chi^2, if the form
@@ -130,9 +130,9 @@ class Finder {
   /// normal. Returns this position as the instrument's part of an alternative, if it decreases the BIC.
   /// explained: the residual beside all chosen items.
   std::optional<fit::NoiseModel> touched_anew(const fit::NoiseModel& explained) const;
-  /// True if the error that `noise` correlates by run or in time is one offset of all readings. A common
-  /// cause makes one offset of all readings. An instrument that is set up again or drifts does not make one
-  /// offset of all readings.
+  /// True if the error that `noise` correlates by run or in time is one offset of all readings. One common
+  /// cause can have the effect of an offset of all readings. An instrument that is set up again or drifts
+  /// does not make one offset of all readings.
   bool is_one_offset(const fit::NoiseModel& noise) const;
   /// Returns the unwhitened columns of several items side by side.
   Eigen::MatrixXd raw_columns(const std::vector<std::size_t>& items) const;
@@ -147,7 +147,8 @@ class Finder {
   /// Returns the first acceptance test that an accepted item fails; empty if the item passes all tests.
   std::string failed_test(std::size_t item) const;
   /// is_learned: true if the term of an item contains an accelerometer feature. shows_in_one_block: true if
-  /// one run contains nearly all that an accepted item explains. The other runs then cannot confirm the item.
+  /// one run contains nearly all that an accepted item explains. In this case the other runs cannot confirm
+  /// the item.
   bool is_learned(std::size_t item) const;
   bool shows_in_one_block(std::size_t item) const;
   /// Returns the reason why a term is larger than on any real machine; empty if it is not.

@@ -11,7 +11,7 @@ namespace vernier::diagnose {
 /// Returns the full fit of the machine with items of the pool.
 using FitOfItems = std::function<fit::FitResult(const std::vector<std::size_t>&)>;
 
-/// The fits between which the decision is made.
+/// The fits that the decision compares.
 struct DecisionFits {
   const fit::FitResult& without;   // any effect
   const fit::FitResult& accepted;  // the accepted set

@@ -16,7 +16,7 @@ struct ScrewPoint {
 };
 
 /// Type 0: the file contains the actual positions of the axis (nominal, forward, reverse); the controller
-/// computes trim = nominal - actual. Type 1: the file contains the trims. Source: LinuxCNC
+/// computes trim = nominal - actual. A file of type 1 contains the trims. Source: LinuxCNC
 /// src/emc/motion/usrmotintf.cc, usrmotLoadComp.
 enum class ScrewType { kActual = 0, kTrim = 1 };
 

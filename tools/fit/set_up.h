@@ -19,8 +19,8 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
 /// Fits the BaseShifts of the machine to all rows, for any orientation of the instrument. Starts are the
 /// measuring frame, the file's own set-up and the best rigid motion of the measured points. If the residuals
 /// still exceed ten times their uncertainty, all 24 orientations of the axes are tried. Use set_up_anywhere
-/// for readings of a known machine. A survey that will be fitted uses set_up(), because a rotated set-up can
-/// hide swapped columns of a flat survey.
+/// for readings of a machine whose errors are known. A survey that will be fitted uses set_up(), because a
+/// rotated set-up can hide swapped columns of a flat survey.
 model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& measured);
 
 /// A measurement file whose set-up is not in the machine file: the residual of its rows with the set-up of

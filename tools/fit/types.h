@@ -171,7 +171,7 @@ struct FitResult {
   /// rows, a second ratio uses a set-up of each machine that is fitted to the check rows. The larger ratio
   /// is used. nullopt if there are too few check rows.
   std::optional<double> check_ratio;
-  /// Reason why the readings are not those of this machine; empty if they are.
+  /// Reason why the readings cannot be readings of this machine; empty if there is no such reason.
   std::string absurd;
   /// The part of `absurd` that names a mistake of all rows (a unit, a sign, columns swapped);
   /// empty if no such mistake was found.

@@ -16,7 +16,8 @@ struct Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Reads the bytes that have arrived, without waiting. False: the client has closed the connection.
+  /// Reads the bytes that have arrived, without waiting. Returns false if the client has closed the
+  /// connection.
   bool take_bytes();
   /// True if the header has arrived completely: request_bytes is then the size of the request.
   bool has_header();

@@ -21,8 +21,8 @@ struct SetUpsOfFiles {
 /// - has only rows with role check, or only readings that need no set-up,
 /// - has a BaseShift in the machine file.
 /// The function adds no BaseShift if the machine file has no BaseShift without `setup`, or if that BaseShift
-/// is hidden. The start values are those of the BaseShift without `setup`. text: of `machine`. The rows must
-/// be read again with the new text.
+/// is hidden. The start values are those of the BaseShift without `setup`. text: the text of the machine file
+/// of `machine`. The rows must be read again with the new text.
 SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& machine, const Measurement& rows);
 
 }  // namespace vernier::model

@@ -38,7 +38,7 @@ struct PlannedParameters {
 /// volume. Throws InputError for an axis without a range, or without a free parameter.
 PlannedParameters planned_parameters(const model::Machine& machine, double expected_um);
 
-/// Poses to measure a machine at for the first time.
+/// Poses for the first measurement of a machine.
 struct FirstPlan {
   model::States states;                // in the order in which they are measured
   std::vector<char> check;             // role of each

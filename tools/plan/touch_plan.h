@@ -22,7 +22,7 @@ struct TouchPlan {
   bool place_is_assumed = false;  // the file does not know the place: the middle of the volume
   double before_um = 0, after_um = 0;  // expanded uncertainty of the tool point over the volume (k = 2)
   double least_um = 0;                 // from all touches that were looked at: lower limit of this artefact
-  /// Parameters that no touch of this artefact determines: their uncertainty stays.
+  /// Parameters that no touch of this artefact determines; the plan does not change their uncertainty.
   std::vector<std::string> not_seen;
   bool has_length = false;  // linear axes that the file takes as true, or a known radius, give the size
 };

@@ -26,7 +26,7 @@ struct BatchAnswer {
   nlohmann::ordered_json result;  // of `--json`; null for a command without it
 };
 
-/// An answer that is not in the registry, and why.
+/// An answer that is not recorded in the registry, with the reason.
 struct NotBooked {
   std::string machine;
   std::string state;  // "missing", "incomplete", "failed", "refused"
@@ -59,8 +59,9 @@ void write_answer(const std::string& folder, const Batch& batch, const BatchAnsw
 /// True if the folder has the answer of a machine (exit status 0 or 2).
 bool has_answer(const std::string& folder, const Batch& batch, const std::string& machine);
 
-/// Books the answer of each machine in the registry, once. An answer that is missing, incomplete, failed, of
-/// another machine or of another batch is listed and not booked. Throws DatabaseError: no answer was booked.
+/// Records the answer of each machine in the registry, once. An answer that is missing, incomplete, failed,
+/// of another machine or of another batch is listed and not booked. Throws DatabaseError: no answer was
+/// booked.
 Collected collect(Registry& registry, const std::string& folder, const Batch& batch);
 /// The booked answers, by batch and machine; of all batches if `name` is empty.
 std::vector<BookedAnswer> booked_answers(Registry& registry, const std::string& name);

@@ -95,8 +95,8 @@ class Registry {
   void give_name(const std::string& from, const std::string& to);
   /// Returns the machines that are not in the registry, and whose samples arrived and were not stored.
   std::vector<NotEntered> not_entered();
-  /// Enters the key of a machine's board if no key is entered. False: the board of another machine
-  /// has this key, or a key was entered meanwhile.
+  /// Enters the key of a machine's board if no key is entered. Returns false if the board of another machine
+  /// has this key, or if a key was entered meanwhile.
   bool trust_board_key(const std::string& machine, const std::string& key);
 
   void put(const RecordedCalibration& calibration);

@@ -18,7 +18,7 @@ Wiring wiring_of(const ImageView& view);
 /// is built outside the tick; Cycle::use() starts to use the BoundProgram within one tick. Refers to the
 /// image's bytes.
 struct BoundProgram {
-  /// A program without work: no image.
+  /// The empty program, which is used if there is no image: it computes no correction.
   BoundProgram() noexcept : compensator(Program{}) {}
   /// Binds axis i and input i of the image to axis i and input i of the board. Not real-time safe.
   explicit BoundProgram(const ImageView& view) noexcept;

@@ -93,7 +93,7 @@ class Cycle {
   /// Returns the largest change of the correction of a board's axis in a tick, counts; 0 before the first
   /// change.
   std::int64_t slew(std::uint32_t axis) const noexcept { return drive_[axis].slew; }
-  /// The correction that a board's axis was given last.
+  /// The last correction that was written to an axis of the board.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
   /// The newest valid motion of an axis of the board (axis_state), and the newest valid value of an input of
   /// the board (input_value).

@@ -19,7 +19,7 @@ constexpr TicksQ8 kOneTick{256};
 /// Sums of elapsed times fit 32 bits.
 constexpr TicksQ8 kMostElapsed{1 << 20};
 
-/// Turns times into ticks without a division in the tick.
+/// Converts times to ticks without a division in the tick.
 class ElapsedTicks {
  public:
   ElapsedTicks() = default;

@@ -94,7 +94,7 @@ class Published {
   AtomicWords<T> value_;
 };
 
-/// Keeps the last values of one writer. A reader requests a value by its number. The reader gets the value,
+/// Stores the last values of one writer. A reader requests a value by its number. The reader gets the value,
 /// or the result that a newer value has overwritten the value. The writer of a History never waits and never
 /// fails: values that were not read in time are overwritten, and readers detect this.
 template <class T>

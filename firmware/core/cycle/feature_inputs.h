@@ -52,9 +52,9 @@ bool feature_of(std::string_view name, Feature& feature) noexcept;
 class FeatureInputs : public InputReader {
  public:
   /// source: reads all inputs that are not features, and outlives this object. inputs: number of inputs of
-  /// the board, at most kMaxInputs. tick: of the firmware. A request with an impossible window (length,
-  /// resolution, an `of` that is a feature) is refused: `refused()` then names the request.
-  /// Not real-time safe.
+  /// the board, at most kMaxInputs. tick: period of the firmware's tick. A request with an impossible window
+  /// (length, resolution, an `of` that is a feature) is refused: `refused()` then names the request. Not
+  /// real-time safe.
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::span<const FeatureRequest> requests,
                 TimeUs tick);
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::initializer_list<FeatureRequest> requests,

@@ -63,7 +63,7 @@ class Programs {
   /// Null if every place is in use.
   ProgramRef take() noexcept;
   std::uint32_t image_bytes() const noexcept { return image_bytes_; }
-  /// The confirmed image, when the board starts.
+  /// Passes the confirmed image to the tick when the board starts.
   void run_confirmed(ProgramRef program) noexcept;
   /// Starts the trial of an image. The trial ends at the time trial_time after the guardian passes the
   /// program to the tick. Call run_trial() only in Trial::kNone.
@@ -81,7 +81,7 @@ class Programs {
   void given_up() noexcept { trial_.store(Trial::kNone); }
 
   // ---- the guardian
-  /// Hands the next program to the tick and ends a trial whose time is over. now: of the clock of
+  /// Hands the next program to the tick and ends a trial whose time is over. now: time of the clock of
   /// run_trial(). guard() never waits.
   void guard(TimeUs now) noexcept;
 

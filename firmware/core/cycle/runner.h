@@ -9,8 +9,9 @@
 
 namespace vernier {
 
-/// Limits beyond which overruns are a fault. Every system has a late tick now and then. If ticks are left out
-/// regularly, the cycle time is wrong, for any distribution of the late ticks.
+/// Limits beyond which overruns are a fault. A single late tick is not a fault, because every system has a
+/// late tick from time to time. If ticks are left out regularly, the cycle time is wrong, for any
+/// distribution of the late ticks.
 struct OverrunLimits {
   std::uint32_t in_a_row = 10;
   std::uint32_t lost_share_q16 = 65536 / 20;  // of the ticks, that may be left out for ever

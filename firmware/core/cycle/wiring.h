@@ -21,7 +21,7 @@ class Name {
   constexpr bool empty() const noexcept { return size_ == 0; }
   constexpr std::uint32_t size() const noexcept { return size_; }
   constexpr operator std::string_view() const noexcept { return {text_, size_}; }
-  /// A digit, a letter; dropped without room. Not real-time safe.
+  /// Appends a digit or a letter; the character is omitted if there is no room. Not real-time safe.
   constexpr void add(char letter) noexcept {
     if (size_ + 1 < sizeof(text_)) text_[size_++] = letter;
   }

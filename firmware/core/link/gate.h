@@ -22,10 +22,11 @@ struct Caller {
   friend bool operator==(const Caller&, const Caller&) = default;
 };
 
-/// Decides which requests of a link are executed. The rights of the link count. If the board has keys, only
-/// requests signed with one of them are executed. A signed request is accepted once: the request contains the
-/// nonce of this start of the board and a challenge of 128 random bits that its own connection got in the
-/// last seconds. A request that was delayed on its way, or repeated over another connection, is not valid.
+/// Decides which requests of a link are executed. The request is checked against the rights of the link. If
+/// the board has keys, only requests signed with one of them are executed. A signed request is accepted once:
+/// the request contains the nonce of this start of the board and a challenge of 128 random bits that its own
+/// connection got in the last seconds. A request that was delayed on its way, or repeated over another
+/// connection, is not valid.
 class Gate {
  public:
   /// identity, own_key: outlive this object; own_key null: the board has no key; nonce, seed: new
@@ -41,8 +42,8 @@ class Gate {
     std::uint32_t size;
     bool is_signed = false;  // with a valid signature
   };
-  /// Checks a request. from: the caller of the request; now: of the clock that challenge() uses.
-  /// Not real-time safe.
+  /// Checks a request. from: the sender of the request; now: time of the clock that challenge() uses. Not
+  /// real-time safe.
   Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, const Caller& from,
               TimeUs now) noexcept;
   /// True for a request for a challenge. A challenge can be used once.

@@ -17,8 +17,8 @@ class Link {
        const BoardIdentity& identity);
 
   /// Answers one request. request: any bytes; reply: room for kMaxReplyBytes. answer() returns the bytes of
-  /// the reply, 0 if the request is too short for an answer. now: of the clock of the uploader.
-  /// Not real-time safe.
+  /// the reply, 0 if the request is too short for an answer. now: time of the uploader's clock. Not real-time
+  /// safe.
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
 
   /// True if the request needs the medium. The store then answers the request and may wait for the medium.

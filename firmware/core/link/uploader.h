@@ -32,7 +32,7 @@ struct Line {
 /// Returns one line of text for people: "of another machine: the board has no such axis: W".
 Line describe(const UploadResult& result) noexcept;
 
-/// The images in the store, as the links report them.
+/// State of the images in the store, for the links.
 struct SlotsRecord {
   std::uint64_t confirmed_fingerprint = 0, trial_fingerprint = 0;  // 0: no image
   std::uint64_t issued = 0, newest_issued = 0;  // of the confirmed image, and of all that were ever tried

@@ -24,8 +24,8 @@ struct CanCounts {
   std::uint64_t broken = 0;      // ticks in which the socket failed (interface down or gone)
 };
 
-/// Axis positions over SocketCAN, one frame per axis and controller cycle (CanAxisFrame). Positions only: the
-/// firmware derives the motion. Axis i is the frame with the i-th identifier.
+/// Axis positions over SocketCAN, one frame per axis and controller cycle (CanAxisFrame). The frames contain
+/// only positions: the firmware derives the motion. Axis i is the frame with the i-th identifier.
 class CanAxes : public PositionReader {
  public:
   static constexpr std::uint32_t kMostFrames = 256;   // taken from the socket in one tick

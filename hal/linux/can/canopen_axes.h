@@ -11,7 +11,7 @@
 namespace vernier {
 
 /// Positions of CiA 402 drives: position actual value (0x6064) with the statusword in a TPDO. One socket for
-/// all drives of a bus. Positions only: the firmware derives the motion.
+/// all drives of a bus. The TPDOs contain only positions: the firmware derives the motion.
 class CanopenAxes : public PositionReader {
  public:
   struct Axis {

@@ -8,7 +8,7 @@
 
 namespace vernier::commands::part_cli {
 
-/// A part as the options of a command name it.
+/// The options of a command that name a part.
 struct PartSource {
   std::string path, at, zero, place;
   double position_mm = 0, size_mm = 0, form_mm = 0;  // for all that a program cuts

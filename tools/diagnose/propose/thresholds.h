@@ -6,11 +6,11 @@
 
 namespace vernier::diagnose {
 
-// All numbers of a diagnosis that were chosen and could have been chosen otherwise. One struct per
-// subject, each number with its unit, meaning and source. "Experiment" without a name is the sweep
-// of tools/docs/thresholds.md: halved and doubled over surveys of known truth. Purely numerical
-// constants (rounds until convergence, sections of a golden search, columns in a batch) are
-// defined where they are used.
+// All thresholds of a diagnosis: numbers that were chosen and could have another value. One struct per
+// subject, each number with its unit, meaning and source. "Experiment" without a name is the sweep of
+// tools/docs/thresholds.md: halved and doubled over surveys of known truth. Purely numerical constants
+// (rounds until convergence, sections of a golden search, columns in a batch) are defined where they are
+// used.
 
 /// Assumptions about the data before any candidate is tested.
 struct EvidenceThresholds {
@@ -160,7 +160,7 @@ struct FinePeriodThresholds {
   /// nearly as well.
   std::size_t peaks = 3;
   /// Power of the window of the positions, as a share of its largest, above which periods are aliases of each
-  /// other. First value: for candidates; second value: for the decision.
+  /// other. The first value is for candidates, the second value is for the decision.
   double alias_near = 0.8, alias_same = 0.9999;
   /// Power of the window of the positions, as a share of its largest, above which two periods are compared in
   /// full: do the readings distinguish them?
@@ -191,12 +191,13 @@ struct FinePeriodThresholds {
 
 /// Thresholds for a column to count, and the penalty of a candidate.
 struct PoolThresholds {
-  /// Share of a column's length outside the model's reach. Below the first value the column is not visible in
-  /// the data; below the second, a column of a piecewise linear basis repeats the other columns. A thousandth
-  /// of an effect of 100 um is the noise of a laser.
+  /// Share of a column's length that remains after projection on the orthogonal complement of the model's
+  /// free parameters. Below the first value the column is not visible in the data; below the second, a column
+  /// of a piecewise linear basis repeats the other columns. A thousandth of an effect of 100 um is the noise
+  /// of a laser.
   double least_own = 1e-3, least_independent = 1e-3;
-  /// Share of a column's square beside the columns of a set. Below this value the column is a copy of the
-  /// set.
+  /// Share of a column's square that remains after projection on the orthogonal complement of the columns of
+  /// a set. Below this value the column is a copy of the set.
   double least_pivot = 1e-5;
   /// Preference for the form nearest to the axis among forms that fit alike: a step of the BIC far
   /// below any evidence.
@@ -217,12 +218,12 @@ struct PoolThresholds {
   double noise_share = 0.5;
   /// Two periods of one location are different candidates if they differ by more than 1 part in this number.
   double periods_per_e = 8;
-  /// First value: share of an item's squares that a span may lack and still contains the item. Second value:
-  /// the share for two equal items.
+  /// First value: share of an item's squares that a span may lack and still contains the item. The second
+  /// value is the share for two items that count as equal.
   double held_share = 0.02, same_share = 1e-3;
   /// For rows without a standard uncertainty u, where any remaining structure counts as noise: the simpler
   /// form is the cause if its decrease of chi^2 is more than this share of the decrease by the richer form.
-  /// The rest then has another cause.
+  /// In this case the remaining residual has another cause.
   double simple_share = 0.9;
 
   template <class Visit>
@@ -409,7 +410,8 @@ struct VerdictThresholds {
 /// Thresholds for the test whether an accepted effect has the shape that its name states.
 struct ShapeThresholds {
   /// Natural logarithm of the significance level for a doubt about a curve, and about a change along the
-  /// axes. Every term is tested, and chance should cause no doubt. The levels are 1e-3 and 1e-4.
+  /// axes. The level is strict because every term is tested, so that chance rarely causes a doubt. The levels
+  /// are 1e-3 and 1e-4.
   double curve_chance = -6.9, change_chance = -9.2;
   /// Half-waves of a smooth curve, at most and at least: an eighth of the range is the shortest
   /// that a table of 17 stations corrects.

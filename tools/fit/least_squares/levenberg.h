@@ -24,8 +24,8 @@ struct Slope {
 struct LevenbergOptions {
   int max_iterations = 100;
   /// Limit for the scaled square (unit diagonal) of a direction. A direction below this limit counts as not
-  /// determined by the data: at the start, or when a step is computed. The step does not move along it. The
-  /// limit is the square of observability's cutoff.
+  /// determined by the data: at the start, or when a step is computed. The step has no component along such a
+  /// direction. The limit is the square of observability's cutoff.
   double unseen = 1e-10;
   /// Returns the largest decrease of the cost that is negligible. The fit passes the variance of an
   /// observation times a small factor. For a smaller decrease of the cost, no parameter would change by more

@@ -54,7 +54,8 @@ struct NoiseThresholds {
   /// Minimum number of rows on either side of a step of the instrument. With fewer rows a step cannot be
   /// distinguished from their noise.
   std::size_t rows_beside_step = 10;
-  /// Share of a step's rows that the model must not be able to absorb.
+  /// Share of the effect of a step on its rows that must remain after projection on the complement of the
+  /// free parameters.
   double own_of_step = 0.02;
   /// Limit of a reading in robust standard deviations. A single outlier is not a property of the
   /// noise.

@@ -42,7 +42,7 @@ void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const st
 /// Adds an assignment "X[um]=Abweichung": the measured value is the position of the axis plus this deviation.
 void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place = {});
 
-/// A profile: how a table is read, once and for all. A statement a line, # remarks:
+/// A profile: the stored settings for reading tables of one form. A statement a line, # remarks:
 ///   separator = semicolon    decimal = comma    skip = 2    sheet = Tabelle1    unit = mm
 ///   column X ist = x[mm]     deviation Abw. = X[um]     leave Bemerkung     set run = a
 /// Throws InputError with file, line and word.

@@ -8,8 +8,8 @@
 namespace vernier::model {
 
 /// Predicts the observations of one row from the tool's pose in workpiece coordinates and the
-/// BaseShift of the row's set-up (null: identity). gravity: of the machine, unit vector. Keeps
-/// references.
+/// BaseShift of the row's set-up (null: identity). gravity: direction of gravity in the machine file, unit
+/// vector. Keeps references.
 class ObservationModel {
  public:
   ObservationModel(const Measurement& measurement, const std::array<double, 3>& gravity,

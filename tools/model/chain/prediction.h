@@ -17,8 +17,9 @@ using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 /// nearest to the measured vector.
 Eigen::VectorXd predict(const Machine& machine, const Measurement& measurement);
 
-/// Things (`same`, `on`) are at their best estimate for the machine. `known_cost`: weighted sum of squares of
-/// their known values about these estimates; 0 without an uncertain known value.
+/// Touched objects (`same`, `on`) have the best estimates of their unknown values for this machine.
+/// `known_cost`: weighted sum of squares of their known values about these estimates; 0 without an uncertain
+/// known value.
 struct Prediction {
   Eigen::VectorXd predicted;
   double known_cost = 0;

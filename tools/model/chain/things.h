@@ -19,8 +19,8 @@ struct UnknownSlope {
   ThingUnknowns slope;
 };
 
-/// The touched objects of a measurement (`same`, `on`), and the readings of each object. Things that a known
-/// length connects are estimated together: a cluster. Keeps a reference to the measurement.
+/// The touched objects of a measurement (`same`, `on`), and the readings of each object. Touched objects that
+/// are connected by a known length are estimated together: a cluster. Keeps a reference to the measurement.
 class Things {
  public:
   Things(const Machine& machine, const Measurement& measurement);
@@ -68,7 +68,7 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 /// machine.
 class ThingsAt {
  public:
-  /// chain: of the machine and of the states of the measurement.
+  /// chain: the chain of the machine at the states of the measurement.
   ThingsAt(const Things& things, const Machine& machine, const ChainRows& chain);
 
   struct Reading {
