@@ -156,12 +156,12 @@ class Meaning {
       findings_.warn(table_.header_line, columns::kRole, "all rows are check rows: the fit has no rows");
     if (check == 0)
       findings_.remark(table_.header_line, columns::kRole,
-                       "the file has no check rows, so the fit is not tested on held-out rows",
+                       "no check rows in the file: the fit is not tested on held-out rows",
                        "give some rows the role check, distributed over the working volume");
     if (table_.find(columns::kUncertainty) == nullptr)
       findings_.remark(table_.header_line, columns::kUncertainty,
-                       "the file has no standard uncertainty u: the noise is estimated from repeated rows, "
-                       "or from the residual",
+                       "no standard uncertainty u in the file: the fit estimates the noise from repeated "
+                       "rows, or from the residual",
                        "a column u[um], the instrument's");
     if (!any_reading_)
       findings_.error(table_.header_line, "", "no row has a reading", "is this a template without readings?");
@@ -204,7 +204,7 @@ class Meaning {
     if (!rows_of.empty() && table_.find(columns::kDistance) == nullptr &&
         table_.find(columns::kOn) == nullptr)
       findings_.remark(table_.header_line, columns::kSame,
-                       "the file has no known length: without linear axes the readings do not determine the "
+                       "no known length in the file: without linear axes the readings do not determine the "
                        "size of the machine",
                        "the column distance is the distance between two points");
   }

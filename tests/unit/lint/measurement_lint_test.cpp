@@ -121,7 +121,7 @@ const Case kCases[] = {
     {"InputMissing", "X[mm],Y[mm],Z[mm],x[mm]\n1,2,-3,4\n2,3,-4,5\n",
      "\"T_column\": no column for this input: it is 20 in all rows"},
     {"InputMistyped", "X[mm],Y[mm],Z[mm],Tcolumn[degC],x[mm]\n1,2,-3,20,4\n2,3,-4,20,5\n",
-     "\"Tcolumn\": a column that the machine does not know -- did you mean T_column?"},
+     "\"Tcolumn\": the machine file does not use this column -- did you mean T_column?"},
     {"NoUncertainty", kHead + kRow1 + kRow2 + kRow3, "remark: \"u\": no standard uncertainty"},
     {"NoCheckRows", kHead + kRow1 + kRow2, "remark: \"role\": no check rows"},
     {"RowTwice", kHead + kRow1 + kRow2 + kRow1 + kRow3, "s.csv:4: warning: the same row as line 2"},
