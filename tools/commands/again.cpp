@@ -113,8 +113,8 @@ class Again {
     if (!made)
       throw text::InputError(
           {file_, 0}, "",
-          "does not say how it was made. Reports (HTML), machine files and JSON results of "
-          "this version do; tables (CSV) and programs do not");
+          "this file has no record of how it was made. Reports (HTML), machine files and JSON results of "
+          "this version have a record; tables (CSV) and programs have no record");
     made_ = std::move(*made);
     place_ = fs::weakly_canonical(fs::absolute(file_));
     folder_ = (place_.parent_path() / made_.folder).lexically_normal();
@@ -133,7 +133,7 @@ class Again {
       if (!fs::exists(path))
         throw text::InputError(
             {file_, 0}, input.name,
-            "this input is not at " + path + ". Put it there, then repeat `vernier again`");
+            "this input is not at " + path + ". Put the input there, then repeat `vernier again`");
       if (sha256_of(text::read_file(path)) != input.sha256) names.push_back(input.name);
     }
     return names;
@@ -269,8 +269,8 @@ void run_again(const Arguments& arguments) {
 
 void register_again(CLI::App& vernier) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command =
-      vernier.add_subcommand("again", "Make a report or result again from its inputs, and compare all bytes");
+  CLI::App* const command = vernier.add_subcommand(
+      "again", "Make a report or result again from the same inputs, and compare all bytes");
   command
       ->add_option("file", arguments->file,
                    "report (HTML), machine file (XML), result (JSON), or the folder of improve or compile")

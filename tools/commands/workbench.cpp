@@ -136,8 +136,8 @@ void register_image_diff(CLI::App& vernier) {
   command->add_option("--to", arguments->url, "address of the board whose confirmed image is compared");
   command
       ->add_option("--key", arguments->key,
-                   "secret key of `vernier keys` (or VERNIER_KEY): a board with keys sends its image only "
-                   "to the owner of a trusted key")
+                   "secret key of `vernier keys` (or VERNIER_KEY): a board with keys sends its correction "
+                   "image only to the owner of a trusted key")
       ->type_name(kReads);
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->footer(

@@ -183,8 +183,8 @@ model::Table parse_axis_csv(const std::string& text, const std::string& file, co
       ++k;
     if (k == 6)
       throw text::InputError(place, csv.columns[c].name,
-                             "no error of axis " + name + "; known are " + own_name(machine, *axis, 0) +
-                                 " … or " + iso_name(0, name) + " …");
+                             "this column is not an error of axis  " + name + "; known are " +
+                                 own_name(machine, *axis, 0) + " … or " + iso_name(0, name) + " …");
     const std::vector<double> values =
         numbers(c, k < 3 ? format::Dimension::kLength : format::Dimension::kAngle);
     for (std::size_t i = 0; i < values.size(); ++i) table.stations[i].value[k] = values[i];

@@ -52,8 +52,8 @@ constexpr ColumnGroup normal() {
 }
 constexpr ColumnGroup row_of_distance() {
   ColumnGroup group = label(columns::kFrom, true,
-                            "the row at the other end of the distance: its label in a column of words, or "
-                            "its number, from 1",
+                            "the row at the other end of the distance: the label of this row in a column of "
+                            "words, or the number of this row, from 1",
                             "`distance` is no reading");
   group.use = kBeside;
   group.form = ReadingForm::kDistance;

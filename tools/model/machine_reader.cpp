@@ -340,7 +340,8 @@ class Reader {
     if (side != "outside" && side != "inside")
       fail_attribute(node, "side", side, "side is outside or inside");
     if (side == "inside" && !item.has_radius())
-      fail_attribute(node, "side", side, "only a sphere or a cylinder is touched from inside");
+      fail_attribute(node, "side", side,
+                     "only an artefact of type sphere or cylinder can be touched from inside");
     item.inside = side == "inside";
   }
 

@@ -72,7 +72,7 @@ ProgramArc arc_of(const std::vector<Word>& words, const ArcReading& reading, con
   constexpr double kOff = 0.05;  // mm, and a thousandth of the radius: as controls allow
   if (out.norm() <= 0 || std::abs(out.norm() - in.norm()) > kOff + 1e-3 * out.norm())
     throw text::InputError(place, words.front().text,
-                           "the ends of the arc are not at one distance from its centre");
+                           "the start and the end of the arc have different distances from the centre");
   arc.radius = out.norm(), arc.radius_at_end = in.norm();
   arc.begin = std::atan2(out.y(), out.x());
   const double sense = reading.clockwise ? -1 : 1;

@@ -80,7 +80,7 @@ std::string sentence(const residual::BeforeAfter& result) {
     case residual::Helped::kCannotBeTold:
       break;
   }
-  return "The readings do not show whether the correction reduced the error: " + how + ", which holds 0.";
+  return "The readings do not show whether the correction reduced the error: " + how + ", which contains 0.";
 }
 
 /// Method of the comparison, and remarks for the reader.

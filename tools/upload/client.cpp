@@ -114,7 +114,7 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
         transport_->pause(std::chrono::milliseconds(attempt < 50 ? 2 : 20));
         continue;
       case LinkStatus::kUnknownOp:
-        throw text::InputError("the board does not know this request");
+        throw text::InputError("the board does not support this request");
       case LinkStatus::kNotAllowed:
         throw text::LimitNotMet("the board refuses this request over this link (`access` in the board file)");
       case LinkStatus::kUnsigned:
@@ -127,7 +127,7 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
             "may use an older setting. Check the storage medium of the board, and send the request again");
       case LinkStatus::kBadLength:
       case LinkStatus::kBadValue:
-        throw text::InputError("the board refuses the request: it has a wrong form");
+        throw text::InputError("the board refuses the request, because the request has a wrong form");
     }
     throw text::InputError("the board's reply has an unknown status");
   }

@@ -111,7 +111,7 @@ const char* CanopenDrive::missing(InstantNs now) const noexcept {
   if (!sync_.within(now, settings_.sync_timeout)) return "no SYNC comes";
   if (!heartbeat_.within(now, settings_.heartbeat_time)) return "no heartbeat of the drive comes";
   if (nmt_ != kOperational) return "the drive is not in the NMT state Operational";
-  if (!tpdo_.within(now, settings_.sync_timeout)) return "no TPDO with statusword and position comes";
+  if (!tpdo_.within(now, settings_.sync_timeout)) return "no TPDO with statusword and position arrives";
   if (emergency_) return "the drive reports an emergency";
   if (foreign_.within(now, settings_.heartbeat_time)) return "another node sends the RPDO of the offset";
   return nullptr;

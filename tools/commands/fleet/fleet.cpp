@@ -412,7 +412,7 @@ registry::Registry open_registry(const std::string& place) {
 
 void register_fleet(CLI::App& vernier) {
   CLI::App* fleet = vernier.add_subcommand(
-      "fleet", "Manage many machines: state, due checks, common drift, images in stages, batches");
+      "fleet", "Manage many machines: state, due checks, common drift, correction images in stages, batches");
   fleet->require_subcommand(1);
   add_machine_kinds(*fleet);
   add_record_kinds(*fleet);

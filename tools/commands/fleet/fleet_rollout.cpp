@@ -118,7 +118,7 @@ text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet
   for (const std::string& note : end->notes) assurance.not_covered(note);
   if (arguments.options.judge.empty())
     assurance.not_covered("whether the machines are more accurate: no --judge was given");
-  assurance.not_covered("what happens to a board after this call");
+  assurance.not_covered("The command did not observe the boards after the end of this call");
   return assurance;
 }
 
@@ -158,7 +158,7 @@ void run_rollout(const RolloutArguments& arguments) {
         "--key is missing: give the file of the secret key with which the command signs the correction "
         "images");
   if (arguments.signed_by.empty())
-    throw text::InputError("--signed-by is missing: name the person responsible for the images");
+    throw text::InputError("--signed-by is missing: name the person responsible for the correction images");
   RolloutArguments mine = arguments;
   mine.options.key = *key;
   const std::vector<fleet::RolloutMachine> machines = machines_of(mine, registry);

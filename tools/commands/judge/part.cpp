@@ -311,12 +311,14 @@ void add_s_shape(CLI::App& part) {
       ->add_option("--recorded-zero", a->recorded_zero,
                    "recorded values at which the axes of the paths are at 0: \"X=120,Z=-40\"")
       ->needs(recorded_option);
-  CLI::Option* identify_option =
-      command
-          ->add_option("--identify", a->identify,
-                       "measured part (CSV: sx sy sz defect, u): fit the errors to it")
-          ->type_name(kReads);
-  command->add_option("--free", a->free, "only these statics are fitted, e.g. EA0B,EX0B");
+  CLI::Option* identify_option = command
+                                     ->add_option("--identify", a->identify,
+                                                  "measured part (CSV: sx sy sz defect, u): fit the errors "
+                                                  "of the machine to the measured defects")
+                                     ->type_name(kReads);
+  command->add_option(
+      "--free", a->free,
+      "names of the constants (statics) that are fitted, e.g. EA0B,EX0B; all others are fixed");
   command
       ->add_flag("--aligned", a->aligned, "the measured part was aligned by best fit: fit a rigid motion too")
       ->needs(identify_option);

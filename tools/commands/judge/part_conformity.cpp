@@ -99,7 +99,9 @@ text::Assurance assurance_of(const model::Machine& machine, const tolerance::Par
     word.not_covered(
         "The result does not include repeatability, tool and cutting, because --process was not given.");
   if (!result.open_known)
-    word.not_covered("Errors that the readings did not determine: the machine file does not list them.");
+    word.not_covered(
+        "The result does not include errors that the readings did not determine, because this machine file "
+        "does not list such errors.");
   return word;
 }
 
@@ -220,7 +222,7 @@ std::string conformity_page(const model::Machine& machine, const ConformityArgum
   Json notes = Json::array();
   for (const std::string& range : result.outside)
     notes.push_back("The part is outside the measured range: " + range +
-                    ". Characteristics there have no verdict.");
+                    ". Characteristics outside the measured range have no verdict.");
   if (machine.fitted)
     for (const model::FitRecord::Finding& one : machine.fitted->findings)
       notes.push_back("Found by the fit: " + one.text);

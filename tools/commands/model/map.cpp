@@ -78,7 +78,7 @@ Json line_plot(const Json& line) {
           {"y",
            {{{"name", "forward"}, {"unit", "µm"}, {"values", line["forward_um"]}},
             {{"name", "reverse"}, {"unit", "µm"}, {"values", line["reverse_um"]}}}},
-          {"caption", "Deviation along the line from its first point."}};
+          {"caption", "Deviation along the line, relative to the first point of the line."}};
 }
 
 Json line_section(const char* title, const char* prose, const char* caption, const Json& lines) {
@@ -215,7 +215,7 @@ void run_map(const MapArguments& arguments) {
 void register_map(CLI::App& vernier) {
   auto arguments = std::make_shared<MapArguments>();
   CLI::App* command = vernier.add_subcommand(
-      "map", "Show the error field over the working volume and how well it was measured");
+      "map", "Show the error over the working volume and the uncertainty of this error");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
       ->type_name(kWrites);

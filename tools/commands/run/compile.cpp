@@ -201,7 +201,8 @@ void run_compile(const Arguments& arguments) {
 void register_compile(CLI::App& vernier) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* const command = vernier.add_subcommand(
-      "compile", "Compile a machine file to a fixed-point image and C++ with a proved error bound");
+      "compile",
+      "Compile a machine file to a correction image (fixed point) and C++ with a proved error bound");
   command->add_option("machine", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command
       ->add_option("-o,--output", arguments->directory,

@@ -74,8 +74,8 @@ std::uint64_t time_of_signing(const Arguments& arguments, const SlotsReply& slot
   if (now > slots.newest_issued) return now;
   if (!arguments.force)
     throw text::LimitNotMet(
-        "the clock of this computer is earlier than the newest image that the board has tried: set the "
-        "clock, or sign with a time immediately after that image (--force)");
+        "the clock of this computer is earlier than the signing time of the newest correction image that the "
+        "board has run: set the clock, or sign with a time immediately after that image (--force)");
   return slots.newest_issued + 1;
 }
 
@@ -180,7 +180,8 @@ void run(const Arguments& arguments) {
     const SlotsReply slots = client.slots();
     if (slots.trial != kNoSlot) done.kept = slots.trial_fingerprint;
     if (done.sent && done.kept != done.sent)
-      throw text::LimitNotMet("the image on trial is not the image that was sent: no image was confirmed");
+      throw text::LimitNotMet(
+          "the correction image on trial differs from the image that was sent, so no image was confirmed");
     client.confirm();
   }
   if (arguments.revert) client.revert(), done.given_up = true;
@@ -210,8 +211,9 @@ void register_upload(CLI::App& vernier) {
       ->required();
   command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)")
       ->type_name(kReads);
-  command->add_flag("--confirm", arguments->confirm,
-                    "confirm the image on trial; with DIR: immediately after the upload");
+  command->add_flag(
+      "--confirm", arguments->confirm,
+      "confirm the correction image on trial; with DIR: confirm the new image immediately after the upload");
   command->add_flag("--revert", arguments->revert, "revert the image on trial");
   command->add_flag("--force", arguments->force,
                     "sign with a time immediately after the newest image of the board, if the clock of this "
@@ -219,8 +221,8 @@ void register_upload(CLI::App& vernier) {
   add_board_claim(*command, arguments->claim);
   command
       ->add_option("--security", arguments->security,
-                   "new value of the board's security counter: the board never again accepts an image with a "
-                   "lower value")
+                   "new value of the board's security counter: the board never again accepts a correction "
+                   "image with a lower value")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{UINT32_MAX}));
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->footer(

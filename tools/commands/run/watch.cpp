@@ -83,8 +83,8 @@ void add_board(CLI::App* command, const std::shared_ptr<Arguments>& arguments) {
 
 void register_status(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command =
-      vernier.add_subcommand("status", "Print the present state of a board: mode, axes, counters, image");
+  CLI::App* const command = vernier.add_subcommand(
+      "status", "Print the present state of a board: mode, axes, counters, correction image");
   add_board(command, arguments);
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->callback([arguments] { status(*arguments); });

@@ -291,9 +291,9 @@ Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& m
   for (const model::Observation& o : measurement.observations)
     if (o.kind <= model::ObservationKind::kZ) knowledge.reads[static_cast<std::size_t>(o.kind)] = true;
   if (!knowledge.reads[0] && !knowledge.reads[1] && !knowledge.reads[2])
-    throw text::InputError({measurement.files.empty() ? "" : measurement.files[0], 0},
-                           format::words_of(format::columns::kPoint),
-                           "a plan for accuracy needs readings of the tool point; this file has none");
+    throw text::InputError(
+        {measurement.files.empty() ? "" : measurement.files[0], 0}, format::words_of(format::columns::kPoint),
+        "a plan for accuracy requires readings of the tool point, but this file has no such readings");
   const fit::NoiseModel& noise = fitted.noise;
   const double unit_mm = usual_reading_mm(measurement);
   const double own = std::sqrt(noise.own * noise.own + noise.pose * noise.pose + noise.drift * noise.drift);
