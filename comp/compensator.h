@@ -45,7 +45,7 @@ enum class ChannelKind : std::uint8_t {
 constexpr std::uint8_t kChannelKindCount = static_cast<std::uint8_t>(ChannelKind::kVisit) + 1;
 
 /// Converts one quantity of the CycleInput to the program's format: limit to [low, high], then
-/// round(round(value / 2^pre_shift) * multiplier / 2^shift). 32 bytes, as in the image.
+/// round(round(value / 2^pre_shift) * multiplier / 2^shift). 32 bytes, as in the correction image.
 struct Channel {
   ChannelKind kind;
   std::uint8_t index;       // axis or input

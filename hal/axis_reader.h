@@ -25,7 +25,7 @@ struct PathReading {
   VisitCount visit;
 };
 
-/// Positions of the machine's axes, in the order that the board was wired up with (the image's).
+/// Positions of the machine's axes, in the order of the axes in the correction image.
 class AxisReader {
  public:
   virtual ~AxisReader() = default;

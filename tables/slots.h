@@ -11,8 +11,8 @@ constexpr std::uint32_t kSlotCount = 2;
 /// The store contains the record twice; a change overwrites the older copy.
 constexpr std::uint32_t kSlotRecordCount = 2;
 
-/// Record of the image slots of a board: which slot is confirmed, and which slot is on trial. Little-endian,
-/// 48 bytes, as stored.
+/// Record of the slots of a board for correction images: the confirmed slot, and the slot on trial.
+/// Little-endian, 48 bytes, as stored.
 struct SlotRecord {
   std::uint32_t magic;     // kSlotMagic
   std::uint32_t sequence;  // of the change that wrote it, from 1; the higher of two valid records counts

@@ -7,7 +7,7 @@ namespace vernier {
 
 constexpr std::uint32_t kBoardNameBytes = 24;
 
-/// Contents of an upload and of a slot: UploadHeader (little-endian, 152 bytes), then the image
+/// Contents of an upload and of a slot: UploadHeader (little-endian, 152 bytes), then the correction image
 /// (image_format.h). The signature, Ed25519 in its pre-hashed form (RFC 8032, Ed25519ph), covers the header
 /// up to the signature and the whole image.
 struct UploadHeader {

@@ -13,12 +13,12 @@ namespace vernier {
 /// correction is at most a share of the distance between command and limit. The share is so small that the
 /// correction fades within the slew limit at the joint's greatest speed (the pin max-velocity, or the
 /// greatest observed speed if that is larger). The output always changes within the slew limit. The drive
-/// stays within the joint's limits if the joint is not faster than the speed above. A connected pin that is
-/// not a number is a missing reading of its joint: command, position and feedback alike. After a missing
-/// reading the drive's command and the controller's feedback keep their values. If the command jumps to the
-/// feedback, the axis has not jumped: the reading continues from the new command. (LinuxCNC makes this jump
-/// for a joint that is disabled.) A joint that is not homed has no reference. The reading of such a joint
-/// does not change, and continues from the new zero when the joint is homed.
+/// stays within the joint's limits if the joint is not faster than the speed above. If the value of a
+/// connected pin (command, position or feedback) is not a number, the reading of the joint is missing. After
+/// a missing reading the drive's command and the controller's feedback keep their values. If the command
+/// jumps to the feedback, the axis has not jumped: the reading continues from the new command. (LinuxCNC
+/// makes this jump for a joint that is disabled.) A joint that is not homed has no reference. The reading of
+/// such a joint does not change, and continues from the new zero when the joint is homed.
 class Joints : public AxisReader, public CorrectionWriter {
  public:
   /// pins: outlive this object. mm_per_unit: unit of the machine's lengths, mm. Not real-time safe.

@@ -8,9 +8,9 @@
 
 namespace vernier {
 
-/// Slots in memory whose power can be cut at any byte of any write. The bytes before the cut are new, the
-/// other bytes are old; no further byte is written until restore_power(). A SimSlotStore can also be full, or
-/// fail to write.
+/// Slots in memory whose power can be cut at any byte of any write. The bytes before the power failure are
+/// new, the other bytes are old; no further byte is written until restore_power(). A SimSlotStore can also be
+/// full, or fail to write.
 class SimSlotStore : public SlotStore {
  public:
   explicit SimSlotStore(std::uint32_t capacity) : capacity_(capacity) {}

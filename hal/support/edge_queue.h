@@ -7,8 +7,9 @@
 namespace vernier {
 
 /// Edges that were received and have not been read. EdgeQueue keeps the order of the edges and records where
-/// edges are missing. The line of a probe closes and opens in turn: if two edges of one kind follow each
-/// other, an edge between them is lost. A kernel that numbers its edges makes every loss visible.
+/// edges are missing. The contact of a probe closes and opens alternately: if two edges of the same kind
+/// follow each other, an edge between these two edges is lost. A kernel that numbers its edges makes every
+/// loss visible.
 class EdgeQueue {
  public:
   static constexpr std::uint32_t kRoom = 128;

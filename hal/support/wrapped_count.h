@@ -8,7 +8,7 @@
 namespace vernier {
 
 /// Continues a counter that wraps around. A step is the shortest way: less than half of the range of the
-/// counter. The first count decides where the counter begins: a count in the upper half is negative.
+/// counter. The first count determines the start value: a count in the upper half of the range is negative.
 class WrappedCount {
  public:
   /// range: number of different counts, 2 .. 2^40; a count is 0 .. range - 1. Not real-time safe.

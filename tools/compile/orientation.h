@@ -22,9 +22,9 @@ struct Tilting {
 /// over the declared ranges are farthest from parallel. Among equal pairs, solve_direction selects the pair
 /// nearer to the tool. solve_direction solves the deviation of the tool's direction for the selected axes and
 /// enters derivation.orientation. Damped least squares: near a pose in which both axes tilt the tool in the
-/// same direction, the component that they cannot reach decreases to 0; the other component remains (Nakamura
-/// and Hanafusa, ASME J. Dyn. Sys. 108 (1986) 163). Returns nullopt if no rotary axis tilts the tool.
-/// neglect: rad.
+/// same direction, the component of the correction that these axes cannot reach decreases to 0; the other
+/// component remains (Nakamura and Hanafusa, ASME J. Dyn. Sys. 108 (1986) 163). Returns nullopt if no rotary
+/// axis tilts the tool. neglect: rad.
 std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation& derivation, double neglect);
 
 /// Returns a value as a separate node that is limited to +-limit. A correction that depends on the limited

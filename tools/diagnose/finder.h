@@ -78,8 +78,8 @@ class Finder {
   /// estimate. The second form: with its scanned unknowns at other values.
   double evidence_for(std::size_t item) const;
   double evidence_for(std::size_t item, const std::vector<double>& scanned) const;
-  /// Returns other periods that fit as well as the period of an accepted item (Scanner::aliases); the other
-  /// items are unchanged.
+  /// Returns other periods that fit as well as the period of an accepted item (Scanner::aliases), with the
+  /// other items unchanged.
   std::vector<double> aliases_of(std::size_t item) const;
   /// Returns the factor by which chi^2 increases if an accepted item is excluded and the others are fitted
   /// again.

@@ -17,7 +17,7 @@ const char* verdict_name(Verdict verdict);
 /// (tools/effects/spoken.h).
 std::string said_of(const CandidateFinding& finding);
 
-/// Describes where the residual fails its tests, in up to three sentences, each after a blank.
+/// Describes the tests that the residual fails, in up to three sentences, each after a blank.
 std::string where_left(const residual::FailurePicture& left);
 
 /// Describes the residual of the check rows after every step, and the steps that increase the residual. The

@@ -98,7 +98,8 @@ Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance);
 std::string fit_record_xml(const FitRecord& record);
 
 /// Returns the factor O of a part of a covariance. O has m columns: the directions (pivoted Cholesky) that
-/// are larger than 1e-3 of the covariance's own squares. O is rounded as the machine file stores it.
+/// are larger than 1e-3 of the variances (the diagonal of the covariance). O is rounded as the machine file
+/// stores it.
 Eigen::MatrixXd open_factor(const Eigen::MatrixXd& part, const Eigen::MatrixXd& covariance);
 
 /// Reads the numbers of an `open` element: n x columns. Returns false if the text has another

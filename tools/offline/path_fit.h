@@ -7,7 +7,8 @@
 
 namespace vernier::offline {
 
-/// Guide for the arcs that replace an arc of the program: where along this arc the points of a path are.
+/// Guide for the arcs that replace an arc of the program: the positions of the points of a path along this
+/// arc.
 struct ArcGuide {
   std::array<Eigen::Index, 2> axis{};  // rows of the plane's axes
   std::vector<double> angle;           // of each point about the program's centre, rad, in one direction

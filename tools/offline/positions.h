@@ -10,7 +10,7 @@ namespace vernier::offline {
 
 /// Corrects the axis columns of a CSV of positions; all other cells, columns and comments are not changed.
 /// The first line states whether the positions are corrected or converted back; a line that states the
-/// opposite is left out. The columns are those of a measurement or path file (axes, inputs, motion; direction
+/// opposite is omitted. The columns are those of a measurement or path file (axes, inputs, motion; direction
 /// and speed are used as given). A file without axis columns may contain targets in workpiece coordinates: x
 /// y z, optionally with rx ry rz (rotation vector) or i j k (tool direction). For such targets the inverse
 /// kinematics of the nominal chain gives the axes; their columns are written first. Throws InputError with

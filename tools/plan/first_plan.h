@@ -49,11 +49,11 @@ struct FirstPlan {
   bool reached = true;                 // the accuracy that was asked for
 };
 
-/// Chooses one by one the poses that lower most the expected uncertainty of the tool point over the work
-/// volume with all its tools, for the free parameters of the machine file (I-optimal, without exchange:
-/// Fedorov 1972, 2.5). A rigid motion belongs to the set-up and does not count. The poses are in the order of
-/// a path through the axes' travels; the first pose is repeated, check poses are in between. Throws
-/// InputError for an axis without a range, or without a free parameter.
+/// Chooses poses one by one; each pose gives the largest decrease of the expected uncertainty of the tool
+/// point over the work volume with all tools, for the free parameters of the machine file (I-optimal, without
+/// exchange: Fedorov 1972, 2.5). A rigid motion belongs to the set-up and does not count. The poses are in
+/// the order of a path through the axes' travels; the first pose is repeated, check poses are in between.
+/// Throws InputError for an axis without a range, or without a free parameter.
 FirstPlan first_plan(const model::Machine& machine, const FirstPlanOptions& options = {});
 
 /// Returns the expanded uncertainty (k = 2) of the tool point over the work volume, um, after readings at any

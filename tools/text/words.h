@@ -24,7 +24,7 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
 /// Replaces each occurrence of `what`, which is not empty. Text that was put in is not searched again.
 void replace_all(std::string& text, std::string_view what, std::string_view with);
 
-/// Returns a text from outside as it may be shown on a terminal and written to JSON. Control characters,
+/// Returns a text from an input file in a form that is safe for a terminal and for JSON. Control characters,
 /// marks that change the writing direction and bytes that are not UTF-8 become "?". upload::Client passes all
 /// texts of a board through this function.
 std::string printable(std::string_view text);

@@ -44,7 +44,7 @@ std::vector<std::uint8_t> make_upload(const std::vector<std::uint8_t>& image, co
                                       std::uint64_t issued, std::uint32_t security,
                                       const std::string& board = {});
 
-/// Returns the image in an upload as a board stores it, of this version or the previous version. Throws
+/// Returns the correction image in a stored upload of this version or of the previous version. Throws
 /// InputError.
 std::vector<std::uint8_t> image_in(const std::vector<std::uint8_t>& upload);
 

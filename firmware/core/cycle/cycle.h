@@ -27,8 +27,8 @@ struct InputLimits {
   std::int64_t step = INT64_MAX;  // between two readings
 };
 
-/// Limits of the cycle, and those limits of the axes that are not in the image. Indices of axes and inputs
-/// are those of the board.
+/// Limits of the cycle, and those limits of the axes that the correction image does not contain. Indices of
+/// axes and inputs are those of the board.
 struct CycleLimits {
   AxisLimits linear;
   AxisLimits rotary{.step = kTurnCounts / 100, .frozen_travel = kTurnCounts / 3600, .sense_travel = 12000};
@@ -51,8 +51,8 @@ struct TickReport {
 /// can only decrease. The images and the board must outlive the cycle.
 class Cycle {
  public:
-  /// Constructs a cycle for a board whose devices are those of the image, in the order of the image. view:
-  /// opened without fault. Not real-time safe.
+  /// Constructs a cycle for a board whose devices are those of the correction image, in the order of the
+  /// image. view: opened without fault. Not real-time safe.
   Cycle(const ImageView& view, const Board& board, const CycleLimits& limits = {}) noexcept;
   /// A board with wiring but without a program. Not real-time safe.
   Cycle(const Wiring& wiring, TimeUs tick, const Board& board, const CycleLimits& limits = {}) noexcept;

@@ -70,8 +70,8 @@ class Programs {
   void run_trial(ProgramRef program, TimeUs trial_time) noexcept;
   /// Begins to confirm the image on trial: the trial time stops. False if no image is on trial any more.
   bool begin_to_keep() noexcept { return change(Trial::kRunning, Trial::kConfirming); }
-  /// Ends a confirmation. written: true if the medium has the record that the image is confirmed, false if it
-  /// could not be written. Call kept() only after begin_to_keep().
+  /// Ends a confirmation. written: true if the medium has the record that the correction image is confirmed,
+  /// false if the record could not be written. Call kept() only after begin_to_keep().
   void kept(bool written) noexcept { trial_.store(written ? Trial::kKept : Trial::kRunning); }
   /// The image on trial is reverted with the guardian's next round.
   bool give_up() noexcept;

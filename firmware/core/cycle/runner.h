@@ -10,8 +10,8 @@
 namespace vernier {
 
 /// Limits beyond which overruns are a fault. A single late tick is not a fault, because every system has a
-/// late tick from time to time. If ticks are left out regularly, the cycle time is wrong, for any
-/// distribution of the late ticks.
+/// late tick from time to time. If ticks are omitted regularly, the cycle time is wrong, for any distribution
+/// of the late ticks.
 struct OverrunLimits {
   std::uint32_t in_a_row = 10;
   std::uint32_t lost_share_q16 = 65536 / 20;  // of the ticks, that may be left out for ever
@@ -25,8 +25,8 @@ struct TickTimes {
 };
 
 /// Runs a cycle tick by tick on a clock. Sleeps until the tick is due, measures how late it woke and how long
-/// it computed. A tick that ends after the next tick was due is an overrun; the ticks that it covered are
-/// left out.
+/// it computed. A tick that ends after the next tick was due is an overrun; the ticks that were due during
+/// the overrun are omitted.
 class Runner {
  public:
   /// Constructs a runner whose first tick is due one period from now. Not real-time safe.

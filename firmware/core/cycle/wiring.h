@@ -69,8 +69,8 @@ struct Wiring {
   struct Axis {
     Name name;
     bool rotary = false, rollover = false;
-    // The controller counts whole turns on: an image in which the axis rolls over fits as one in which it
-    // does not.
+    // The controller continues to count whole turns: a correction image fits whether its axis rolls over or
+    // not.
     bool continuous = false;
   };
   FixedList<Axis, kMaxAxes> axes;

@@ -19,8 +19,8 @@ struct WorkBudget {
   std::uint64_t work = kAnyWork;  // comp/verify.h, work_of
   std::uint64_t of_line = 0;      // work that a line of memory costs which no cache holds (lines_of)
 
-  /// True if the board can execute an image: the tick within the budget, the tick with its shares within
-  /// kShareWorkFactor times the budget. Not real-time safe.
+  /// True if the board can execute a correction image: the tick is within the budget, and the tick with its
+  /// shares is within kShareWorkFactor times the budget. Not real-time safe.
   bool covers(const Program& program, const ShareProgram& shares) const noexcept;
 };
 

@@ -11,7 +11,7 @@ namespace vernier {
 
 using Nonce = std::array<std::uint8_t, sizeof(ChallengeReply::nonce)>;
 using ChallengeBytes = std::array<std::uint8_t, sizeof(ChallengeReply::challenge)>;
-/// Random bytes of one start of a board that never leave it: challenges are made from them.
+/// Random bytes of one start of a board, from which challenges are made; these bytes never leave the board.
 using ChallengeSeed = std::array<std::uint8_t, 32>;
 
 /// Sender of a request. link: any value that differs between the links of a board; connection: a number that
@@ -24,9 +24,9 @@ struct Caller {
 
 /// Decides which requests of a link are executed. The request is checked against the rights of the link. If
 /// the board has keys, only requests signed with one of them are executed. A signed request is accepted once:
-/// the request contains the nonce of this start of the board and a challenge of 128 random bits that its own
-/// connection got in the last seconds. A request that was delayed on its way, or repeated over another
-/// connection, is not valid.
+/// the request contains the nonce of this start of the board, and a challenge of 128 random bits that the
+/// board gave over the same connection in the last seconds. A request that was delayed on its way, or
+/// repeated over another connection, is not valid.
 class Gate {
  public:
   /// identity, own_key: outlive this object; own_key null: the board has no key; nonce, seed: new

@@ -32,7 +32,8 @@ struct AxisLines {
   double worst_um = 0;
 };
 
-/// Throws LimitNotMet if the sheet "safe to run?" fails: the written files run on a machine as an image does.
+/// Throws LimitNotMet if the safety sheet ("safe to run?") fails, because the written files correct a machine
+/// in the same way as a correction image.
 void require_safe(const model::Machine& machine, const ExchangeArguments& arguments);
 
 /// Returns the fixed state: the middle of the ranges, overridden by the values of the user.

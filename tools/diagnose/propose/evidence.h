@@ -16,7 +16,7 @@
 namespace vernier::diagnose {
 
 /// All data of a fitted machine and its rows that a search needs: the influence of each degree of freedom on
-/// each observation, the residual, and the part that the free parameters of the model can still absorb.
+/// each observation, the residual, and the columns of the free parameters of the model.
 class Evidence {
  public:
   /// `fitted`: the machine at its best fit. Every logged column becomes an input.
@@ -102,8 +102,8 @@ class Evidence {
     bool even = true;  // the steps are multiples of one step, or nearly so
   };
   Range range_of(std::size_t axis) const;
-  /// Returns the positions at which an axis was read, increasing. Positions within `apart` of each other
-  /// count once. sense +1 or -1: of the rows with that approach direction, 0: of all.
+  /// Returns the positions at which an axis was read, increasing. Positions with a distance of at most
+  /// `apart` count once. sense: +1 or -1 for the rows with this approach direction, 0 for all rows.
   std::vector<double> places_read(std::size_t axis, int sense, double apart) const;
   /// Returns the approach direction of a row: as recorded, else from the rows before. The result is 0 if the
   /// approach direction is unknown.

@@ -109,7 +109,7 @@ struct CandidateThresholds {
   /// A location is excluded if another location has the same influence, this factor stronger: a tilt of 6
   /// degrees.
   double outshone = 10;
-  /// Share of the range of a fit by which a scanned unknown may leave the range of its search.
+  /// Share of the search range by which the fit may move a scanned unknown beyond this range.
   double driven_out = 2;
 
   template <class Visit>
@@ -199,8 +199,8 @@ struct PoolThresholds {
   /// Share of a column's square that remains after projection on the orthogonal complement of the columns of
   /// a set. Below this value the column is a copy of the set.
   double least_pivot = 1e-5;
-  /// Preference for the form nearest to the axis among forms that fit alike: a step of the BIC far
-  /// below any evidence.
+  /// Preference for the form nearest to the axis among forms that fit equally well: a difference of the BIC
+  /// far below any evidence.
   double step_of_place = 0.05;
   /// Penalty of a form that the catalogue calls rare: twice the logarithm of its relative
   /// frequency, a twentieth.
@@ -213,8 +213,8 @@ struct PoolThresholds {
   /// Change of the BIC above which a candidate is refined before it enters the pool. A candidate below this
   /// value never becomes significant.
   double refined_above = -20;
-  /// Share of chi^2 per degree of freedom that counts as noise during the ranking: an effect causes the other
-  /// half.
+  /// Share of chi^2 per degree of freedom that counts as noise during the ranking; the other half is
+  /// attributed to an effect.
   double noise_share = 0.5;
   /// Two periods of one location are different candidates if they differ by more than 1 part in this number.
   double periods_per_e = 8;

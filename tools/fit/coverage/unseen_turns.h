@@ -22,7 +22,7 @@ std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measu
 /// any reading.
 inline constexpr double kHeldTurn_deg = 1e-6;
 
-/// Holds these parameters at their values in `at`, as if the values were known to a millionth of a degree.
+/// Fixes these parameters at their values in `at`, with a standard uncertainty of a millionth of a degree.
 void hold_at(FitProblem& problem, const std::vector<bool>& held, const Eigen::VectorXd& at);
 
 }  // namespace vernier::fit

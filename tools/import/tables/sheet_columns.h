@@ -36,8 +36,8 @@ struct SheetWishes {
   std::vector<std::string> axes;  // of the machine, if it is known; else X Y Z A B C U V W J1 …
 };
 
-/// Adds an assignment "x[mm]=X ist". "X ist=x[mm]" is also accepted, as in the other imports: `table` shows
-/// which side is a heading. Throws InputError.
+/// Adds an assignment "x[mm]=X ist". "X ist=x[mm]" is also accepted, as in the other imports: the headings of
+/// `table` determine which side is the heading. Throws InputError.
 void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words);
 /// Adds an assignment "X[um]=Abweichung": the measured value is the position of the axis plus this deviation.
 void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place = {});

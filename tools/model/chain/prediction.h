@@ -46,8 +46,8 @@ Linearisation linearise(const Machine& machine, const Linearizer& linearizer, st
                         std::size_t parameters);
 
 /// A touched object (unknown point or artefact) with the best estimates of its unknown values. `own`:
-/// covariance of its unknown values at a fixed machine for readings of weight 1/u; `follows`: their
-/// derivatives by the parameters.
+/// covariance of the unknown values for a fixed machine and readings of weight 1/u; `follows`: derivatives of
+/// the unknown values by the parameters.
 struct EstimatedThing {
   std::size_t thing = 0, touches = 0;
   ThingShape shape;

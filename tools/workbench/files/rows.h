@@ -56,7 +56,8 @@ std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, 
 std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 
 /// Returns the free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention,
-/// prior) are those of the fit that wrote the file; null without a fit, or if the value was changed since.
+/// prior) are from the fit that wrote the file; null if there was no fit, or if the value was changed after
+/// the fit.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
 }  // namespace vernier::workbench
