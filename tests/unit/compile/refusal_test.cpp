@@ -44,7 +44,7 @@ void expect_one_line(const std::string& message, const std::string& word, const 
 
 TEST(Compile, RefusesInOneLineWithTheReason) {
   expect_one_line(refusal("<BX value=\"0.0021\" nominal=\"0\"", "<BX value=\"0.0021\""), "BX",
-                  "without nominal");
+                  "without `nominal`");
   expect_one_line(refusal("min=\"0\" max=\"600\"", "min=\"0\""), "X", "min and max");
   expect_one_line(refusal("BY*dirY", "BY*log(Y)"), "BY*log(Y)", "log");
   expect_one_line(refusal("BY*dirY", "BY/(Y-100)"), "BY/(Y-100)", "division");

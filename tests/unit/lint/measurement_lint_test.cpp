@@ -199,7 +199,7 @@ TEST(MeasurementLintOf, EveryKindOfReadingOfTheFormatsIsOne) {
     EXPECT_NO_THROW(parse_measurement(text, "s.csv", simple)) << text;
     for (const LintFinding& finding : lint_measurement(text, "s.csv", &simple)) {
       EXPECT_NE(finding.weight, LintWeight::kError) << text << in_one_line(finding);
-      EXPECT_EQ(finding.what.find("does not know"), std::string::npos) << in_one_line(finding);
+      EXPECT_EQ(finding.what.find("does not use"), std::string::npos) << in_one_line(finding);
     }
   }
   // A distance without its other end is a column of one's own.
