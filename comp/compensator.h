@@ -18,7 +18,8 @@ struct AxisInput {
   std::int8_t sense = 0;        // -1, 0, +1: direction of the last motion
 };
 
-/// Values of one tick that the error equation may use. Indices as in the image's axes and inputs.
+/// Values of one tick that the error equation may use. The indices are those of the axes and inputs in the
+/// image.
 struct CycleInput {
   AxisInput axis[kMaxAxes];
   InputMicro input[kMaxInputs];
@@ -44,7 +45,7 @@ enum class ChannelKind : std::uint8_t {
 constexpr std::uint8_t kChannelKindCount = static_cast<std::uint8_t>(ChannelKind::kVisit) + 1;
 
 /// Converts one quantity of the CycleInput to the program's format: limit to [low, high], then
-/// round(round(value / 2^pre_shift) * multiplier / 2^shift). 32 bytes, as in the image.
+/// round(round(value / 2^pre_shift) * multiplier / 2^shift). 32 bytes, as in the correction image.
 struct Channel {
   ChannelKind kind;
   std::uint8_t index;       // axis or input
@@ -147,11 +148,11 @@ class Compensator {
   /// fails. Real-time safe.
   CycleOutput step(const CycleInput& input, WeightQ16 weight = kFullWeight) noexcept;
 
-  /// Starts the slew limit of an axis from the correction that its drive already has. A change of the program
-  /// then makes no step. Not real-time safe.
+  /// Starts the slew limit of an axis from the correction that its drive already has. With this start value,
+  /// a change of the program causes no step of the correction. Not real-time safe.
   void start_from(std::uint32_t axis, Correction held) noexcept { slew_[axis].start_from(held.counts); }
 
-  /// Forgets lags and slew state: the next step starts from zero correction. Not real-time safe.
+  /// Resets the lags and the slew state: the next step starts from zero correction. Not real-time safe.
   void reset() noexcept;
 
   /// The channels and lags at the start of the last step; empty for a program with more channels than fit.

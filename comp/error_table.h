@@ -50,7 +50,8 @@ struct ErrorTable {
   std::uint32_t pieces = 0;   // > 0
   std::uint16_t columns = 0;  // > 0
   std::uint16_t degree = 1;   // 1 or 3
-  // Evenly spaced stations: piece = distance * grid_multiplier >> grid_shift. 0: not evenly, by bisection.
+  // For evenly spaced stations: piece = distance * grid_multiplier >> grid_shift. 0: the stations are not
+  // evenly spaced, and the piece is found by bisection.
   std::uint32_t grid_multiplier = 0;
   std::uint32_t grid_shift = 0;  // 0..63
 

@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// An acceleration so large that it limits nothing: any distance is covered in one tick.
+/// The value "no limit": with this acceleration the value can cover any distance in one tick.
 constexpr std::int64_t kAnyAcceleration = std::int64_t{1} << 40;
 
 /// Limits of a correction: the largest change in counts per tick, and the largest change of this change, in
@@ -18,8 +18,8 @@ struct MotionBounds {
 
 /// Moves a value towards its target within a speed and an acceleration limit. The value brakes in time: it
 /// does not overshoot a target at rest. |change| <= slew and |change of change| <= acceleration hold for
-/// every sequence of targets while the limits do not change. A target that comes nearer than the braking
-/// distance is overshot, within the acceleration.
+/// every sequence of targets while the limits do not change. If the target moves nearer than the braking
+/// distance, the value overshoots the target with the permitted acceleration.
 class MotionLimit {
  public:
   /// target: counts, |target| <= 2^31. Returns the new value. Time: constant (31 steps). Real-time safe.
@@ -29,7 +29,7 @@ class MotionLimit {
                        high = lower(speed_ + bounds.acceleration, bounds.slew);
     const std::int64_t wanted =
         way >= 0 ? braking_speed(way, bounds.acceleration) : -braking_speed(-way, bounds.acceleration);
-    // Bounds that were lowered while moving: braking comes first.
+    // If a limit was lowered during a motion, the value first decelerates to the new limit.
     speed_ = low <= high ? clamp(wanted, low, high) : (speed_ > 0 ? low : high);
     value_ += speed_;
     return value_;

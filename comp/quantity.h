@@ -6,8 +6,8 @@
 namespace vernier {
 
 /// One integer with its unit in the type. Conversion to or from a bare integer is always explicit; sums and
-/// differences keep the unit. The operators of Quantity have no saturation and no check of overflow: callers
-/// keep the ranges. Real-time safe.
+/// differences keep the unit. The operators of Quantity do not saturate and do not check for overflow: the
+/// caller must respect the ranges. Real-time safe.
 template <class Unit, class Integer>
 struct Quantity {
   using Count = Integer;

@@ -38,8 +38,8 @@ ProgramFault verify_shares(const ShareProgram& shares, const Program& program, V
 
 /// Computes the shares of a tick's correction, before the limits and ramps: one entry per share, in the order
 /// of the shares. run_shares executes the equation of the tick again from the start values of the tick. The
-/// tick itself does no work for a display. The share program must be VERIFIED. state: of the same program;
-/// registers: room for kMaxRegisters. False if the state is of another program. Not real-time safe.
+/// tick itself does no work for a display. The share program must be VERIFIED. state: state of the same
+/// program; registers: room for kMaxRegisters. False if the state is of another program. Not real-time safe.
 bool run_shares(const ShareProgram& shares, const Program& program, const EquationState& state,
                 std::int32_t* registers, Correction* corrections) noexcept;
 

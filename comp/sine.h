@@ -19,10 +19,11 @@ constexpr std::int32_t kSineLimit = (std::int32_t{1} << 30) + 2;
 /// 0.0062 for the other node), omitted terms 63, truncations of the series 50, last rounding 500.
 constexpr std::int32_t kSineErrorMilliLsb = 1120;
 
-/// Sine and cosine of `turns`, 2^-32 turn, any value: the whole circle without an edge. Method: take the
-/// nearest of 512 nodes, then add the angle d from the node (|d| <= pi/512) by the addition theorem, in 37
-/// fraction bits. sin d = d - d^3/6 (remainder below 8e-14), cos d = 1 - d^2/2 (remainder d^4/24 < 6e-11).
-/// sine_cosine has no branch and no division; the work does not depend on the angle. Real-time safe.
+/// Returns sine and cosine of `turns`, in 2^-32 turn; any value is permitted, and the result is continuous
+/// over the whole circle. Method: take the nearest of 512 nodes, then add the angle d from the node (|d| <=
+/// pi/512) by the addition theorem, in 37 fraction bits. sin d = d - d^3/6 (remainder below 8e-14), cos d = 1
+/// - d^2/2 (remainder d^4/24 < 6e-11). sine_cosine has no branch and no division; the work does not depend on
+/// the angle. Real-time safe.
 constexpr SineCosine sine_cosine(std::uint32_t turns) noexcept {
   constexpr std::int64_t kRadPerCount = 1686629713;  // 2 pi 2^(37 + 23 - 32), rounded
   constexpr std::int64_t kSixth = 715827883;         // 2^32 / 6

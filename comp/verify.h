@@ -6,7 +6,7 @@
 
 namespace vernier {
 
-/// Why a program is not safe to run.
+/// Reason why a program is not safe to run.
 enum class ProgramFault : std::uint8_t {
   kNone = 0,
   kTooLong = 1,   // more registers, lags, axes or inputs than the cycle has memory for
@@ -28,8 +28,8 @@ struct ValueRange {
 };
 
 /// Proves by interval analysis of the integers that no run of the program can overflow, shift wrongly or read
-/// outside the memory. ranges: room for kMaxRegisters; receives the range of every register. Assumes only the
-/// sizes of the views. Not real-time safe.
+/// outside the memory. ranges: room for kMaxRegisters; receives the range of every register. The verification
+/// assumes only that the sizes of the views are correct. Not real-time safe.
 ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept;
 
 /// Returns the work of one tick of a verified program, or of one evaluation of its shares. Unit: about one

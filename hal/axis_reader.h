@@ -25,7 +25,7 @@ struct PathReading {
   VisitCount visit;
 };
 
-/// Positions of the machine's axes, in the order that the board was wired up with (the image's).
+/// Positions of the machine's axes, in the order of the axes in the correction image.
 class AxisReader {
  public:
   virtual ~AxisReader() = default;
@@ -44,7 +44,7 @@ class AxisReader {
 /// A device that gives positions only: the firmware derives the motion.
 class PositionReader : public AxisReader {
  public:
-  /// Sets feed and curvature to zero: the device does not know them. Real-time safe.
+  /// Sets feed and curvature to zero, because the device does not measure them. Real-time safe.
   HalFault read_path(PathReading& reading) noexcept override { return reading = {}, HalFault::kNone; }
   bool gives_motion() const noexcept override { return false; }
 };

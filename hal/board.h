@@ -11,7 +11,8 @@
 
 namespace vernier {
 
-/// All devices of a board; the pointers do not own the devices. Null: the board does not have the device.
+/// All devices of a board; the pointers do not own the devices. A null pointer means that the board does not
+/// have the device.
 struct Board {
   Clock& clock;
   AxisReader& axes;

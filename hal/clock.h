@@ -7,7 +7,7 @@ namespace vernier {
 
 constexpr InstantNs instant_ns(TimeUs time) { return InstantNs(time.count * 1000); }
 
-/// A time that never runs backwards; the zero of the time has no meaning.
+/// A time that never decreases; the zero of the time has no meaning.
 class Clock {
  public:
   virtual ~Clock() = default;

@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// What became of a command of a plain master.
+/// Result of a command of a Modbus master that uses only registers.
 enum class CommandGiven : std::uint8_t {
   kRefused,  // not a command, or it cannot be taken now
   kTaken,
@@ -23,7 +23,7 @@ class CommandHandler {
   virtual void comes_over(std::uint64_t connection) { static_cast<void>(connection); }
   /// Reports that a connection has ended. Not real-time safe.
   virtual void ends(std::uint64_t connection) { static_cast<void>(connection); }
-  /// Returned by answer() if the reply takes longer because a medium is at work.
+  /// answer() returns this value if the reply is delayed because a storage medium is busy.
   static constexpr std::uint32_t kLater = UINT32_MAX;
 
   /// request: any bytes; reply: room for the longest. answer() returns the bytes of the reply, 0: no reply,
@@ -41,7 +41,7 @@ class CommandHandler {
   }
   /// The live registers for masters that use registers only. Not real-time safe.
   virtual void fill_registers(std::uint16_t* values) = 0;
-  /// Takes a command from a plain master. Not real-time safe.
+  /// Receives a command of a Modbus master that uses only registers. Not real-time safe.
   virtual CommandGiven give(std::uint16_t command) = 0;
 };
 
@@ -49,9 +49,9 @@ class CommandHandler {
 class CommandLink {
  public:
   virtual ~CommandLink() = default;
-  /// Waits at most `wait` for requests and answers them. Never waits for a peer that stops within a request
-  /// or does not take its reply. kRefused: the link is broken and has been opened again, or will be at the
-  /// next call. A peer that misbehaves is no fault. Not real-time safe.
+  /// Waits at most `wait` for requests and answers them. This function never waits for a peer that stops
+  /// within a request or does not read the reply. kRefused: the connection was lost; this call or the next
+  /// call opens it again. An error of the peer is not a fault of the board. Not real-time safe.
   virtual HalFault serve(CommandHandler& handler, TimeUs wait) noexcept = 0;
   /// Handles on which the operating system can wait for a request: at most `room` handles are put into
   /// `handles`. Returns how many; 0 if the link has no handle. Not real-time safe.

@@ -12,8 +12,8 @@ class InputReader {
   /// A tick of the firmware begins; each input is read once until the next call. begin_tick() never waits.
   /// Real-time safe.
   virtual void begin_tick() noexcept {}
-  /// Reads the newest value of an input, 1e-6 of the unit that the image declares. kNoReading: the sensor
-  /// gives no reading. Real-time safe.
+  /// Reads the newest value of an input, in 1e-6 of the unit that the correction image declares. kNoReading:
+  /// the sensor gives no reading. Real-time safe.
   virtual HalFault read_input(std::uint32_t input, InputMicro& value) noexcept = 0;
 };
 

@@ -6,10 +6,9 @@
 
 namespace vernier {
 
-/// Memory that survives a power failure: two slots for images, and four places for a small record (0 and 1:
-/// SlotRecord; 2 and 3: OperatorRecord). A write
-/// that is cut leaves any mixture of old and new bytes in the stretch that was being written; no other byte
-/// changes. A SlotStore is never used in the tick.
+/// Memory that survives a power failure: two slots for images, and four small records (0 and 1: SlotRecord; 2
+/// and 3: OperatorRecord). A power failure during a write may leave any mixture of old and new bytes in the
+/// range of this write; no other byte changes. A SlotStore is never used in the tick.
 class SlotStore {
  public:
   virtual ~SlotStore() = default;

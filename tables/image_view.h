@@ -37,7 +37,7 @@ enum class ImageFault : std::uint8_t {
 /// Returns one line of text for people: "checksum: bytes changed on the way".
 const char* describe(ImageFault fault) noexcept;
 
-/// Room that the verification needs once, kept out of the stack of small targets.
+/// Memory for the verification, outside the stack, because the stack of small targets is small.
 struct ImageWorkspace {
   ValueRange ranges[kMaxRegisters];
 };

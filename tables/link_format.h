@@ -8,8 +8,8 @@
 
 /// Messages between a board and a tool, identical over Modbus and ISO-TP. A request has op, sequence,
 /// payload; a reply has op, sequence, status, payload. Messages are little-endian, with the declared sizes. A
-/// board answers every request with one reply and sends nothing else. The client chooses the sequence number;
-/// the reply repeats the number.
+/// board answers every request with one reply, and sends no other messages. The client chooses the sequence
+/// number; the reply repeats the number.
 namespace vernier {
 
 constexpr std::uint16_t kLinkVersion = 3;

@@ -33,11 +33,11 @@ static_assert(offsetof(OperatorRecord, magic) == 0 && offsetof(OperatorRecord, s
               offsetof(OperatorState, holding) == 1 && offsetof(OperatorState, fault) == 2 &&
               offsetof(OperatorState, axis) == 4 && offsetof(OperatorState, weight) == 36 &&
               offsetof(OperatorRecord, checksum) == 76);
-/// Version of the record; the version is not stored. A new layout takes a new kOperatorMagic and a new number
-/// here.
+/// Version of the record; the version is not stored. A new layout requires a new kOperatorMagic and a new
+/// number here.
 constexpr std::uint32_t kOperatorRecordVersion = 1;
 constexpr std::uint32_t kOperatorMagic = 0x3152504f;  // "OPR1"
-/// Places of the two records in the store, behind the two slot records.
+/// Indices of the two records in the store; the indices 0 and 1 are the slot records.
 constexpr std::uint32_t kOperatorPlace = 2, kOperatorRecordCount = 2;
 
 /// Number of an axis in a record, made from the name, so that a board file with another order of axes keeps
@@ -73,12 +73,12 @@ class OperatorRecords {
   /// State of the places since load() and the changes stored since. A damaged pair is intact after at
   /// most two changes.
   OperatorRecordsState places() const noexcept { return places_; }
-  /// True if a record is stored; else state() is the state of a board whose operator has set nothing.
+  /// True if a record is stored. Otherwise state() is the default state (no setting of an operator).
   bool known() const noexcept { return now_.sequence != 0; }
   const OperatorState& state() const noexcept { return now_.state; }
   /// Returns the change that stores another state. Not real-time safe.
   OperatorChange change_to(const OperatorState& state) const noexcept;
-  /// The change is on the medium. Not real-time safe.
+  /// Reports to the object that the change is on the medium. Not real-time safe.
   void stored(const OperatorChange& change) noexcept;
 
  private:

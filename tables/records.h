@@ -8,7 +8,7 @@
 /// Records that the tick gives to the rest of the board, and the board to its tools (tables/link_format.h).
 namespace vernier {
 
-/// One tick, as other threads read it. Axes and inputs are in the order of the board, values in their counts.
+/// Data of one tick for other threads. Axes and inputs are in the order of the board, values in their counts.
 struct TickRecord {
   std::int64_t time_us = 0;
   std::int64_t position[kMaxAxes] = {};
@@ -60,7 +60,7 @@ enum TouchFlag : std::uint8_t {
   kTouchInWorkpiece = 1u << 2,    // the board has axes X, Y, Z: `workpiece_nm` is there
 };
 
-/// One touch of the probe, as other threads read it. Axes are in the order of the board, values in their
+/// Data of one touch of the probe for other threads. Axes are in the order of the board, values in their
 /// counts. The counters give the losses up to this touch: a reader detects whether touches without a number
 /// are missing.
 struct TouchRecord {

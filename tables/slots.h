@@ -11,8 +11,8 @@ constexpr std::uint32_t kSlotCount = 2;
 /// The store contains the record twice; a change overwrites the older copy.
 constexpr std::uint32_t kSlotRecordCount = 2;
 
-/// Record of the image slots of a board: which slot is confirmed, and which slot is on trial. Little-endian,
-/// 48 bytes, as stored.
+/// Record of the slots of a board for correction images: the confirmed slot, and the slot on trial.
+/// Little-endian, 48 bytes, as stored.
 struct SlotRecord {
   std::uint32_t magic;     // kSlotMagic
   std::uint32_t sequence;  // of the change that wrote it, from 1; the higher of two valid records counts
@@ -33,7 +33,7 @@ static_assert(offsetof(SlotRecord, magic) == 0 && offsetof(SlotRecord, sequence)
               offsetof(SlotRecord, confirmed) == 36 && offsetof(SlotRecord, trial) == 37 &&
               offsetof(SlotRecord, reserved) == 38 && offsetof(SlotRecord, reserved2) == 40 &&
               offsetof(SlotRecord, checksum) == 44);
-/// Version of the record; the version is not stored. A new layout takes a new kSlotMagic and a new number
+/// Version of the record; the version is not stored. A new layout requires a new kSlotMagic and a new number
 /// here.
 constexpr std::uint32_t kSlotRecordVersion = 2;
 constexpr std::uint32_t kSlotMagic = 0x324f4c53;  // "SLO2"
@@ -77,21 +77,21 @@ class Slots {
   /// Returns the signing time of the confirmed image; 0 without a confirmed image.
   std::uint64_t issued() const noexcept { return now_.issued; }
   std::uint64_t trial_issued() const noexcept { return now_.trial_issued; }
-  /// Limits for a new upload: signing time above newest_issued(), security at least security(). Both are the
-  /// highest values of all images ever tried.
+  /// Limits for a new upload: signing time above newest_issued(), security at least security(). Both values
+  /// are the highest of all images that the board has run on trial.
   std::uint64_t newest_issued() const noexcept { return now_.newest_issued; }
   std::uint32_t security() const noexcept { return now_.security; }
   /// Returns the slot that may be overwritten: neither confirmed nor on trial; kNoSlot while a trial runs.
   std::uint8_t free_slot() const noexcept;
 
-  /// The image in free_slot() is to be tried. Only while no trial runs. Not real-time safe.
+  /// Starts the trial of the image in free_slot(). Only while no trial runs. Not real-time safe.
   SlotChange start_trial(std::uint64_t issued, std::uint32_t security) const noexcept;
   /// Returns the change that confirms the image on trial. Call confirm() only while an image is on trial.
   /// Not real-time safe.
   SlotChange confirm() const noexcept;
   /// Reverts the image on trial. Not real-time safe.
   SlotChange revert() const noexcept;
-  /// The change is on the medium. Not real-time safe.
+  /// Reports to the object that the change is on the medium. Not real-time safe.
   void stored(const SlotChange& change) noexcept;
 
  private:

@@ -7,7 +7,7 @@ namespace vernier {
 
 constexpr std::uint32_t kBoardNameBytes = 24;
 
-/// Contents of an upload and of a slot: UploadHeader (little-endian, 152 bytes), then the image
+/// Contents of an upload and of a slot: UploadHeader (little-endian, 152 bytes), then the correction image
 /// (image_format.h). The signature, Ed25519 in its pre-hashed form (RFC 8032, Ed25519ph), covers the header
 /// up to the signature and the whole image.
 struct UploadHeader {
@@ -30,13 +30,13 @@ static_assert(offsetof(UploadHeader, magic) == 0 && offsetof(UploadHeader, heade
               offsetof(UploadHeader, fingerprint) == 24 && offsetof(UploadHeader, security) == 32 &&
               offsetof(UploadHeader, reserved) == 36 && offsetof(UploadHeader, board) == 40 &&
               offsetof(UploadHeader, key) == 64 && offsetof(UploadHeader, signature) == 88);
-/// Version of the upload header; the version is not sent. A new layout takes a new kUploadMagic and a new
+/// Version of the upload header; the version is not sent. A new layout requires a new kUploadMagic and a new
 /// number here.
 constexpr std::uint32_t kUploadFormatVersion = 2;
 constexpr std::uint8_t kUploadMagic[8] = {'V', 'E', 'R', 'N', 'U', 'P', '2', '\n'};
 constexpr std::uint32_t kSignedHeaderBytes = 88;  // of the header, those under the signature
-/// Latest accepted time of signing (the year 2200). A later time comes from a wrong clock, and would block
-/// all later uploads.
+/// Latest accepted time of signing (the year 2200). A later time is due to a wrong clock, and would block all
+/// later uploads.
 constexpr std::uint64_t kLatestIssued = 7'258'118'400'000'000;
 
 /// Header of version 1, which names no board. A slot that was confirmed with it still runs; a new upload with

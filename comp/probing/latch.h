@@ -33,9 +33,9 @@ struct LatchedPosition {
 };
 
 /// The latest samples of all axes. LatchRing computes positions between samples by the cubic through the four
-/// neighbours. The cubic is also right in acceleration and deceleration, and for samples at uneven distances.
-/// LatchRing needs no division; its work is bounded: at most six ratios of 33 steps per instant and six
-/// products per axis.
+/// neighbours. The cubic is also accurate during acceleration and deceleration, and for samples
+/// at uneven distances. LatchRing needs no division; its work is bounded: at most six ratios of 33 steps per
+/// instant and six products per axis.
 ///
 /// Error of an interpolated position: 1 count of rounding (linear axis below 2 m/s) plus the error of the
 /// cubic. The cubic has h^4/384 of the fourth derivative at even distance h, and h^2/16 of a jump in
@@ -67,7 +67,8 @@ class LatchRing {
 
   LatchSample samples_[kSize];
   std::uint64_t count_ = 0, begin_ = 0;  // samples begin_ .. count_ - 1 belong together
-  // Of the last seek(): first of the four neighbours, and (when - t_i) / (t_j - t_i) in Q28.
+  // Result of the last seek(): index of the first of the four neighbouring samples, and (when - t_i) / (t_j -
+  // t_i) in Q28.
   std::uint64_t first_ = 0;
   std::int64_t r01_ = 0, r12_ = 0, r23_ = 0, r02_ = 0, r13_ = 0, r03_ = 0;
   std::int64_t gap_[3] = {};  // ns between the neighbours

@@ -36,8 +36,9 @@ class TouchFilter {
   /// 0. Not real-time safe.
   explicit TouchFilter(InstantNs settle = InstantNs(1'000'000)) noexcept : settle_(settle) {}
 
-  /// Takes an edge of the line. at: not earlier than the previous edge. edge() returns true and fills `touch`
-  /// if the edge ended a touch that was settling. Real-time safe.
+  /// Processes an edge of the probe's signal. at: time of the edge, not earlier than the previous edge.
+  /// edge() returns true and fills `touch` if the settling time of a touch is over at this edge. Real-time
+  /// safe.
   bool edge(InstantNs at, bool made, Touch& touch) noexcept;
   /// Call wait() when time passes without an edge. Returns true and fills `touch` if the last contact has
   /// settled at `now`. Real-time safe.

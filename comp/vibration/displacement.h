@@ -43,7 +43,7 @@ class Displacement {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts at rest. False, without any change, if a setting is out of range. Not real-time safe.
+  /// Starts at rest. Returns false, and changes nothing, if a setting is out of range. Not real-time safe.
   bool start(const DisplacementScale& scale) noexcept;
 
   /// Takes a sample, LSB; returns the displacement at the instant of the sample. A sample beyond +-kLimit is

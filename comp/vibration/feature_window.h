@@ -42,26 +42,26 @@ struct FeatureValues {
   std::uint32_t undefined = 0;
 };
 
-/// Keeps the last n samples of one axis and computes their features. Each sample needs the same work. Four
-/// power sums and sum |x| add the new sample and subtract the oldest, exactly; a tree of groups keeps the
-/// extremes; n/4 products keep the first moment of the spectrum (spectral_weights.h). All values of the
-/// window are integers: they do not drift in any running time. Ranges for n <= 2^11, |x| < 2^19: sum x^2 <
-/// 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below 2^121, spectral sum below 2^82:
-/// 128-bit sums are exact. Bound of the error of features(): 0.501 of 1e-6 plus 2^-54 of the value. FREQUENCY
-/// adds rate n 2^-36 for its rounded weights (36 uHz at 1651 Hz and n = 1500). Beyond int64 a feature
-/// saturates.
+/// Stores the last n samples of one axis and computes the features of these samples. Each sample needs the
+/// same work. Four power sums and sum |x| add the new sample and subtract the oldest, exactly; a tree of
+/// groups updates the extremes; n/4 products update the first moment of the spectrum (spectral_weights.h).
+/// All values of the window are integers: they do not drift in any running time. Ranges for n <= 2^11, |x| <
+/// 2^19: sum x^2 < 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below 2^121, spectral sum
+/// below 2^82: 128-bit sums are exact. Bound of the error of features(): 0.501 of 1e-6 plus 2^-54 of the
+/// value. FREQUENCY adds rate n 2^-36 for its rounded weights (36 uHz at 1651 Hz and n = 1500). Beyond int64
+/// a feature saturates.
 class FeatureWindow {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts an empty window. `weights` must outlive the window; several axes may share `weights`. False if
-  /// scale or weights are out of range. Not real-time safe.
+  /// Starts an empty window. `weights` must outlive the window; several axes may share `weights`. Returns
+  /// false if scale or weights are out of range. Not real-time safe.
   bool start(const FeatureScale& scale, const SpectralWeights& weights) noexcept;
 
   /// Takes one sample, in LSB. A sample beyond +-kLimit is limited to +-kLimit and counted. Real-time safe.
   void push(std::int32_t sample) noexcept;
 
-  /// True if n samples have come since start(). Real-time safe.
+  /// True if the window received n samples since start(). Real-time safe.
   bool filled() const noexcept { return seen_ >= window_; }
   std::uint32_t held() const noexcept { return held_; }
 
@@ -88,7 +88,8 @@ class FeatureWindow {
     Wide cube, fourth, spectral;
   };
   Sums sums_;
-  // Even and odd places apart, each twice in a row: the places at odd distances from one are then neighbours.
+  // The samples with even and with odd index are stored separately, each part twice in succession. The
+  // samples at odd distances from a sample are then adjacent in memory.
   std::int32_t samples_[2][2 * kMaxHalf];
   std::int32_t highest_[2 * kLeaves], lowest_[2 * kLeaves];  // node i over nodes 2i and 2i + 1
 };

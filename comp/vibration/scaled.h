@@ -53,8 +53,8 @@ constexpr std::uint64_t corrected(std::uint64_t y, std::int64_t r) noexcept {
 
 constexpr std::uint64_t kOneQ62 = std::uint64_t{1} << 62;
 
-/// 1 / a; a > 0. Start: the line 48/17 - 32/17 d on d = 1/2..1, error at most 1/17. Four Newton steps reduce
-/// the error to 2e-20; truncation of the products leaves 2^-60. Real-time safe.
+/// 1 / a; a > 0. Start value of the iteration: 48/17 - 32/17 d for d = 1/2..1, error at most 1/17. Four
+/// Newton steps reduce the error to 2e-20; truncation of the products leaves 2^-60. Real-time safe.
 constexpr Scaled reciprocal(Scaled a) noexcept {
   std::uint64_t y = 13021231110853801140u - long_product(a.mantissa, 8680820740569200760u).high;
   for (int step = 0; step < 4; ++step)
@@ -63,8 +63,8 @@ constexpr Scaled reciprocal(Scaled a) noexcept {
   return {y << zeros, -62 - 64 - zeros - a.exponent};
 }
 
-/// 1 / sqrt(a); a > 0. Start: 2.15 - 1.24 d on d = 1/4..1, error at most 0.1. A step changes the error e to
-/// 1.5 e^2; five steps reach 1e-26; the cut products leave 2^-59. Real-time safe.
+/// 1 / sqrt(a); a > 0. Start value of the iteration: 2.15 - 1.24 d for d = 1/4..1, error at most 0.1. A step
+/// changes the error e to 1.5 e^2; five steps reach 1e-26; the cut products leave 2^-59. Real-time safe.
 constexpr Scaled inverse_root(Scaled a) noexcept {
   const int odd = a.exponent & 1;
   const std::uint64_t d = a.mantissa >> odd;  // a = d * 2^even, d 2^62..2^64

@@ -21,7 +21,7 @@ struct SpectralWeights {
 };
 
 /// Computes the weights for a window of n samples, in integers. The bits are identical on every target; each
-/// weight is within 0.5 + 1e-6 of exact. False, without any change, if n is odd or not 6..2048.
+/// weight is within 0.5 + 1e-6 of exact. Returns false, and changes nothing, if n is odd or not in 6..2048.
 /// Not real-time safe.
 bool prepare_weights(std::uint32_t window, SpectralWeights& weights) noexcept;
 

@@ -18,8 +18,9 @@ class OperatorMemory {
       : store_(store), wiring_(wiring), exchange_(exchange) {}
 
   /// Reads the stored state and puts the weights of the axes into Exchange. If a record was begun and is not
-  /// readable, or the two records are not one change apart, the result is a deactivated correction: the
-  /// newest setting may have been a deactivation. Call once, before the first tick. Not real-time safe.
+  /// readable, or if the two records differ by more than one change, the result is a deactivated correction,
+  /// because the newest setting may have been a deactivation. Call once, before the first tick. Not real-time
+  /// safe.
   OperatorState load() noexcept;
   /// Stores the present state if it differs from the stored state, or if a record is damaged. If the medium
   /// refuses, the next call tries again. Not real-time safe.
@@ -32,7 +33,7 @@ class OperatorMemory {
   std::uint32_t refused_ticks() const noexcept { return refused_ticks_.load(std::memory_order_acquire); }
   /// State of the records that load() found.
   OperatorRecordsState found() const noexcept { return found_; }
-  /// True from a load() that found damaged records until an operator activates the correction.
+  /// True if load() found damaged records, until an operator activates the correction.
   bool damaged() const noexcept { return damaged_.load(std::memory_order_relaxed); }
 
  private:

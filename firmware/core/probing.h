@@ -22,8 +22,8 @@ struct ProbeSettings {
   bool rollover[kMaxAxes] = {};                          // whole turns of the axis do not count
   std::uint8_t xyz[3] = {kMaxAxes, kMaxAxes, kMaxAxes};  // board's axes X, Y, Z; kMaxAxes: no such axis
 
-  /// Returns the standard uncertainty of the instant of a touch. resolution: of the edge's stamp.
-  /// Not real-time safe.
+  /// Returns the standard uncertainty of the instant of a touch. resolution: resolution of the time stamp of
+  /// the edge. Not real-time safe.
   InstantNs time_uncertainty(InstantNs resolution) const noexcept;
 };
 

@@ -61,8 +61,8 @@ class Service : private CommandHandler {
   /// Checks the image of the store and gives it to the first tick. Restores the last settings of the operator
   /// and the latched fault. Not real-time safe.
   UploadResult boot();
-  /// Starts like boot(), but runs an unsigned image given at the start of the board; the store is not
-  /// changed. Not real-time safe.
+  /// Starts like boot(), but runs an unsigned correction image that was given at the start of the board; the
+  /// store is not changed. Not real-time safe.
   UploadResult boot_with(std::span<const std::uint8_t> image);
 
   /// Sleeps until the next tick is due and runs the tick. Real-time safe.
@@ -79,8 +79,8 @@ class Service : private CommandHandler {
   void set_probe_delay(InstantNs delay) noexcept {
     if (probing_) probing_->set_delay(delay);
   }
-  /// Gives a command of the board itself, like a command from a link. A command that is already waiting is
-  /// kept. Real-time safe.
+  /// Gives a command of the board itself, like a command from a link. If a command is already waiting, this
+  /// command stays and the new command is ignored. Real-time safe.
   void order(Command command) noexcept {
     Command none = Command::kNone;
     exchange_.command.compare_exchange_strong(none, command);
@@ -91,18 +91,18 @@ class Service : private CommandHandler {
   /// Serves one link: waits at most `wait` for requests and answers them. Without store_beside, serve() also
   /// does all other duties except the tick. Not real-time safe.
   HalFault serve(CommandLink& link, TimeUs wait, const LinkRights& rights = {}) noexcept;
-  /// The store: executes the requests that a link has left for it and records the actions of the guardian.
-  /// True: a link can collect a reply. Not real-time safe.
+  /// The task of the store: executes the requests of the links that need the medium, and records the actions
+  /// of the guardian. Returns true if a link can collect a reply. Not real-time safe.
   bool look_after_store() noexcept;
   bool store_is_asked() const noexcept {
     return desk_.asked() ||
            settings_told_.load(std::memory_order_relaxed) != settings_asked_.load(std::memory_order_relaxed);
   }
-  /// Does the duties of the guardian and of the store in one context, one after the other.
-  /// Not real-time safe.
+  /// Executes the tasks of the guardian and of the store in one context, one after the other. Not real-time
+  /// safe.
   void look_after_programs() noexcept;
 
-  /// True if an operator deactivated the correction, or held it before this start. For the context of boot().
+  /// True if an operator deactivated or held the correction before this start. For the context of boot().
   bool deactivated() const noexcept { return taken_out_; }
   /// The stored state of the operator.
   const OperatorMemory& operator_memory() const noexcept { return operator_; }

@@ -34,7 +34,7 @@ class Component {
   /// Ends the two threads. Ticks may still run; the hatch is not used any more. Not real-time safe.
   void stop() noexcept;
 
-  /// A cycle of the servo thread. period_ns: of the thread. Real-time safe.
+  /// A cycle of the servo thread. period_ns: period of the servo thread. Real-time safe.
   void tick(long period_ns) noexcept;
 
  private:
@@ -61,7 +61,7 @@ class Component {
   pthread_t keeper_{}, store_thread_{};
   bool keeps_ = false, stores_ = false;
   std::atomic<std::uint32_t> tick_us_{0};  // of the thread; 0: it has not run yet
-  // Made when vernier-hal comes for the first time.
+  // The component creates this object when vernier-hal connects for the first time.
   std::unique_ptr<RemoteStore> store_;
   std::unique_ptr<PinProbe> probe_;
   std::unique_ptr<Service> made_;

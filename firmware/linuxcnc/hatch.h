@@ -10,8 +10,8 @@
 namespace vernier {
 
 /// A request from one process to another in shared memory, one at a time. The client writes the request,
-/// makes the turn number odd and waits for the next even number. A process that dies in between has changed
-/// only the request.
+/// makes the turn number odd and waits for the next even number. If a process ends during a request, only the
+/// request in the shared memory has changed.
 struct Call {
   static constexpr std::uint32_t kMostBytes = 4096;
   std::atomic<std::uint32_t> turn{0};
@@ -31,11 +31,11 @@ inline bool is_asked(const Call& call) noexcept {
 }
 /// The request is answered: result, size and bytes are in the call. Not real-time safe.
 void answer_call(Call& call) noexcept;
-/// Waits until the call is answered. False, and the call is withdrawn, if `peer` has ended or `stop` is set.
-/// Not real-time safe.
+/// Waits until the call is answered. Returns false, and withdraws the call, if `peer` has ended or `stop` is
+/// set. Not real-time safe.
 bool make_call(Call& call, std::int32_t peer, const std::atomic<bool>& stop) noexcept;
 
-/// Requests to the component's store, which vernier-hal keeps (hal/slot_store.h).
+/// Requests of the component to its store, which the process vernier-hal manages (hal/slot_store.h).
 enum class StoreOp : std::uint32_t {
   kReadRecord,
   kWriteRecord,

@@ -20,7 +20,7 @@ struct HelperArguments {
 extern const char* const kHelperUsage;
 extern const char* const kHelperVersion;
 
-/// False: not understood; kHelperUsage is the help text. Not real-time safe.
+/// Returns false if the arguments are not valid; kHelperUsage is the help text. Not real-time safe.
 bool parse_helper_arguments(int argc, char** argv, HelperArguments& arguments);
 
 }  // namespace vernier

@@ -13,18 +13,18 @@ namespace vernier {
 /// correction is at most a share of the distance between command and limit. The share is so small that the
 /// correction fades within the slew limit at the joint's greatest speed (the pin max-velocity, or the
 /// greatest observed speed if that is larger). The output always changes within the slew limit. The drive
-/// stays within the joint's limits if the joint is not faster than the speed above. A connected pin that is
-/// not a number is a missing reading of its joint: command, position and feedback alike. After a missing
-/// reading the drive's command and the controller's feedback keep their values. A command that jumps to the
-/// feedback is no jump of the axis: the reading continues from there. (LinuxCNC makes this jump for a joint
-/// that is disabled.) A joint that is not homed has no reference. Its reading keeps its value, and continues
-/// from the new zero when the joint is homed.
+/// stays within the joint's limits if the joint is not faster than the speed above. If the value of a
+/// connected pin (command, position or feedback) is not a number, the reading of the joint is missing. After
+/// a missing reading the drive's command and the controller's feedback keep their values. If the command
+/// jumps to the feedback, the axis has not jumped: the reading continues from the new command. (LinuxCNC
+/// makes this jump for a joint that is disabled.) A joint that is not homed has no reference. The reading of
+/// such a joint does not change, and continues from the new zero when the joint is homed.
 class Joints : public AxisReader, public CorrectionWriter {
  public:
   /// pins: outlive this object. mm_per_unit: unit of the machine's lengths, mm. Not real-time safe.
   Joints(const Pins& pins, const Wiring& wiring, double mm_per_unit = 1) noexcept;
 
-  /// Reads the joints' pins. seconds: of the thread's period. Real-time safe.
+  /// Reads the joints' pins. seconds: period of the servo thread, s. Real-time safe.
   void read(double seconds) noexcept;
   /// Adds the corrections to the commands, and subtracts from the feedback the corrections that were added.
   /// Real-time safe.

@@ -35,7 +35,7 @@ bool is_good(const char* argument, const char* name, Refusal& refusal) {
   if (text.empty()) refusal.say(argument, name, "an empty name");
   if (text.size() >= kImageNameBytes) refusal.say(argument, name, "longer than 23 characters");
   for (const char c : text)
-    if (!is_letter(c)) refusal.say(argument, name, "a name has letters, digits, _ and - only");
+    if (!is_letter(c)) refusal.say(argument, name, "a name may contain only letters, digits, _ and -");
   return refusal.none();
 }
 

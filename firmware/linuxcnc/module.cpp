@@ -15,11 +15,12 @@
 
 // Arguments of `loadrt vernier`: filled in by rtapi_app, which finds them by the names that the macros make.
 static char* axes[vernier::kMaxAxes];
-RTAPI_MP_ARRAY_STRING(axes, 8, "names of the machine's axes, those of the joints from 0 on")
+RTAPI_MP_ARRAY_STRING(axes, 8, "names of the machine's axes, in the order of the joints from joint 0 on")
 static char* inputs[vernier::kMaxInputs];
-RTAPI_MP_ARRAY_STRING(inputs, 24, "names of measured inputs: a pin each")
+RTAPI_MP_ARRAY_STRING(inputs, 24, "names of the measured inputs; each input has a pin")
 static char* rotary[vernier::kMaxAxes];
-RTAPI_MP_ARRAY_STRING(rotary, 8, "axes that turn (default: A, B and C; none: none of them)")
+RTAPI_MP_ARRAY_STRING(rotary, 8,
+                      "names of the rotary axes (default: A, B and C; none: the machine has no rotary axis)")
 static char* units;
 RTAPI_MP_STRING(units, "of lengths, as [TRAJ]LINEAR_UNITS: mm (default) or inch")
 MODULE_LICENSE("GPL");

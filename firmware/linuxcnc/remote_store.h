@@ -5,8 +5,8 @@
 
 namespace vernier {
 
-/// The component's side of a store that vernier-hal keeps. After the end of vernier-hal every access is
-/// refused, as by a broken medium; the running image continues.
+/// Access of the component to the store, which the process vernier-hal manages. After the end of vernier-hal
+/// every access is refused, as by a broken medium; the running image continues.
 class RemoteStore : public SlotStore {
  public:
   /// hatch, stop: outlive the store. Not real-time safe.

@@ -37,7 +37,7 @@ class EnablePin : public DigitalInput {
 class PinProbe : public ProbeLine {
  public:
   PinProbe(const Pins& pins, TimeUs tick) noexcept : pins_(pins), tick_(instant_ns(tick)) {}
-  /// Whose ticks the edges are of. Not real-time safe.
+  /// Sets the runner whose ticks give the times of the edges. Not real-time safe.
   void follow(const Runner& runner) noexcept { runner_ = &runner; }
   HalFault read_edge(ProbeEdge& edge) noexcept override;
   InstantNs resolution() const noexcept override { return tick_; }

@@ -77,7 +77,7 @@ Introduction introduction_of(const HelperArguments& arguments, std::size_t given
   introduction.given_bytes = static_cast<std::uint32_t>(given_bytes);
   for (const std::string& path : arguments.public_keys) {
     if (introduction.keys == BoardIdentity::kMostKeys)
-      throw BoardError{"--public-key is given more than eight times"};
+      throw BoardError{"--public-key is given more than eight times; a board has at most eight public keys"};
     introduction.key[introduction.keys++] = read_public_key(path);
   }
   introduction.board = Name(arguments.board);

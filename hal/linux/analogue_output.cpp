@@ -91,7 +91,7 @@ HalFault AnalogueOutput::rewrite() noexcept {
 
 std::string AnalogueOutput::attempt(std::uint32_t) {
   const HalFault fault = rewrite();
-  if (fault == HalFault::kRefused) return "refuses to write the value that it has now";
+  if (fault == HalFault::kRefused) return "the device refused a write of its present value";
   return fault == HalFault::kNone ? "" : "its present value cannot be read";
 }
 

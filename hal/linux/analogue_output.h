@@ -25,8 +25,8 @@ class AnalogueOutput : public OutputDevice {
                                                  const AnalogueScale& scale, std::string& error);
 
   /// A correction beyond the range is limited to the end of the range and counted. kRefused: the driver
-  /// refused the value. realtime, as far as the device's bus is quick: an SPI converter takes some ten
-  /// microseconds.
+  /// refused the value. Real-time safe if the bus of the device is fast: a write to an SPI converter takes
+  /// some ten microseconds.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
 
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;

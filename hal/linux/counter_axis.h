@@ -14,7 +14,8 @@ inline constexpr const char* kCounterRoot = "/sys/bus/counter/devices";
 
 /// The position of an axis from an encoder at a counter of the kernel (Documentation/ABI/testing/
 /// sysfs-bus-counter). The position at the count zero is a setting; the board does not know whether the
-/// encoder has found its reference mark. Position only: the firmware derives the motion. One axis: index 0.
+/// encoder has found its reference mark. A counter gives only the position: the firmware derives the motion.
+/// One axis: index 0.
 class CounterAxis : public PositionReader {
  public:
   /// count: directory of the count, ".../counter0/count0". bits: width of the counter, 2 .. 40; 0: the

@@ -16,7 +16,8 @@ struct GpioAddress {
   bool inverted = false;  // on is the low level
 };
 
-/// A line of the kernel's GPIO character device, by libgpiod 1.6 or 2; only gpio_lines.cpp knows the version.
+/// A line of the kernel's GPIO character device, by libgpiod 1.6 or 2; only gpio_lines.cpp depends on the
+/// version.
 class GpioLine {
  public:
   enum class Use { kInput, kOutput, kEdges };
@@ -33,10 +34,10 @@ class GpioLine {
   virtual void read_edges(EdgeQueue& queue) noexcept = 0;
 };
 
-/// Edges of a probe's line with the time at which the kernel's interrupt saw them (CLOCK_MONOTONIC, from
-/// Linux 5.7 on). An edge of an older kernel, with the time of another clock, is reported as lost. Two edges
-/// that are closer than the latency of the interrupt are reported as a loss: the kernel reads the level after
-/// the interrupt.
+/// Edges of the signal of a probe, with the time of the kernel's interrupt (CLOCK_MONOTONIC, from Linux 5.7
+/// on). An edge of an older kernel, with the time of another clock, is reported as lost. Two edges that are
+/// closer than the latency of the interrupt are reported as a loss: the kernel reads the level after the
+/// interrupt.
 class GpioProbeLine : public ProbeLine {
  public:
   static std::unique_ptr<GpioProbeLine> open(const GpioAddress& address, std::string& error);
@@ -44,7 +45,7 @@ class GpioProbeLine : public ProbeLine {
   HalFault read_edge(ProbeEdge& edge) noexcept override;
   /// Returns 0: the kernel does not know the latency of its interrupt.
   InstantNs resolution() const noexcept override { return InstantNs{}; }
-  /// Times that edges were missing; only goes up.
+  /// Number of gaps in the sequence of edges since the start; never decreases.
   std::uint64_t losses() const noexcept { return queue_.losses(); }
   /// Reads the line. 1: the probe touches, 0: the probe does not touch, -1: the line cannot be read.
   /// Not real-time safe.

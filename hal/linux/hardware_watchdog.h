@@ -12,7 +12,7 @@ class HardwareWatchdog {
   /// Starts the watchdog immediately, with a time of `seconds` if the driver supports setting the time.
   /// Returns null with `error` set if the watchdog cannot be opened. Not real-time safe.
   static std::unique_ptr<HardwareWatchdog> open(const std::string& device, int seconds, std::string& error);
-  /// Without an earlier disarm(), the watchdog resets the computer when its time is over.
+  /// If disarm() was not called before, the watchdog resets the computer when its time is over.
   ~HardwareWatchdog();
   HardwareWatchdog(const HardwareWatchdog&) = delete;
   HardwareWatchdog& operator=(const HardwareWatchdog&) = delete;

@@ -4,7 +4,8 @@
 
 namespace vernier {
 
-/// The clock CLOCK_MONOTONIC. Sleeps are absolute, so that a late wake-up does not shift the next.
+/// The clock CLOCK_MONOTONIC. A sleep ends at an absolute time, so that a late wake-up does not shift the
+/// next wake-up.
 class MonotonicClock : public Clock {
  public:
   InstantNs now() noexcept override;

@@ -18,14 +18,15 @@ class OutputDevice : public CorrectionWriter {
   /// Reads the correction that the device has now, and that the daemon must remove. kNoReading: the device
   /// does not report it. Not real-time safe.
   virtual HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept = 0;
-  /// Tries the device without a motion: empty, or the error. Not real-time safe.
+  /// Tests the device without a motion; returns the error, or an empty text. Not real-time safe.
   virtual std::string attempt(std::uint32_t axis) = 0;
   /// Returns what open() and attempt() did to the device: "only the value that it has was written again".
   virtual std::string trial() const = 0;
   /// Returns the number of writes whose correction was beyond the range.
   virtual std::uint64_t held_at_end(std::uint32_t axis) const noexcept = 0;
   virtual const AnalogueScale& scale(std::uint32_t axis) const noexcept = 0;
-  /// Returns what the device reports of its work when the daemon ends; empty: nothing. Not real-time safe.
+  /// Returns the line of statistics that the daemon prints for the device at its end; an empty text: no line.
+  /// Not real-time safe.
   virtual std::string account() const { return {}; }
 };
 

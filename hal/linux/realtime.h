@@ -20,8 +20,8 @@ RealtimeGrant become_realtime(int priority) noexcept;
 /// Not real-time safe.
 int become_realtime_thread(int priority) noexcept;
 
-/// Threads made from now on have stacks of 1 MB, in the place of 8 that would all be locked in memory.
-/// Not real-time safe.
+/// Threads that are created after this call have stacks of 1 MB instead of 8 MB, because all stacks are
+/// locked in memory. Not real-time safe.
 void keep_stacks_small() noexcept;
 
 /// Number of stack bytes that become_realtime touches, so that no page fault occurs in the tick.

@@ -7,12 +7,12 @@
 
 namespace vernier {
 
-/// A sensor with a slow answer, often milliseconds. A separate thread takes the samples; the tick gets the
+/// A sensor with a slow answer, often milliseconds. A separate thread reads the samples; the tick gets the
 /// newest sample. A SampledInput has input 0 only.
 class SampledInput : public InputReader {
  public:
   /// Takes a sample; waits for the device. Returns the result of the next reads. Only one thread may call
-  /// sample(), and not the thread of the tick.
+  /// sample(), and this thread must not be the thread of the tick.
   HalFault sample() noexcept;
   /// The newest sample, once per tick. kNoReading: the last attempt failed, no sample was taken yet, or no
   /// new sample came for stale_reads reads. Real-time safe.

@@ -4,8 +4,8 @@
 namespace vernier {
 
 /// Reports the state of the daemon to the service manager, by the datagram protocol of systemd
-/// (sd_notify(3)). Without a service manager nothing is sent. ServiceManager never waits: a message that does
-/// not fit is dropped.
+/// (sd_notify(3)). If no service manager started the process, the function sends nothing. ServiceManager
+/// never waits: a message that does not fit is dropped.
 class ServiceManager {
  public:
   /// Reads the address of the service manager from NOTIFY_SOCKET. Not real-time safe.

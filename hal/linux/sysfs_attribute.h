@@ -30,8 +30,8 @@ class SysfsAttribute {
   /// Writes a word ("normal"). Not real-time safe.
   HalFault write(const std::string& word) noexcept;
   /// Reads a decimal number, with or without a fraction, in millionths; further digits are cut off.
-  /// kNoReading: the driver gave an error, an empty text, or no number; `micro` is then not changed. Waits as
-  /// long as the driver does.
+  /// kNoReading: the driver gave an error, an empty text, or no number; `micro` is then not changed. The call
+  /// takes as long as the driver needs.
   HalFault read_micro(std::int64_t& micro) noexcept;
   /// Reads a whole number; errors as for read_micro. Not real-time safe.
   HalFault read(std::int64_t& value) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Times as the system's calls take them, and the patience with calls that a signal cuts short.
+// Times in the form of the system calls, and the repetition of a call that a signal interrupts.
 #include <cstdint>
 #include <ctime>
 

@@ -23,7 +23,7 @@ class SimClock : public Clock {
     now_ = std::max(now_, due + late);
     return HalFault::kNone;
   }
-  /// Lets time pass as if something had been computed.
+  /// Advances the time, as a computation of this duration would.
   void spend(InstantNs time) { now_ = now_ + time; }
 
  private:

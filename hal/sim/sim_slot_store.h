@@ -8,9 +8,9 @@
 
 namespace vernier {
 
-/// Slots in memory whose power can be cut at any byte of any write. The bytes before the cut are new, the
-/// other bytes are old; no further byte is written until restore_power(). A SimSlotStore can also be full, or
-/// fail to write.
+/// Slots in memory whose power can be cut at any byte of any write. The bytes before the power failure are
+/// new, the other bytes are old; no further byte is written until restore_power(). A SimSlotStore can also be
+/// full, or fail to write.
 class SimSlotStore : public SlotStore {
  public:
   explicit SimSlotStore(std::uint32_t capacity) : capacity_(capacity) {}
@@ -24,7 +24,7 @@ class SimSlotStore : public SlotStore {
   bool dead() const { return dead_; }
   /// Returns the number of bytes written so far.
   std::uint64_t written() const { return written_; }
-  /// Cuts a record to its first `size` bytes; with 0 bytes the place was never written.
+  /// Truncates a record to its first `size` bytes; with 0 bytes the record counts as never written.
   void cut_record(std::uint32_t place, std::uint32_t size) { records_[place].resize(size); }
   /// The medium has no room for more image bytes than that.
   void fill_up_to(std::uint32_t bytes) { room_ = bytes; }

@@ -19,7 +19,7 @@ struct PlantState {
 class Trajectory {
  public:
   virtual ~Trajectory() = default;
-  /// Computes the state at a tick. tick: 0 is the start; later ticks may be asked in any order.
+  /// Computes the state at a tick. tick: 0 is the start; ticks may be in any order.
   virtual void at(std::int64_t tick, PlantState& state) noexcept = 0;
 };
 

@@ -29,7 +29,7 @@ struct AnalogueScale {
            high <= INT32_MAX && zero >= low && zero <= high;
   }
   /// wanted_code returns the code of a correction, without limits; code_for returns the code that is written.
-  /// In the tick, AnalogueConverter computes both. Not real-time safe.
+  /// In the tick, AnalogueConverter computes both conversions. Not real-time safe.
   std::int64_t wanted_code(AxisTravel correction) const noexcept;
   std::int64_t code_for(AxisTravel correction) const noexcept;
   /// Returns the correction that a code represents, to the nearest count. code: 0 .. 2^31.

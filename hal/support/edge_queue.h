@@ -7,15 +7,17 @@
 namespace vernier {
 
 /// Edges that were received and have not been read. EdgeQueue keeps the order of the edges and records where
-/// edges are missing. The line of a probe closes and opens in turn: if two edges of one kind follow each
-/// other, an edge between them is lost. A kernel that numbers its edges makes every loss visible.
+/// edges are missing. The contact of a probe closes and opens alternately: if two edges of the same kind
+/// follow each other, an edge between these two edges is lost. A kernel that numbers its edges makes every
+/// loss visible.
 class EdgeQueue {
  public:
   static constexpr std::uint32_t kRoom = 128;
   static constexpr std::uint32_t kNoNumber = 0;
 
-  /// Adds an edge. number: increases by one with each edge, from 1; kNoNumber if the device gives no numbers.
-  /// If the queue is full, the edge is dropped and reported as lost. Real-time safe.
+  /// Adds an edge. number: the number that the device gave to the edge; it increases by one with each edge. A
+  /// device never gives 0. kNoNumber (0): the device does not number its edges. If the queue is full, the
+  /// edge is dropped and reported as lost. Real-time safe.
   void put(const ProbeEdge& edge, std::uint32_t number = kNoNumber) noexcept {
     if (count_ == kRoom) return put_loss();
     const bool out_of_turn = known_ && edge.made == last_made_;
@@ -50,7 +52,7 @@ class EdgeQueue {
   bool empty() const noexcept { return count_ == 0 && !loss_; }
   /// Edges that can still be put in.
   std::uint32_t room() const noexcept { return kRoom - count_; }
-  /// Times that edges were missing; only goes up.
+  /// Number of gaps in the sequence of edges since the start; never decreases.
   std::uint64_t losses() const noexcept { return losses_; }
 
  private:

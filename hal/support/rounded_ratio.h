@@ -40,7 +40,7 @@ class RoundedRatio {
     else if (product.high >> shift_ == 0)
       quotient = shift_ == 0 ? product.low : product.high << (64 - shift_) | product.low >> shift_;
     if (quotient < kMost) {
-      // Less than twice the denominator, so what 64 bits lose does not count.
+      // The difference is less than twice the denominator, so the overflow of 64 bits has no effect.
       std::uint64_t rest = size * numerator_ - quotient * denominator_;
       if (rest >= denominator_) {
         ++quotient;

@@ -8,13 +8,14 @@
 namespace vernier {
 
 /// Continues a counter that wraps around. A step is the shortest way: less than half of the range of the
-/// counter. The first count decides where the counter begins: a count in the upper half is negative.
+/// counter. The first count determines the start value: a count in the upper half of the range is negative.
 class WrappedCount {
  public:
   /// range: number of different counts, 2 .. 2^40; a count is 0 .. range - 1. Not real-time safe.
   explicit constexpr WrappedCount(std::int64_t range) noexcept : range_(range) {}
 
-  /// Takes the newest count. False: the count is not in the range, and is not taken. Real-time safe.
+  /// Takes the newest count. Returns false, and ignores the count, if the count is not in the range.
+  /// Real-time safe.
   constexpr bool take(std::int64_t count) noexcept {
     if (count < 0 || count >= range_) return false;
     std::int64_t step = count - last_;
@@ -26,7 +27,7 @@ class WrappedCount {
   }
   /// Counts from the zero of the counter, over all its wraps.
   constexpr std::int64_t position() const noexcept { return position_; }
-  /// The next count is a first count again.
+  /// After this call the next count counts as the first count.
   constexpr void forget() noexcept { last_ = position_ = 0; }
 
  private:

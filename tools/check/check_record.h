@@ -31,13 +31,13 @@ struct CheckRecord {
 };
 
 /// True for a parameter of the machine that no reading of the fit determined (origin prior): a check cannot
-/// tell its change from its unknown value.
+/// distinguish a change of this parameter from its unknown value.
 bool is_unmeasured(const model::Machine& machine, const CheckedQuantity& quantity);
 
 /// Evaluates a measurement against a fitted machine; fit and check rows are treated alike. The set-up of the
 /// instrument is fitted again, with any rotation. The sensitivities are computed at the new set-up. Tested
-/// parameters are the free parameters. Further tested parameters, unless the chain has the same ones as free
-/// parameters: reversal and scale of every axis, a tilt and an offset of every transform, a drift of the
+/// parameters are the free parameters. Further tested parameters, unless the chain has the same parameters as
+/// free parameters: reversal and scale of every axis, a tilt and an offset of every transform, a drift of the
 /// instrument along each direction that it reads. Throws InputError if the machine was never fitted.
 CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
                       std::string label);

@@ -256,8 +256,10 @@ class Judge {
     constexpr double kFewest = 3;  // readings
     text::Assurance& word = answer_.assurance;
     word.at_least("scatter", answer_.noise_p, scatter_limit(false_alarms_, k),
-                  "Chance that readings of the stated uncertainty scatter as much as those of this check.");
-    word.at_least("readings", beyond, kFewest, "Readings of all checks beyond those that the set-up takes.");
+                  "p-value of the scatter: probability that readings with the stated uncertainty scatter at "
+                  "least as much as the readings of this check.");
+    word.at_least("readings", beyond, kFewest,
+                  "Number of readings of all checks, less the number of parameters of the set-up.");
     word.require("sensitivity", any_of_machine, "The readings depend on at least one error of the machine.");
     word.at_most("evidence", answer_.evidence, answer_.alarm,
                  "Evidence (e-value) for a change of the machine or the instrument.");
@@ -289,9 +291,8 @@ class Judge {
     if (fails("readings") || fails("sensitivity")) {
       answer_.verdict = CheckVerdict::kTooLittle;
       answer_.explanation =
-          "The readings determine only the set-up of the instrument. Measure more points, "
-          "further "
-          "apart.";
+          "The readings determine only the set-up of the instrument. Measure more points with larger "
+          "distances between them.";
       return;
     }
     if (alarm) return report_change();
@@ -325,7 +326,7 @@ class Judge {
         fmt::format("The readings scatter by {:.2g} times their stated uncertainty, {} (chance {:.1g}).",
                     std::sqrt(beside_all ? last_.rest / last_.freedom : scatter_.back()),
                     beside_all ? "whatever may have changed in the machine"
-                               : "and no change of one parameter explains it",
+                               : "and no change of a single parameter explains this scatter",
                     answer_.noise_p);
   }
 

@@ -77,7 +77,7 @@ CheckHistory parse_history(const std::string& text, const std::string& file) {
     if (json.at("format") != "vernier-checks") throw std::invalid_argument("no history of checks");
     if (json.at("version") == kVersionOfOldSetUps) return {"", {}};
     if (json.at("version") != kVersion)
-      throw std::invalid_argument("a version that this program does not know");
+      throw std::invalid_argument("this program does not support this version of the history file");
     CheckHistory history{json.at("machine").get<std::string>(), {}};
     for (const Json& one : json.at("checks")) {
       CheckRecord check;

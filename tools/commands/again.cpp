@@ -40,7 +40,7 @@ class Mirror {
     std::error_code none;
     std::string name = (fs::temp_directory_path(none) / "vernier-again-XXXXXX").string();
     if (none || mkdtemp(name.data()) == nullptr)
-      throw text::InputError({name, 0}, "", "cannot be made: the folder for temporary files");
+      throw text::InputError({name, 0}, "", "the folder for temporary files cannot be created");
     root_ = fs::canonical(name).string();
   }
   ~Mirror() {
@@ -113,8 +113,8 @@ class Again {
     if (!made)
       throw text::InputError(
           {file_, 0}, "",
-          "does not say how it was made. Reports (HTML), machine files and JSON results of "
-          "this version do; tables (CSV) and programs do not");
+          "this file has no record of how it was made. Reports (HTML), machine files and JSON results of "
+          "this version have a record; tables (CSV) and programs have no record");
     made_ = std::move(*made);
     place_ = fs::weakly_canonical(fs::absolute(file_));
     folder_ = (place_.parent_path() / made_.folder).lexically_normal();
@@ -133,7 +133,7 @@ class Again {
       if (!fs::exists(path))
         throw text::InputError(
             {file_, 0}, input.name,
-            "this input is not at " + path + ". Put it there, then repeat `vernier again`");
+            "this input is not at " + path + ". Put the input there, then repeat `vernier again`");
       if (sha256_of(text::read_file(path)) != input.sha256) names.push_back(input.name);
     }
     return names;
@@ -197,14 +197,17 @@ class Again {
     const auto& command = made_.command;
     if (command.empty() || std::ranges::find(kOfFiles, command.front()) == kOfFiles.end())
       throw text::InputError({file_, 0}, command.empty() ? "" : command.front(),
-                             "the record has a command that makes no file from files; it is not run");
+                             "the record contains a command that does not make output files from input "
+                             "files; `vernier again` does not run this command");
     // Above the root of the computer there is nothing, but above that of the temporary folder there is.
     const auto depth = std::distance(folder_.begin(), folder_.end()) - 1;
     for (const std::string& word : command) {
       std::ptrdiff_t up = 0;
       for (std::size_t at = 0; (at = word.find("..", at)) != std::string::npos; at += 2) ++up;
       if (up > depth)
-        throw text::InputError({file_, 0}, word, "this name leaves the folder of the computer's files");
+        throw text::InputError({file_, 0}, word,
+                               "this file name has too many \"..\": it leads out of the temporary folder in "
+                               "which the command runs again");
     }
   }
 
@@ -266,8 +269,8 @@ void run_again(const Arguments& arguments) {
 
 void register_again(CLI::App& vernier) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command =
-      vernier.add_subcommand("again", "Make a report or result again from its inputs, and compare all bytes");
+  CLI::App* const command = vernier.add_subcommand(
+      "again", "Make a report or result again from the same inputs, and compare all bytes");
   command
       ->add_option("file", arguments->file,
                    "report (HTML), machine file (XML), result (JSON), or the folder of improve or compile")

@@ -8,10 +8,10 @@
 
 namespace vernier::commands {
 
-/// Adds one subcommand to `vernier`. The callback of the subcommand does the job. It throws InputError (exit
-/// 1) or LimitNotMet (exit 2) and returns normally otherwise (exit 0). Any other exception of a callback is
-/// an error of Vernier (exit 70). Each command has one such function; tools/commands/vernier.cpp lists the
-/// functions by topic.
+/// Adds one subcommand to `vernier`. The callback of the subcommand does the job. A command throws InputError
+/// (exit 1) or LimitNotMet (exit 2), and returns normally otherwise (exit 0). Any other exception of a
+/// callback is an error of Vernier (exit 70). Each command has one function of this kind;
+/// tools/commands/vernier.cpp lists the functions by topic.
 using RegisterCommand = void (*)(CLI::App& vernier);
 
 namespace again_cli {

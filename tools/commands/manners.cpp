@@ -138,7 +138,7 @@ void require_known_dashes(const CLI::App& vernier, const std::vector<std::string
     throw text::InputError("\"" + word + "\": " +
                            (meant
                                 ? "did you mean --" + *meant + "? An option of several letters has two dashes"
-                                : "no option of this command; --help lists them"));
+                                : "this command has no such option; --help lists the options"));
   }
 }
 
@@ -181,9 +181,10 @@ void require_files_in_their_places(const CLI::App& vernier, const std::vector<st
   }
   if (!table.empty())
     throw text::InputError({table, 0}, "",
-                           "a table of measurements where the machine file (XML) is wanted" + meant);
-  throw text::InputError({xml, 0}, "",
-                         "a machine file where a measurement file (CSV) is wanted; the machine comes first");
+                           "this is a measurement file, but the machine file (XML) is expected here" + meant);
+  throw text::InputError(
+      {xml, 0}, "",
+      "this is a machine file, but a measurement file (CSV) is expected here; give the machine file first");
 }
 
 void warn_of_machine(const CLI::App& vernier) {

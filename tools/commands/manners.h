@@ -30,7 +30,7 @@ void take_plain_numbers(CLI::App& vernier);
 void require_files_in_their_places(const CLI::App& vernier, const std::vector<std::string>& arguments);
 
 /// Prints the warnings of lint on the machine file, if the command fits, evaluates or compiles the machine.
-/// Output: standard error, one line each, once.
+/// The function prints each line once, to standard error.
 void warn_of_machine(const CLI::App& vernier);
 
 /// The command that reads the spreadsheet of an error message; empty for other messages.

@@ -23,15 +23,16 @@ struct Provenance {
 
 /// Records the inputs of this process from now on, and adds the provenance to its output files: HTML pages,
 /// machine files (a comment at the end) and JSON objects (key "made_by"). All other files, and a file that is
-/// the copy of an input, are written as they are. Does nothing for a command whose result depends on more
-/// than files: a board, a server, a fleet, a key.
+/// the copy of an input, are written as they are. For a command whose result depends on more than files (a
+/// board, a server, a fleet, a key) the function does nothing.
 void record_provenance(const std::vector<std::string>& arguments, const std::string& program);
 
 /// Provenance of a file with this content; nullopt if the file has none. Throws InputError with `name` if the
 /// provenance is malformed.
 std::optional<Provenance> provenance_of(const std::string& content, const std::string& name);
 
-/// Text as it is in a comment of a page or machine file: two hyphens would end the comment.
+/// Returns the text in the form for an XML or HTML comment, without two consecutive hyphens, which would end
+/// the comment.
 std::string in_comment(const std::string& text);
 
 /// SHA-256 (FIPS 180-4), 64 hexadecimal digits.

@@ -94,14 +94,13 @@ nlohmann::ordered_json ReportHeader::on(nlohmann::ordered_json page) const {
 
 void add_report_header(CLI::App& command, ReportHeader& header) {
   command
-      .add_option(
-          "--header", header.given,
-          "an entry at the head of the report: \"serial number=4711\", company, operator, instrument, "
-          "date, temperature …; again for each")
+      .add_option("--header", header.given,
+                  "entry at the head of the report: \"serial number=4711\", company, operator, instrument, "
+                  "date, temperature …; repeat the option for each entry")
       ->allow_extra_args(false);
   command
       .add_option("--letterhead", header.file,
-                  "a file of such entries, a line each, for every report of a shop")
+                  "file with entries for the head of every report, one entry per line")
       ->type_name(kReads);
   CLI::Option* const language =
       command

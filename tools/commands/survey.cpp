@@ -17,10 +17,10 @@ void add_survey(CLI::App& command, SurveyArguments& arguments) {
       ->required();
   command.add_option("--images", arguments.images, simulate::kImagesHelp)->type_name(kReadsFolder);
   command
-      .add_option(
-          "--column", arguments.columns,
-          "NAME=ROLE: meaning of a logged column whose unit and name are misleading: temperature, load, "
-          "vibration, set-point, other, ignore; may be repeated")
+      .add_option("--column", arguments.columns,
+                  "NAME=ROLE: meaning of a logged column, if its unit and name suggest another meaning: "
+                  "temperature, load, "
+                  "vibration, set-point, other, ignore; may be repeated")
       ->allow_extra_args(false)
       ->type_name("NAME=ROLE");
 }

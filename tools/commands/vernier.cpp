@@ -114,8 +114,8 @@ int run(const std::vector<std::string>& arguments) {
     return kDone;
   }
   CLI::App app{
-      "Vernier makes machine tools, measuring machines and robots more accurate. It fits a model of the "
-      "machine's errors to measurements and corrects the axes with it.",
+      "Vernier makes machine tools, measuring machines and robots more accurate. Vernier fits a model of the "
+      "machine's errors to measurements, and corrects the axes with this model.",
       "vernier"};
   app.set_version_flag("-V,--version", kProgram);
   app.footer(

@@ -108,8 +108,8 @@ void run_diff(const DiffArguments& arguments) {
 
 void register_workbench(CLI::App& vernier) {
   auto arguments = std::make_shared<WorkbenchArguments>();
-  CLI::App* command =
-      vernier.add_subcommand("workbench", "Open the workflow in a browser: a page for this computer only");
+  CLI::App* command = vernier.add_subcommand(
+      "workbench", "Open the workflow in a browser; only this computer can open the page");
   command->add_option("DIR", arguments->directory, "folder with machines, measurements, images")
       ->type_name(kReadsFolder)
       ->capture_default_str();
@@ -126,20 +126,22 @@ void register_workbench(CLI::App& vernier) {
 
 void register_image_diff(CLI::App& vernier) {
   auto arguments = std::make_shared<DiffArguments>();
-  CLI::App* command = vernier.add_subcommand(
-      "image-diff", "Show the differences of a compiled image to another one or to that of a board");
+  CLI::App* command = vernier.add_subcommand("image-diff",
+                                             "Show the differences between a compiled correction image and "
+                                             "another image, or the confirmed image of a board");
   command->add_option("DIR", arguments->directory, "directory that `vernier compile` wrote")
       ->type_name(kReadsFolder)
       ->required();
   command->add_option("--with", arguments->with, "another such directory")->type_name(kReadsFolder);
-  command->add_option("--to", arguments->url, "the board whose confirmed image it is compared with");
+  command->add_option("--to", arguments->url, "address of the board whose confirmed image is compared");
   command
       ->add_option("--key", arguments->key,
-                   "secret key of `vernier keys` (or VERNIER_KEY): a board with keys sends its image only "
-                   "to the owner of a trusted key")
+                   "secret key of `vernier keys` (or VERNIER_KEY): a board with keys sends its correction "
+                   "image only to the owner of a trusted key")
       ->type_name(kReads);
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
-  command->footer("Exit status 0 done, 1 bad input or no board, 2 the board's store has no confirmed image.");
+  command->footer(
+      "Exit status 0 done, 1 bad input or no board, 2 the board's store contains no confirmed image.");
   command->callback([arguments] { run_diff(*arguments); });
 }
 

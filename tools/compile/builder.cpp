@@ -111,7 +111,8 @@ ProgramBuilder::Id ProgramBuilder::constant(double value, int fraction_bits) {
   const auto found = known_constants_.find({value, fraction_bits});
   if (found != known_constants_.end()) return found->second;
   const Id id = static_cast<Id>(p_.constants.size());
-  if (id >= kFirstChannel) throw text::InputError("cannot be compiled: more constants than a program holds");
+  if (id >= kFirstChannel)
+    throw text::InputError("cannot be compiled: the equation has more constants than an image can contain");
   Register& r = registers_[id];
   r.fraction_bits = fraction_bits;
   const auto count = std::llround(std::ldexp(value, r.fraction_bits));
@@ -127,7 +128,10 @@ ProgramBuilder::Id ProgramBuilder::constant(double value, int fraction_bits) {
 ProgramBuilder::Id ProgramBuilder::channel(Channel channel, double unit, double reach,
                                            const std::string& name) {
   const Id id = kFirstChannel + static_cast<Id>(p_.channels.size());
-  if (id >= kFirstResult) throw text::InputError("cannot be compiled: more channels than a program holds");
+  if (id >= kFirstResult)
+    throw text::InputError(
+        "cannot be compiled: the machine file uses more inputs and motion quantities than an image can "
+        "contain");
   const Interval exact{static_cast<double>(channel.low) * unit, static_cast<double>(channel.high) * unit};
   Register& r = registers_[id];
   r.fraction_bits = fraction_bits_for(std::max(exact.magnitude(), reach) * (1 + 1e-9));
@@ -162,7 +166,10 @@ ProgramBuilder::Id ProgramBuilder::channel(Channel channel, double unit, double 
 
 ProgramBuilder::Id ProgramBuilder::imported(const LoweredProgram& other, std::uint32_t source) {
   const Id id = kFirstChannel + static_cast<Id>(p_.channels.size());
-  if (id >= kFirstResult) throw text::InputError("cannot be compiled: more channels than a program holds");
+  if (id >= kFirstResult)
+    throw text::InputError(
+        "cannot be compiled: the machine file uses more inputs and motion quantities than an image can "
+        "contain");
   registers_[id] = other.registers[source];
   registers_[id].name = unique(other.registers[source].name);
   registers_[id].uses.clear();
@@ -377,7 +384,7 @@ ProgramBuilder::Id ProgramBuilder::reformat(Id a, int fraction_bits) {
 
 ProgramBuilder::Id ProgramBuilder::look_up(Id position, LoweredTable table, std::vector<Register> results) {
   if (p_.tables.size() >= kMaxTables)
-    throw text::InputError("cannot be compiled: more tables than an image holds");
+    throw text::InputError("cannot be compiled: the machine file has more tables than an image can contain");
   const Instruction step{OpCode::kLookUp,
                          0,
                          static_cast<std::uint16_t>(position),
@@ -399,7 +406,10 @@ ProgramBuilder::Id ProgramBuilder::look_up(Id position, LoweredTable table, std:
 ProgramBuilder::Id ProgramBuilder::sine_cosine(Id angle, const Interval& sine, const Interval& cosine) {
   const double per_count = std::ldexp(4294967296.0 / 360, -at(angle).fraction_bits);
   const int shift = std::min(30 - std::ilogb(per_count), static_cast<int>(kMaxShift));
-  if (shift < 0) throw text::InputError("cannot be compiled: an angle has too many turns: " + at(angle).name);
+  if (shift < 0)
+    throw text::InputError(
+        "cannot be compiled: an angle exceeds the largest number of turns of the fixed-point format: " +
+        at(angle).name);
   const double multiplier = std::round(std::ldexp(per_count, shift));
   // If rounding reaches 2^31, one less is equally accurate.
   const auto k = static_cast<std::int32_t>(std::min(multiplier, 2147483647.0));
@@ -429,7 +439,8 @@ std::uint16_t ProgramBuilder::add_wrap(const Wrap& wrap) {
 }
 
 std::uint16_t ProgramBuilder::add_lag() {
-  if (p_.lag_count >= kMaxLags) throw text::InputError("cannot be compiled: more lags than a program holds");
+  if (p_.lag_count >= kMaxLags)
+    throw text::InputError("cannot be compiled: the machine file has more lags than an image can contain");
   return static_cast<std::uint16_t>(p_.lag_count++);
 }
 

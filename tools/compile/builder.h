@@ -51,7 +51,7 @@ class ProgramBuilder {
   Id look_up(Id position, LoweredTable table, std::vector<Register> results);
   /// Adds sine and cosine of an angle in deg. The cosine is in the register after the returned register.
   Id sine_cosine(Id angle, const Interval& sine, const Interval& cosine);
-  /// Returns register a in the given format. No instruction is added if a already has the format.
+  /// Returns register a in the given format. If `a` already has the format, no instruction is added.
   Id reformat(Id a, int fraction_bits);
 
   /// From this call on, the value of the register counts as exact (Register::given).

@@ -25,8 +25,8 @@ struct LoadedImage {
   ImageView view;
   ImageWorkspace workspace;
 };
-/// Throws InputError if a file is missing, if the image is refused (with the cause), or if the image does not
-/// belong to the machine.xml of the directory.
+/// Throws InputError if a file is missing, if the correction image is refused (with the cause), or if the
+/// image does not belong to the machine.xml of the directory.
 std::unique_ptr<LoadedImage> load_image_dir(const std::string& directory);
 /// Loads an image from bytes instead of a directory. Throws InputError with the cause.
 std::unique_ptr<LoadedImage> load_image(const std::vector<std::uint8_t>& image,

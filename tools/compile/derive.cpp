@@ -19,11 +19,13 @@ namespace {
 void check_machine(const model::Machine& machine) {
   for (const model::Static& s : machine.statics)
     if (!s.hidden && !s.nominal)
-      throw text::InputError({machine.file, s.line}, s.name,
-                             "a free static without nominal cannot be compiled (fit writes it)");
+      throw text::InputError(
+          {machine.file, s.line}, s.name,
+          "a free constant (static) without `nominal` cannot be compiled; `fit` writes `nominal`");
   for (std::size_t i = 0; i < machine.axes.size(); ++i) axis_range(machine, i);
   if (machine.axes.size() > kMaxAxes || machine.inputs.size() > kMaxInputs)
-    throw text::InputError({machine.file, 0}, machine.name, "more axes or inputs than an image holds");
+    throw text::InputError({machine.file, 0}, machine.name,
+                           "the machine file has more axes or inputs than an image can contain");
 }
 
 /// A derivation in progress. The corrected axes are chosen between its two halves.
@@ -230,16 +232,16 @@ Solution position_and_direction(const model::Machine& machine, double neglect_mm
   auto tilting = solve_direction(machine, begun, neglect_mm / kLever_mm);
   if (!tilting) {
     Solution result = position_only(machine, neglect_mm);
-    result.derivation.notes.push_back("no rotary axis tilts the tool: its direction is not corrected");
+    result.derivation.notes.push_back(
+        "no rotary axis tilts the tool, so the image does not correct the direction of the tool");
     return result;
   }
   const Additions added = taken_back(begun.graph, begun.orientation->axes, begun.orientation->values);
   Attempt linear(machine, neglect_mm, false, std::move(begun), added);
   if (!spans(linear, span_of(linear.derivation(), linear.columns())))
-    throw text::InputError(
-        {machine.file, 0}, "position orientation",
-        "cannot be compiled: the direction of the tool is corrected only where linear axes alone "
-        "put its point right");
+    throw text::InputError({machine.file, 0}, "position orientation",
+                           "cannot be compiled: a correction of the tool direction requires linear axes that "
+                           "alone can correct the tool point");
   std::vector<AxisDeviation> rotary;
   const Orientation& o = *linear.derivation().orientation;
   for (std::size_t k = 0; k < o.axes.size(); ++k)

@@ -11,8 +11,8 @@ namespace vernier::compile {
 /// evaluation also corrects the remainder: it is a step of Newton's iteration with the nominal Jacobian. If
 /// the machine corrects orientation, the rotary axes first correct the direction. The linear axes then
 /// correct the point, including the influence of the rotary axes. Throws InputError in one line if the
-/// machine cannot be compiled: a free static without nominal, an axis without range, an axis whose nominal
-/// motion has a step, an expression that the program has no operation for.
+/// machine cannot be compiled: a free static without nominal, an axis without range, an axis whose direction
+/// of nominal motion changes in a step, an expression with an operation that the program does not support.
 Derivation derive(const model::Machine& machine, double neglect_mm, int evaluations = 1);
 
 }  // namespace vernier::compile

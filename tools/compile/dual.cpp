@@ -108,7 +108,7 @@ Dual Translator::symbol(const model::Expr& expr) {
     case model::SymbolKind::kVisit:
       return {channel(ChannelKind::kVisit, 0), zero};
     case model::SymbolKind::kNormal:
-      note("nx, ny and nz are 0: a running machine touches nothing");
+      note("nx, ny and nz are columns of a measurement; in an image they are 0");
       return {zero, zero};
     case model::SymbolKind::kUnresolved:
       break;
@@ -174,7 +174,7 @@ Dual Translator::lag(const Dual& u, const Dual& tau) {
 void Translator::refuse_beyond_numbers(NodeId id) const {
   constexpr double kLargest = 1e100;  // its cube is finite in double precision (at most 1.8e308)
   if (!(g_[id].range.magnitude() <= kLargest))
-    throw std::domain_error("a value that can exceed 1e100 over the ranges of the axes");
+    throw std::domain_error("a value of the equation can exceed 1e100 over the ranges of the axes");
 }
 
 // An even power is a square, whose range is not negative.
@@ -247,7 +247,7 @@ NodeId Translator::apply_to(model::Op op, NodeId a, NodeId b) {
     case model::Op::kMax:
       return g_.choice(NodeKind::kMax, a, b);
     default:
-      throw std::domain_error("an operation that a compiled program does not have");
+      throw std::domain_error("the equation contains an operation that a compiled image does not support");
   }
 }
 
@@ -255,7 +255,7 @@ Dual Translator::visit(const model::Expr& expr) {
   if (expr.op == model::Op::kNumber) return constant(expr.number, 0);
   if (expr.op == model::Op::kSymbol) return symbol(expr);
   if (expr.op == model::Op::kRunIs) {
-    note("run(\"" + expr.name + "\") is 0: a running machine is in no measurement run");
+    note("run(\"" + expr.name + "\") is 0 in an image, because it refers to a run of a measurement");
     return constant(0, 0);
   }
   const Dual a = visit(*expr.args[0]);

@@ -8,7 +8,7 @@
 
 namespace vernier::compile {
 
-/// The bytes of an image (tables/image_format.h).
+/// Returns the bytes of a correction image (format: tables/image_format.h).
 std::vector<std::uint8_t> write_image(const model::Machine& machine, const LoweredProgram& program,
                                       const LoweredShares& shares, std::uint32_t tick_us,
                                       std::uint64_t source_hash, std::uint32_t accepted_rules,

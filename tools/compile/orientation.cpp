@@ -200,7 +200,8 @@ std::string list_of(const model::Machine& machine, const std::vector<std::size_t
 void add_notes(const model::Machine& machine, Derivation& d, const Orientation& o) {
   d.notes.push_back("the direction of the tool is corrected by " + list_of(machine, o.axes));
   if (o.axes.size() == 1)
-    d.notes.push_back("one axis alone tilts the tool: its direction is corrected across that axis only");
+    d.notes.push_back(
+        "only one rotary axis tilts the tool, so the image corrects the tilt about that axis only");
   if (o.damped)
     d.notes.push_back(fmt::format(
         "{} tilt the tool the same way in some poses: towards them (about {:.1f} % of the declared "

@@ -18,21 +18,21 @@ struct Tilting {
   std::function<std::vector<NodeId>(Graph&, const NodeVector& v, const std::vector<NodeId>& so_far)> solve;
 };
 
-/// Selects one or two rotary axes that tilt the tool. solve_direction takes the pair of axes whose tilts over
-/// the declared ranges are farthest from parallel. Among equal pairs, solve_direction takes the pair nearer
-/// to the tool. solve_direction solves the deviation of the tool's direction for the selected axes and enters
-/// derivation.orientation. Damped least squares: near a pose in which both axes tilt the tool in the same
-/// direction, the component that they cannot reach decreases to 0; the other component remains (Nakamura and
-/// Hanafusa, ASME J. Dyn. Sys. 108 (1986) 163). Returns nullopt if no rotary axis tilts the tool. neglect:
-/// rad.
+/// Selects one or two rotary axes that tilt the tool. solve_direction selects the pair of axes whose tilts
+/// over the declared ranges are farthest from parallel. Among equal pairs, solve_direction selects the pair
+/// nearer to the tool. solve_direction solves the deviation of the tool's direction for the selected axes and
+/// enters derivation.orientation. Damped least squares: near a pose in which both axes tilt the tool in the
+/// same direction, the component of the correction that these axes cannot reach decreases to 0; the other
+/// component remains (Nakamura and Hanafusa, ASME J. Dyn. Sys. 108 (1986) 163). Returns nullopt if no rotary
+/// axis tilts the tool. neglect: rad.
 std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation& derivation, double neglect);
 
 /// Returns a value as a separate node that is limited to +-limit. A correction that depends on the limited
 /// value then uses the actual motion of the axis.
 NodeId held_within(Graph& graph, NodeId value, double limit);
 
-/// For each state: true if two axes tilt the tool in nearly the same direction there, so that the correction
-/// of its direction is damped. All values are false if no direction is corrected.
+/// For each state: true if two axes tilt the tool in nearly the same direction at this state, so that the
+/// correction of the tool direction is damped. All values are false if no direction is corrected.
 std::vector<bool> damped_poses(const model::Machine& machine, const model::States& states);
 
 }  // namespace vernier::compile

@@ -92,7 +92,7 @@ LoweredTable make_table(const std::string& name, const std::vector<Segment>& seg
 
 Wrap make_wrap(std::int64_t first, std::int64_t period) {
   if (period < 4 || period > INT32_MAX)
-    throw text::InputError("cannot be compiled: a period that does not fit the format");
+    throw text::InputError("cannot be compiled: the period of the table does not fit the fixed-point format");
   Wrap w{};
   w.first = static_cast<std::int32_t>(first);
   w.period = static_cast<std::int32_t>(period);

@@ -34,9 +34,9 @@ struct AxisDeviation {
   double lever;     // mm of tool point per mm or deg of the axis, at most
 };
 
-/// The least squares x = J' w, w = adj(J J') deviation / max(det(J J'), floor). Used for a machine that
-/// rotary axes correct too. Rows of J: directions of the tool point; columns: axes, each divided by its
-/// lever.
+/// The least squares x = J' w, w = adj(J J') deviation / max(det(J J'), floor). Used for a machine whose
+/// correction also moves rotary axes. Rows of J: directions of the tool point; columns: axes, each divided by
+/// its lever.
 struct LeastSquares {
   /// True if there are fewer axes than directions in which they move the tool point, with other directions at
   /// each pose (a telescope). If `nearest` is true, K below is J'. x = (J'J)^-1 J' deviation brings the tool
@@ -141,7 +141,7 @@ struct Register {
   std::vector<Use> uses;
 };
 
-/// A table of the program with its memory (comp/error_table.h defines the records).
+/// A table of the program that owns its memory (comp/error_table.h defines the records).
 struct LoweredTable {
   std::string name;
   std::uint16_t columns = 0, degree = 1;

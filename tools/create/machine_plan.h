@@ -18,7 +18,7 @@ struct PlannedAxis {
   bool rollover = false;           // turns without end; the range is one turn
   std::array<double, 3> centre{};  // of a rotary axis, at zero of all others: mm
   bool rotary() const { return direction >= 'A' && direction <= 'C'; }
-  /// 0 1 2 for X Y Z and A B C.
+  /// Returns 0, 1, 2 for the directions X, Y, Z and A, B, C.
   std::size_t along() const { return static_cast<std::size_t>(direction - (rotary() ? 'A' : 'X')); }
 };
 
@@ -36,7 +36,7 @@ struct MachinePlan {
   bool positioning_only = false;
 };
 
-/// A kind of machine that can be begun from.
+/// A type of machine for which `new` has a default chain.
 struct MachineType {
   const char* name;
   const char* title;

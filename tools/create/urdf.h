@@ -17,7 +17,7 @@ struct UrdfArm {
   std::vector<DhRow> rows;
   std::vector<PlannedAxis> axes;  // names and limits of the joints; deg, mm
   std::array<double, 6> base{};   // of the first row's frame in the root's, T(X,Y,Z)·Rx·Ry·Rz: mm, deg
-  // The tip's frame in the last row's, mm.
+  // Frame of the tip in the frame of the last row, mm.
   Eigen::Matrix3d tip_rotation;
   Eigen::Vector3d tip_at;
   /// Converts a point of the tip's frame to the frame of the last row, to 1e-9 mm.

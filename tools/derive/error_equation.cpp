@@ -102,8 +102,10 @@ std::vector<ElementaryMotion> nominal_motions(const model::Machine& machine,
     try {
       m.value = expand_inside(m.value.subs(no_errors, GiNaC::subs_options::no_pattern));
     } catch (const std::exception& error) {
-      throw text::InputError({machine.file, transform.line}, transform.text[m.dof],
-                             std::string("an expression has no value in the nominal chain: ") + error.what());
+      throw text::InputError(
+          {machine.file, transform.line}, transform.text[m.dof],
+          std::string("an expression of the machine file has no value in the nominal chain: ") +
+              error.what());
     }
     if (m.rotation || term_count(m.value) < kLongSum) continue;
     const std::string name =

@@ -25,7 +25,7 @@ std::string print_component(const ErrorEquation& equation, std::size_t component
 
 /// The page that `vernier derive` prints.
 std::string print_text(const DerivedMachine& derived);
-/// Prints a derived machine as a LaTeX fragment (amsmath).
+/// Returns the error equation of a machine as a LaTeX fragment (amsmath).
 std::string print_latex(const DerivedMachine& derived);
 /// Returns the error equation of a machine as JSON.
 nlohmann::ordered_json to_json(const DerivedMachine& derived);

@@ -48,7 +48,7 @@ ex operation(model::Op op, const ex& a, const ex& b) {
     case model::Op::kLog:
       return GiNaC::log(a);
     default:
-      throw std::logic_error("an operation that the derivation does not know");
+      throw std::logic_error("the machine file contains an operation that the derivation does not support");
   }
 }
 

@@ -20,8 +20,9 @@ class SymbolBook {
   /// expression has no value.
   GiNaC::ex value(const model::Expr& expr);
 
-  /// Decides for statics without a unit whether they are lengths or angles, from the place where they act.
-  /// Call settle_units once, when all motions are known. Replaces degrees by radians in the motions.
+  /// Decides for constants (statics) without a unit whether they are lengths or angles, from the degree of
+  /// freedom on which they act. Call settle_units once, when all motions are known. Replaces degrees by
+  /// radians in the motions.
   void settle_units(std::vector<ElementaryMotion>& motions);
 
   /// Gives every error its largest size, from the machine file or from `sizes`.

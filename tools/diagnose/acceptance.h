@@ -14,10 +14,10 @@ struct HeldOut {
 };
 
 /// Predicts every run of the fit rows from the other runs, with the free parameters of the model and
-/// `columns` (any columns, after projection on the complement of what the model absorbs). Parameters that
-/// only the held-out run determines are fitted to the held-out run. `within_runs`: leaves out parts of runs
-/// instead (for effects that are a property of a run). `watched`: first and count of the columns whose
-/// agreement is reported.
+/// `columns` (any columns, after projection on the orthogonal complement of the model's free parameters).
+/// Parameters that only the held-out run determines are fitted to the held-out run. `within_runs`: leaves out
+/// parts of runs instead (for effects that are a property of a run). `watched`: first and count of the
+/// columns whose agreement is reported.
 HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                        Eigen::Index watched_count, bool within_runs = false);
 

@@ -18,8 +18,8 @@ constexpr std::array<std::pair<const char*, const char*>, 6> kInstrument = {{
     {"step", "The readings of the instrument step."},
     {"set-up", "The instrument was set up anew between the runs."},
     {"outliers", "Some readings are outliers."},
-    {"clock", "Positions and readings are from different instants."},
-    {"readings", "The readings are not those of this machine."},
+    {"clock", "Positions and readings were recorded at different times."},
+    {"readings", "The readings do not fit this machine (wrong file, unit, sign or column)."},
 }};
 
 /// Makes the entries of effects.

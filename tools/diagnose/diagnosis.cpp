@@ -86,8 +86,9 @@ class Diagnoser {
     result_.instrument = "readings";
     result_.causes = {instrument_cause(result_.instrument, 0)};
     result_.remaining.chi_square_per_freedom = base_.chi_square / std::max(1.0, base_.freedom);
-    result_.explanation = "The readings are not those of this machine: " + base_.absurd +
-                          ". Correct the measurement file or the machine file first; no effect was searched.";
+    result_.explanation =
+        "The readings do not fit this machine: " + base_.absurd +
+        ". Correct the measurement file or the machine file first; the diagnosis did not search for effects.";
     return std::move(result_);
   }
 

@@ -397,7 +397,7 @@ void Finder::ban_hollow_products() {
   for (std::size_t i = 0; i < pool_.size(); ++i) {
     if (!pool_.is_custom(i) || pool_[i].banned) continue;
     if (pool_.witnesses(i) < thresholds_.witnesses)
-      pool_.ban(i, "witnesses: only a few readings show this effect");
+      pool_.ban(i, "test `witnesses`: only a few readings show this effect");
     for (std::size_t failed = 0; failed < pool_.size() && !pool_[i].banned; ++failed)
       if (pool_[failed].banned && !pool_.is_custom(failed) &&
           pool_.common_share(i, failed) > thresholds_.copy_of_failed)
@@ -418,18 +418,18 @@ std::string Finder::failed_test(std::size_t item) const {
   const HeldOut less = leave_runs_out(evidence_, pool_.columns(others), 0, 0, of_run);
   const double gain = rest.chi_square - chi_square_;
   if (less.chi_square - with.chi_square < thresholds_.held_out_share * gain)
-    return "held out: the effect does not reduce the residual on runs that were left out";
+    return "test `held out`: the effect does not reduce the residual of held-out runs";
   std::size_t agree = 0;
   for (const double cosine : with.agreement) agree += cosine > thresholds_.stable_cosine ? 1 : 0;
   if (static_cast<double>(agree) < thresholds_.stable_runs * static_cast<double>(with.agreement.size()))
-    return "stability: the coefficients of the effect change when a run is left out";
+    return "test `stability`: the coefficients of the effect change if the fit does not use one of the runs";
   if (is_learned(item))
     for (const std::vector<int>& levels : level_blocks(evidence_))
       if (leave_blocks_out(evidence_, pool_.columns(others), 0, 0, levels).chi_square -
               leave_blocks_out(evidence_, pool_.columns(all), 0, count, levels).chi_square <
           thresholds_.held_out_share * gain)
-        return "held out: the effect does not reduce the residual at feeds or temperatures that were left "
-               "out";
+        return "test `held out`: the effect does not reduce the residual of readings at held-out feeds or "
+               "temperatures";
   return too_large(item);
 }
 

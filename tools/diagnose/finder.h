@@ -14,7 +14,7 @@
 
 namespace vernier::diagnose {
 
-/// Another cause in place of an accepted one.
+/// Another cause in place of an accepted cause.
 struct Alternative {
   std::size_t item = 0;  // of the pool
   double distance = 0;   // its BIC minus that of the accepted set
@@ -65,8 +65,8 @@ class Finder {
   /// Returns the p-value of an item beside the accepted items; 1 for an item with the same columns as an
   /// accepted item.
   double p_value_beside(std::size_t item) const;
-  /// Returns the likelihood ratio (natural logarithm) of held-out runs with an accepted item against without
-  /// it. Each run is predicted from the other runs.
+  /// Returns the likelihood ratio (natural logarithm) of held-out runs: with an accepted item to without this
+  /// item. Each run is predicted from the other runs.
   double held_out_evidence(std::size_t item) const;
   /// Returns alternatives to an accepted item, by the linear estimate; the other items are unchanged.
   Alternatives alternatives_to(std::size_t item) const;
@@ -78,8 +78,8 @@ class Finder {
   /// estimate. The second form: with its scanned unknowns at other values.
   double evidence_for(std::size_t item) const;
   double evidence_for(std::size_t item, const std::vector<double>& scanned) const;
-  /// Returns other periods that fit as well as the period of an accepted item (Scanner::aliases); the other
-  /// items are unchanged.
+  /// Returns other periods that fit as well as the period of an accepted item (Scanner::aliases), with the
+  /// other items unchanged.
   std::vector<double> aliases_of(std::size_t item) const;
   /// Returns the factor by which chi^2 increases if an accepted item is excluded and the others are fitted
   /// again.
@@ -101,14 +101,15 @@ class Finder {
   void select_again();
   /// A form that contains a simpler form is accepted only if there is evidence for its additional terms
   /// themselves. Among forms with the same columns, the form nearest to the axis is used. share: if the
-  /// simpler form explains this share of what a richer form explains, the simpler form is used, whatever
-  /// explains the rest. A share above 1 never selects the simpler form in this way.
+  /// decrease of chi^2 by the simpler form is at least this share of the decrease by a richer form, the
+  /// simpler form is used. A share above 1 never selects the simpler form in this way.
   void simplify(double share = 2);
-  /// Orders the effects: first the effect that lowers the present residual most, and so on. Beside
-  /// correlated errors, the most certain effect need not be large.
+  /// Orders the effects: first the effect that lowers the present residual most, and so on. If the readings
+  /// have correlated errors, the most significant effect is not always the largest effect.
   void order_by_size();
-  /// Without u, any remaining structure counts as noise. name_simplest then uses the simplest form that
-  /// explains nearly all, if the form passes the tests.
+  /// If the rows have no standard uncertainty u, any remaining structure counts as noise. In this case
+  /// name_simplest uses the simplest form that explains nearly the whole decrease of chi^2, if the form
+  /// passes the tests.
   void name_simplest();
   /// Returns the number of entries that contain a simpler form and additional terms.
   double holders_of(std::size_t simple) const;
@@ -129,9 +130,9 @@ class Finder {
   /// normal. Returns this position as the instrument's part of an alternative, if it decreases the BIC.
   /// explained: the residual beside all chosen items.
   std::optional<fit::NoiseModel> touched_anew(const fit::NoiseModel& explained) const;
-  /// True if the error that `noise` correlates by run or in time is one offset of all readings. A common
-  /// cause makes one offset of all readings. An instrument that is set up again or drifts does not make one
-  /// offset of all readings.
+  /// True if the error that `noise` correlates by run or in time is one offset of all readings. One common
+  /// cause can have the effect of an offset of all readings. An instrument that is set up again or drifts
+  /// does not make one offset of all readings.
   bool is_one_offset(const fit::NoiseModel& noise) const;
   /// Returns the unwhitened columns of several items side by side.
   Eigen::MatrixXd raw_columns(const std::vector<std::size_t>& items) const;
@@ -146,7 +147,8 @@ class Finder {
   /// Returns the first acceptance test that an accepted item fails; empty if the item passes all tests.
   std::string failed_test(std::size_t item) const;
   /// is_learned: true if the term of an item contains an accelerometer feature. shows_in_one_block: true if
-  /// one run contains nearly all that an accepted item explains. The other runs then cannot confirm the item.
+  /// one run contains nearly all that an accepted item explains. In this case the other runs cannot confirm
+  /// the item.
   bool is_learned(std::size_t item) const;
   bool shows_in_one_block(std::size_t item) const;
   /// Returns the reason why a term is larger than on any real machine; empty if it is not.

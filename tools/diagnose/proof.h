@@ -16,13 +16,13 @@ struct Proof {
                         // variance is twice that value.
   /// Returns the required evidence of a step: 20 to 1 if 99 of 100 true steps would reach this value. The
   /// required evidence is smaller if the step is too small on these rows for 20 to 1, but never below zero.
-  /// If the step is hardly visible on these rows, it must not make them worse.
+  /// If these rows depend only weakly on the step, the step must not increase the error of these rows.
   double asked(const ProofThresholds& thresholds) const;
 };
 
 /// Evaluates the check rows under two models. before, after: residuals (measured - model) of all
-/// observations; noise: correlation of the readings' errors. variance: of the independent noise of a weighted
-/// reading, if the stated u is too small, at least 1 (with u); without u its square in mm.
+/// observations; noise: correlation of the readings' errors. variance: variance of the independent noise of a
+/// weighted reading, if the stated u is too small, at least 1 (with u); without u its square in mm.
 Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
                           const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance);
 

@@ -11,7 +11,7 @@ namespace vernier::diagnose {
 /// Returns the full fit of the machine with items of the pool.
 using FitOfItems = std::function<fit::FitResult(const std::vector<std::size_t>&)>;
 
-/// The fits between which the decision is made.
+/// The fits that the decision compares.
 struct DecisionFits {
   const fit::FitResult& without;   // any effect
   const fit::FitResult& accepted;  // the accepted set
@@ -19,11 +19,12 @@ struct DecisionFits {
 };
 
 /// Returns the alternatives to the first accepted item with the distances of their full fits: each fit has
-/// the alternative in place of the first item. The search foresees distances by a linear estimate; the fit
-/// decides. Alternatives beyond `distance_of_fits`, those after the first `most`, and those whose fit does
-/// not converge keep the distance of the estimate. A form with more unknowns that the fit brings to the
-/// readings of the accepted form is not an alternative. accepted: items, not empty. A negative distance means
-/// that the fit prefers the alternative. Cost: one fit for each alternative.
+/// the alternative in place of the first item. The search uses a linear estimate of the distances; the
+/// distances of the full fits replace the estimate. Three kinds of alternatives have the distance of the
+/// estimate: alternatives beyond `distance_of_fits`, alternatives after the first `most`, and alternatives
+/// whose fit does not converge. A form with more unknowns is not an alternative if its fit predicts the same
+/// readings as the accepted form. accepted: items, not empty. A negative distance means that the fit prefers
+/// the alternative. Cost: one fit for each alternative.
 Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
                                   std::size_t most, const DecisionFits& fits);
 

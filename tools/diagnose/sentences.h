@@ -17,7 +17,7 @@ const char* verdict_name(Verdict verdict);
 /// (tools/effects/spoken.h).
 std::string said_of(const CandidateFinding& finding);
 
-/// Describes where the residual fails its tests, in up to three sentences, each after a blank.
+/// Describes the tests that the residual fails, in up to three sentences, each after a blank.
 std::string where_left(const residual::FailurePicture& left);
 
 /// Describes the residual of the check rows after every step, and the steps that increase the residual. The
@@ -29,8 +29,8 @@ std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_
 std::string cause_in_words(const CandidateFinding& cause, const std::string& next_best, double distance,
                            const std::vector<LadderStep>& steps, std::size_t accepted);
 
-/// Returns the sentence about a cyclic error whose period has aliases, and what to measure. `name`:
-/// of the effect with its location; period and aliases in mm or deg of the axis.
+/// Returns the sentence about a cyclic error whose period has aliases, with the positions to measure next.
+/// `name`: of the effect with its location; period and aliases in mm or deg of the axis.
 std::string aliases_in_words(const effects::Candidate& candidate, double period,
                              const std::vector<double>& aliases, const model::Axis& axis);
 

@@ -17,10 +17,10 @@ struct AxisFunction {
   bool own_table = false;  // the model has free values of its own for such functions
 };
 
-/// function_of_axis uses the readings, not the selected form. It compares half-waves down to an eighth of the
-/// measured range with half-waves of half that length. With fewer than 17 positions the half-waves are
-/// longer: two positions for each. `beside`: other effects, as any columns after projection on the complement
-/// of what the model absorbs.
+/// function_of_axis uses the readings, not the selected form. The test compares half-waves down to an eighth
+/// of the measured range with half-waves of half that length. With fewer than 17 positions the half-waves are
+/// longer: two positions for each half-wave. `beside`: columns of other effects, after projection on the
+/// orthogonal complement of the model's free parameters.
 AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,
                               const Eigen::MatrixXd& beside);
 

@@ -67,8 +67,8 @@ struct LadderStep {
   std::optional<double> rms_urad, check_rms_urad;  // of rotations
   double chi_square_per_freedom = 0;
   /// True if held-out rows confirm the candidate; the evidence is a likelihood ratio (natural logarithm).
-  /// Check rows are used for the confirmation if the step is large enough on them. Otherwise runs are held
-  /// out in turn for the confirmation.
+  /// Check rows are used for the confirmation if the step is large enough on them. Without check rows, each
+  /// run is held out in turn for the confirmation.
   std::optional<bool> confirmed;
   std::optional<double> evidence;
 };

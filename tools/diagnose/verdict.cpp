@@ -103,8 +103,9 @@ class Decision {
   std::string nothing_explains() {
     if (!accepted_.empty()) return {};
     const std::string drift = drift_of_instrument();
-    return with_refused("There is more than noise, and nothing in the catalogue explains it." +
-                        (drift.empty() ? "" : " " + drift) + where_left(answer_.left));
+    return with_refused(
+        "The residual is larger than the noise, and no effect of the catalogue explains the residual." +
+        (drift.empty() ? "" : " " + drift) + where_left(answer_.left));
   }
 
   std::string effect_of_instrument() {
@@ -118,7 +119,7 @@ class Decision {
     if (!found_.alternatives.other.empty())
       answer_.runner_up_distance = found_.alternatives.other.front().distance;
     if (is_noise_) return {};
-    return "Effects of the catalogue lower the residual, and it does not come down to the noise." +
+    return "Effects of the catalogue reduce the residual, but the residual remains larger than the noise." +
            where_left(answer_.left);
   }
 
@@ -165,7 +166,7 @@ class Decision {
     for (const std::size_t item : accepted_)
       if (const std::string doubt = doubt_of_shape(finder_.evidence(), pool_, accepted_, item);
           !doubt.empty())
-        return "The residual comes down to the noise, and what does it is not given a name: " + doubt + ".";
+        return "The residual is reduced to the noise, but the cause cannot be named: " + doubt + ".";
     return {};
   }
 

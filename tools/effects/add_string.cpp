@@ -291,7 +291,9 @@ class AddReader {
     if (!is_angle(machine_, *choice_.place))
       fail(id_, "this effect acts at a rotary joint; the axis is not a rotary joint");
     if (!GravityChain(machine_).may_turn(*choice_.place))
-      fail(id_, "gravity points along this joint at every pose and has no moment about it");
+      fail(id_,
+           "gravity is parallel to the axis of this joint at every pose, so gravity has no moment about the "
+           "joint");
   }
 
   double number(const std::string& key, const std::string& text) const {
@@ -312,7 +314,8 @@ class AddReader {
     if (const auto text = take("from")) choice_.from = number("from", *text);
     if (const auto text = take("to")) choice_.to = number("to", *text);
     if (choice_.effect != &custom_effect() && has_range(*choice_.form) && !(choice_.to > choice_.from))
-      fail(id_, "the effect needs from and to, because the axis has no min and max");
+      fail(id_,
+           "the axis has no min and max in the machine file: give the range of the effect with from and to");
     if (const auto runs = take("runs")) {
       std::string label;
       for (const char c : *runs + "|") {

@@ -140,7 +140,7 @@ class Maker {
       case PlaceRule::kBend:
         if (!choice_.place || !choice_.toward) missing("transform or toward");
         if (transform_at(machine_, *choice_.place).kind != model::TransformKind::kSixDof)
-          missing("a sixdof, which bends about two axes,");
+          missing("a transform `sixdof`, because the effect is a rotation about two axes,");
         for (std::size_t d = 0; d < 3; ++d)
           if (d != *choice_.toward)
             terms.push_back(
@@ -216,7 +216,9 @@ class Maker {
     if (!wave) missing("a chain of rotations from the base to this location, each proportional to one axis,");
     // A constant bend by gravity cannot be distinguished from the shape of the part.
     if (wave->is_constant() && choice_.form->place != PlaceRule::kBend)
-      missing("a place where an axis changes what gravity does (here it is the same at every pose),");
+      missing(
+          "a location at which an axis changes the effect of gravity (here the effect of gravity is the same "
+          "at every pose),");
     return wave->expression(machine_);
   }
 
@@ -405,10 +407,12 @@ const Effect& custom_effect() {
   static const Effect effect = [] {
     Effect e;
     e.id = "custom";
-    e.title = "A term found by search, no named physics";
+    e.title = "A term that was found by search, without a named physical cause";
     e.formula = "product of at most three factors in one degree of freedom";
-    e.signature = "The residual follows this expression; no effect of the catalogue does.";
-    e.exposed_by = "Vary one factor of the expression while the others stay.";
+    e.signature = "The residual is described by this expression, but by no effect of the catalogue.";
+    e.exposed_by =
+        "Measure with different values of one factor of the expression and constant values of the other "
+        "factors.";
     EffectForm& form = e.forms.emplace_back();
     form.label = "term";
     form.term = "k";

@@ -233,7 +233,8 @@ class CatalogueReader {
   /// not contain.
   std::set<std::string> unknowns_of(const Effect& effect, const EffectForm& form, std::size_t line) const {
     if ((form.trees.size() == 2) != (form.place == PlaceRule::kPair))
-      fail_at(line, form.term, "a pair has two terms with | between them, other places have one");
+      fail_at(line, form.term,
+              "a form with the location `pair` has two terms separated by |, every other form has one term");
     std::set<std::string> used;
     for (const model::ExprPtr& tree : form.trees)
       model::walk(*tree, [&](const model::Expr& node) {
@@ -243,7 +244,7 @@ class CatalogueReader {
       });
     if (form.asks_for("hats") || form.asks_for("runs")) used.insert("h");
     if (used.contains("h") && effect.find_unknown("h") == nullptr)
-      fail_at(line, form.term, "hats and runs need the unknown h");
+      fail_at(line, form.term, "a term with {hats} or {runs} must use the unknown h");
     return used;
   }
 

@@ -35,9 +35,9 @@ struct EffectToFit {
   /// A time constant has no derivative while its term is 0.
   std::vector<double> coefficients;
   bool hold_scanned = false;  // periods, time constants and decay lengths stay at their start
-  /// True if a fit moved the scanned unknown of this index out of the range of its search. Such an unknown
-  /// keeps its start value, and everything is fitted again. An empty function: no unknown is ever out of its
-  /// range.
+  /// True if a fit moved the scanned unknown of this index out of the range of its search. Such an unknown is
+  /// fixed at its start value, and all other parameters are fitted again. An empty function: no unknown is
+  /// ever out of its range.
   std::function<bool(std::size_t, double)> is_driven_out;
 };
 
@@ -54,7 +54,7 @@ struct FittedEffects {
 FittedEffects fit_with_effects(const MachineText& base, const model::Measurement& rows,
                                const std::vector<EffectToFit>& effects, const fit::FitOptions& options = {});
 
-/// Marks the scanned unknowns of an effect as held or as free.
+/// Marks the scanned unknowns of an effect as fixed or as free.
 void hold_scanned(model::Machine& machine, const Candidate& effect, bool held);
 
 }  // namespace vernier::effects

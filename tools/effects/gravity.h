@@ -54,7 +54,7 @@ class GravityChain {
   explicit GravityChain(const model::Machine& machine);
 
   /// Returns the direction of gravity in the frame in which a degree of freedom acts. For an angle, the frame
-  /// is the frame after the turn by the angle.
+  /// is the frame after the rotation by the angle.
   std::optional<std::array<Wave, 3>> direction(const DofPlace& place) const;
   /// Returns the moment of gravity on a bar about an angle, per length and weight: (toward x gravity) . axis.
   /// The bar points along local axis `toward` (0 to 2, not the axis of the angle).
@@ -72,7 +72,8 @@ class GravityChain {
   std::optional<Wave> moment(const DofPlace& joint, std::size_t transform) const;
 
  private:
-  /// One turn by the sum of positions, about a direction of the base with all axes at zero.
+  /// Rotation by a sum of axis positions, about a direction that is given in the base frame with all axes at
+  /// zero.
   struct Turn {
     Eigen::Vector3d axis;
     std::vector<double> by;

@@ -49,8 +49,8 @@ std::vector<DofPlace> base_places(const model::Machine& machine);
 /// does not change predictions. add_to_machine_text writes the row into the file when the row gets a term.
 /// The locations of diagnose, plan and `add` refer to the machine of with_base_row.
 model::Machine with_base_row(model::Machine machine);
-/// True if with_base_row added the transform of this location. Such a transform is on no line of the machine
-/// file.
+/// True if with_base_row added the transform of this location. The machine file has no line for such a
+/// transform.
 bool is_stand_in(const model::Machine& machine, const DofPlace& place);
 /// Returns the degrees of freedom of the transforms that carry the whole machine: the first transform of the
 /// tool branch and, if the chain has a workpiece branch, its last transform. If this transform was added by

@@ -24,7 +24,7 @@ struct SpokenValue {
 /// Returns the shop name with the one number that states the size of the effect, in a unit of the shop (um,
 /// arcsec, ms, um/m). The text includes the period if the effect has one: "Z carriage: lag 0.137 +- 0.007
 /// ms", "X carriage: cyclic error 4.2 +- 0.2 um, period 10.0 +- 0.2 mm", "X carriage: backlash 3.2 +- 0.2 um
-/// at position 0, and 40.9 +- 0.7 um/m along the axis". For an effect without such a number (a table, a
+/// at position 0, and 40.9 +- 0.7 um/m along the axis". For an effect without a single size (a table, a
 /// curve), spoken_with_size returns only the name.
 std::string spoken_with_size(const Candidate& candidate, const std::vector<SpokenValue>& values);
 

@@ -44,7 +44,8 @@ std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double len
   const double length_m = length_mm / 1000;
   const double slope = budget.misalignment_mm_m / 1000;
   return {{"instrument, as calibrated", budget.device_um_m * length_m},
-          {"its line against the axis (cosine error)", kOfRange * 1e6 * length_m * slope * slope / 2},
+          {"alignment of the instrument to the axis (cosine error)",
+           kOfRange * 1e6 * length_m * slope * slope / 2},
           {"temperature of the machine", kOfRange * budget.expansion_um_mK * length_m * budget.thermometer_K},
           {"coefficient of expansion", kOfRange * budget.expansion_range * length_m * budget.away_from_20_K},
           {"drift while it was measured", kOfRange * budget.drift_um}};

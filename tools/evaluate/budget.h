@@ -36,9 +36,9 @@ std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double len
 
 /// U (k = 2) of A, E, M, R, B in mm, of tests with `runs` readings in each approach direction. A, E and M are
 /// differences over the length: all components count. Components proportional to the distance are equal for
-/// both approach directions of a target and for all runs. In B and R only the drift remains: in B of two
-/// means of `runs`, in R of both ends of a range. Components as in public descriptions of ISO/TR 230-9;
-/// combined by the GUM.
+/// both approach directions of a target and for all runs. For B and R only the drift contributes: for B
+/// between two means of `runs`, for R between both ends of a range. Components as in public descriptions of
+/// ISO/TR 230-9; combined by the GUM.
 std::map<std::string, double> budget_uncertainty(const PositioningBudget& budget, double length_mm,
                                                  double runs);
 

@@ -52,7 +52,8 @@ Columns columns_of(model::ColumnReader& reader, const std::string& reading) {
   if (const std::string u = format::columns::kUncertainty; is_length(reader, u))
     columns.u = reader.numbers(u, format::Dimension::kLength, false);
   if (axes < 2)
-    throw text::InputError(reader.header(), "X", "a diagonal needs columns of two linear axes at least");
+    throw text::InputError(reader.header(), "X",
+                           "the file of a diagonal must have columns of at least two linear axes");
   return columns;
 }
 
@@ -101,10 +102,11 @@ std::vector<Line> lines_of(const std::vector<Row>& rows, const std::string& file
   for (const Line& line : lines) {
     const std::string name = signs_of(line.direction);
     if (name.size() < 4)
-      throw text::InputError({file, line.rows.front().line}, name,
-                             name.empty()
-                                 ? "this row is not on a straight line with its neighbouring rows"
-                                 : "a line along one axis: that is ISO 230-2 (vernier evaluate iso230-2)");
+      throw text::InputError(
+          {file, line.rows.front().line}, name,
+          name.empty()
+              ? "this row is not on a straight line with its neighbouring rows"
+              : "the rows are along one axis: evaluate them by ISO 230-2 (vernier evaluate iso230-2)");
   }
   return lines;
 }

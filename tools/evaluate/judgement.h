@@ -8,9 +8,9 @@
 
 namespace vernier::evaluate {
 
-/// Decision rule of ISO 14253-1. Met: the value with its expanded uncertainty is within the tolerance. Not
-/// met: the value without its uncertainty is beyond the tolerance. Numbers that differ by rounding (1e-12 of
-/// the tolerance) are equal.
+/// Decision rule of ISO 14253-1. The tolerance is met if the value plus its expanded uncertainty is within
+/// the tolerance. The tolerance is not met if the value minus its expanded uncertainty is beyond the
+/// tolerance. Numbers that differ by rounding (1e-12 of the tolerance) are equal.
 enum class Conformity { kMet, kNotMet, kUndecided };
 /// Applies the decision rule. value, tolerance, expanded_uncertainty: in one unit. Throws std::logic_error if
 /// an argument is not finite.
@@ -36,7 +36,7 @@ struct JudgedText {
 /// the printed numbers would not agree with the verdict. A missing value is "–".
 JudgedText judged_text(const JudgedValue& one, int least);
 
-/// Holds if every given tolerance is met. unit: of the numbers, for the sentences.
+/// The assurance holds if every given tolerance is met. unit: unit of the numbers, for the sentences.
 text::Assurance assurance_of(const std::vector<JudgedValue>& all, const std::string& unit);
 
 }  // namespace vernier::evaluate

@@ -39,9 +39,9 @@ struct PositioningResult {
 PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readings);
 
 /// Readings of one axis from a measurement file. Deviation = `reading` − position of the axis; for a tracker
-/// or interferometer, its own coordinate along the axis is the reading. A constant between reading and
-/// position does not affect any result. The approach direction comes from `dirX`, else from the motion from
-/// the previous row. Check rows are included.
+/// or interferometer, the reading is the coordinate of the instrument along the axis. A constant between
+/// reading and position does not affect any result. The approach direction is the column `dirX`, or without
+/// this column the direction of the motion from the previous row. Check rows are included.
 struct PositioningFile {
   std::vector<TargetReadings> readings;
   std::string unit;  // of all values: mm or deg

@@ -203,9 +203,9 @@ Json positioning_page(const Json& json, const PositioningWords& words) {
                         {"rows", rows}}};
   }
   const Json rule =
-      "A tolerance is met where the value and its expanded uncertainty (k = 2) together stay within it, not "
-      "met where it is exceeded "
-      "by more than the uncertainty (ISO 14253-1). Without an uncertainty given, the value alone is judged.";
+      "A tolerance is met if the value plus its expanded uncertainty (k = 2) is within the tolerance. A "
+      "tolerance is not met if the value minus its expanded uncertainty exceeds the tolerance (ISO 14253-1). "
+      "If no uncertainty is given, the value alone is compared with the tolerance.";
   return {{"title", "Positioning accuracy"},
           {"machine", words.axis},
           {"files", words.files},

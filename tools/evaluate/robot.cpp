@@ -168,7 +168,7 @@ void align_to_commanded(std::vector<PoseReading>& readings) {
     to.col(static_cast<Eigen::Index>(i)) = readings[i].commanded_mm;
   }
   if (!maths::fixes_motion(to))
-    throw text::InputError("--align: poses that lie on one line, or fewer than three, fix no frame");
+    throw text::InputError("--align: the alignment requires at least three poses that are not on one line");
   const maths::RigidMotion motion = maths::align(from, to);
   const Eigen::Quaterniond turned(motion.rotation);
   for (PoseReading& r : readings) {

@@ -45,8 +45,8 @@ std::pair<double, double> spread_interval(double spread, double freedom);
 
 /// Returns the poses of a test in the order of their first visit. Readings with one commanded pose (within 1
 /// nm and 1 nrad) belong together. Throws InputError: a pose with fewer than two readings. The interval
-/// assumes normal scatter with the observed covariance. Its degrees of freedom are those at which chi square
-/// has the same variance as RP_l. Source: ISO 9283:1998, 7.2.1, 7.2.2; the interval by the delta
+/// assumes normal scatter with the observed covariance. The degrees of freedom of RP_l are chosen so that chi
+/// square has the same variance as RP_l. Source: ISO 9283:1998, 7.2.1, 7.2.2; the interval by the delta
 /// method.
 std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings);
 

@@ -62,7 +62,9 @@ std::vector<DriftResult> evaluate_drift(const std::vector<PoseReading>& readings
     DriftResult result;
     for (const Visits& visits : blocks_of(pose)) result.blocks.push_back(block_of(visits));
     if (result.blocks.size() < 2)
-      throw text::InputError("one block (run) of a pose: a drift is from one block of cycles to later ones");
+      throw text::InputError(
+          "this pose has only one block (run): the drift is the change from the first block of cycles to a "
+          "later block");
     for (std::size_t i = 1; i < result.blocks.size(); ++i) {
       compare(result.blocks.front(), result.blocks[i]);
       const auto take = [&](std::size_t& at, double DriftBlock::*value) {

@@ -90,8 +90,8 @@ PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t s
   const std::vector<Cycle> cycles = cycles_of(readings);
   if (cycles.size() < 2)
     throw text::InputError(
-        "the readings contain fewer than two cycles (runs) of the path: repeatability needs two cycles, ISO "
-        "9283 asks for ten");
+        "the readings contain fewer than two cycles (runs) of the path: repeatability requires two cycles, "
+        "and ISO 9283 requires ten");
   std::vector<std::vector<double>> way;
   for (const Cycle& cycle : cycles) way.push_back(ways(cycle));
   PathResult result;

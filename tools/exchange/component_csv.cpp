@@ -103,11 +103,14 @@ model::Table table_of_block(const Block& block, const std::string& file, const m
   const auto is_argument = [](const std::string& word) { return has_iso_letter(word); };
   const auto arguments = std::count_if(block.header.begin(), block.header.end(), is_argument);
   if (arguments == 0)
-    throw text::InputError(place, block.header[0],
-                           "a position error or parameter of the machine, no component error: "
-                           "a machine file has it as a static with another sign and location");
+    throw text::InputError(
+        place, block.header[0],
+        "this column is a position error or a parameter of the machine, not a component error; in a machine "
+        "file it is a constant (static) with another sign and location");
   if (arguments > 1)
-    throw text::InputError(place, block.header[1], "errors of two arguments: a table has one axis");
+    throw text::InputError(
+        place, block.header[1],
+        "this column depends on two axes, but a table of a machine file depends on one axis");
   const auto found = std::find_if(block.header.begin(), block.header.end(), is_argument);
   const auto axis = machine.find_axis(*found);
   if (!axis) throw text::InputError(place, *found, "this machine has no axis of this name");
@@ -180,8 +183,8 @@ model::Table parse_axis_csv(const std::string& text, const std::string& file, co
       ++k;
     if (k == 6)
       throw text::InputError(place, csv.columns[c].name,
-                             "no error of axis " + name + "; known are " + own_name(machine, *axis, 0) +
-                                 " … or " + iso_name(0, name) + " …");
+                             "this column is not an error of axis  " + name + "; known are " +
+                                 own_name(machine, *axis, 0) + " … or " + iso_name(0, name) + " …");
     const std::vector<double> values =
         numbers(c, k < 3 ? format::Dimension::kLength : format::Dimension::kAngle);
     for (std::size_t i = 0; i < values.size(); ++i) table.stations[i].value[k] = values[i];

@@ -28,7 +28,7 @@ std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t 
 /// random states.
 std::vector<LeftOut> beyond_tables(const model::Machine& machine, const model::States& at);
 
-/// Refuses with all reasons unless `allowed`. Throws InputError.
+/// Throws with all reasons, unless `allowed` is true. Throws InputError.
 void refuse(const model::Machine& machine, const std::string& format, const std::vector<LeftOut>& left_out,
             bool allowed);
 

@@ -192,12 +192,15 @@ std::vector<ScrewPoint> parse_screw(const std::string& text, const std::string& 
     std::vector<double> three;
     for (std::string word; words >> word;) {
       const auto value = text::parse_number(word);
-      if (!value) throw text::InputError(place, word, "not a number: the controller would stop reading here");
+      if (!value)
+        throw text::InputError(place, word,
+                               "this word is not a number; the controller stops reading at this line");
       three.push_back(*value);
     }
     if (three.size() != 3)
       throw text::InputError(place, line,
-                             "a line is nominal, forward, reverse: the controller would stop reading here");
+                             "a line must have the numbers nominal, forward, reverse; the controller stops "
+                             "reading at this line");
     if (!points.empty() && three[0] <= points.back().nominal)
       throw text::InputError(place, line, "positions must increase");
     if (points.size() == kMostScrewPoints)
@@ -222,7 +225,8 @@ std::string screw_into_machine(const std::string& text, const model::Machine& ma
       });
   if (own == model::kSixDofNames.begin() + 3)
     throw text::InputError({machine.file, 0}, name,
-                           "which column of its table is along this axis? Its name has no X, Y or Z");
+                           "the name of this axis contains no X, Y or Z, so the column of its table is "
+                           "unknown: rename the axis");
   std::vector<double> positions;
   for (const ScrewPoint& point : points) positions.push_back(point.nominal);
   model::Table table = empty_table(machine, axis, positions);
@@ -230,9 +234,9 @@ std::string screw_into_machine(const std::string& text, const model::Machine& ma
   const double half = (points[0].reverse_trim - points[0].forward_trim) / 2;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (std::abs((points[i].reverse_trim - points[i].forward_trim) / 2 - half) > kRounding_mm)
-      throw text::InputError(
-          {}, text::number_text(points[i].nominal),
-          "the reversal is not the same at all positions: a machine file has one term for it");
+      throw text::InputError({}, text::number_text(points[i].nominal),
+                             "the reversal differs between positions, but the term of the machine file has "
+                             "one value for all positions");
     table.stations[i].value[static_cast<std::size_t>(own - model::kSixDofNames.begin())] =
         nine_decimals(-(points[i].forward_trim + points[i].reverse_trim) / 2);
   }

@@ -16,11 +16,11 @@ struct ScrewPoint {
 };
 
 /// Type 0: the file contains the actual positions of the axis (nominal, forward, reverse); the controller
-/// computes trim = nominal - actual. Type 1: the file contains the trims. Source: LinuxCNC
+/// computes trim = nominal - actual. A file of type 1 contains the trims. Source: LinuxCNC
 /// src/emc/motion/usrmotintf.cc, usrmotLoadComp.
 enum class ScrewType { kActual = 0, kTrim = 1 };
 
-/// Lines that the controller keeps at most (EMCMOT_COMP_SIZE).
+/// Largest number of lines that the controller stores (EMCMOT_COMP_SIZE).
 inline constexpr std::size_t kMostScrewPoints = 256;
 
 /// The lines of one axis, and the accuracy with which they represent its errors.

@@ -8,7 +8,8 @@ namespace vernier::exchange {
 
 /// Returns the text of a machine file with the table of one axis replaced or added: stations in steps of the
 /// given table, its interpolation and its free columns. The rest of the text is not changed. Throws
-/// InputError if the text has no place for the table, or if reading it back does not give that table.
+/// InputError if the text has no section for the table, or if reading the new text does not give the same
+/// table.
 std::string set_table(const std::string& text, const model::Machine& machine, const model::Table& table);
 
 /// Throws InputError unless the chain uses every column of the table that is not zero.

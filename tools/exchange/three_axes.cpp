@@ -16,8 +16,9 @@ ThreeAxes three_axes(const model::Machine& machine) {
                              "this format is for machines with three linear axes X, Y and Z");
     const auto range = model::work_range(machine, *found);
     if (!range)
-      throw text::InputError({machine.file, machine.axes[*found].line}, kLetters[i],
-                             "this axis needs min and max: the file is written for its range");
+      throw text::InputError(
+          {machine.file, machine.axes[*found].line}, kLetters[i],
+          "this axis has no min and max in the machine file; the exported table must have a range");
     axes.axis[i] = *found;
     axes.low[i] = (*range)[0];
     axes.high[i] = (*range)[1];
@@ -25,7 +26,7 @@ ThreeAxes three_axes(const model::Machine& machine) {
   for (const model::Axis& axis : machine.axes)
     if (axis.rotary)
       throw text::InputError({machine.file, axis.line}, axis.name,
-                             "this format has no rotary axis: it holds X, Y and Z only");
+                             "this format has only the axes X, Y and Z, and no rotary axis");
   return axes;
 }
 

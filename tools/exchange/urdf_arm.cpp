@@ -110,7 +110,7 @@ class Arm {
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis)
       if (std::count(order.begin(), order.end(), axis) != 1)
         throw text::InputError({machine_.file, machine_.axes[axis].line}, machine_.axes[axis].name,
-                               "no single transform of the chain moves with this axis");
+                               "the axis does not move exactly one transform of the chain");
     return order;
   }
 

@@ -19,9 +19,9 @@ struct CeresOutcome {
 /// its influence on a robust fit (Huber 1981, 6.7).
 Eigen::VectorXd robust_shares(const Eigen::VectorXd& residual, Loss loss, double scale);
 
-/// Solves the fit problem with Ceres, for robust losses and as a cross-check of Vernier's own solver. The
-/// Ceres problem has one residual block per observation. The analytic derivatives of all observations are
-/// evaluated in one step.
+/// Solves the fit problem with Ceres, for robust losses and as a cross-check of the default solver. The Ceres
+/// problem has one residual block per observation. The analytic derivatives of all observations are evaluated
+/// in one step.
 CeresOutcome solve_with_ceres(const FitProblem& problem, const Eigen::VectorXd& start,
                               const FitOptions& options);
 

@@ -15,9 +15,9 @@ Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const
 
 /// Computes scales by kind. Lengths: 3 x misfit. Angles: 3 x misfit divided by the reach. Set-ups are free,
 /// because they contain the rigid motion. Scale of periods and time constants (in a divisor, an exponent or a
-/// lag): their own nominal value. Scale of coefficients with any other unit: the value that moves their
-/// degree of freedom by 3 x misfit. A `scale` of the machine file replaces the computed scale. The scales are
-/// evaluated at the nominal machine, so they do not depend on the start of the fit.
+/// lag): the nominal value of the parameter. Scale of coefficients with any other unit: the value that moves
+/// their degree of freedom by 3 x misfit. A `scale` of the machine file replaces the computed scale. The
+/// scales are evaluated at the nominal machine, so they do not depend on the start of the fit.
 Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
                          const model::ParameterSet& parameters);
 

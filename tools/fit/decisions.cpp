@@ -48,7 +48,8 @@ Decision decision_of(const DecisionGroup& group) {
       group.unseen == group.open ? "not measured; stays at nominal +- scale"
       : group.names.size() > 1
           ? "the readings do not distinguish these parameters; they are as near to nominal as possible"
-          : "the readings determine this parameter in part; the rest is set as near to nominal as possible";
+          : "the readings determine only a combination of this parameter with others; the undetermined part "
+            "is as near to nominal as possible";
   return {group.names, group.reach_um,
           fmt::format("{}: {}; +- {:.3g} um at the edge of the measured box", names, said, group.reach_um)};
 }

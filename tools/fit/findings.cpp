@@ -168,9 +168,9 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   if (lack_um.maxCoeff() > 0) {
     constexpr double kPlainly = 1.1;  // times the noise: visible with two digits
     const double times = times_the_noise(result);
-    const std::string what = times > kPlainly
-                                 ? fmt::format("The residual is {:.2g} times the noise", times)
-                                 : "Readings along one direction, or check rows, exceed their noise";
+    const std::string what = times > kPlainly ? fmt::format("The residual is {:.2g} times the noise", times)
+                                              : "The residuals along one direction, or of the check rows, "
+                                                "are larger than the noise of their readings";
     list.push_back(
         {"something-missing", times,
          fmt::format("{}: something is missing from this model, {:.3g}, {:.3g}, {:.3g} um in x, y, z.", what,
@@ -178,8 +178,8 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   }
   if (!result.noise_um && result.before.rms_um)
     list.push_back({"noise-unknown", 0,
-                    "The readings have no uncertainty u and no repeats: what the model lacks cannot be "
-                    "distinguished from their noise."});
+                    "The readings have no standard uncertainty u and no repeats, so the fit cannot "
+                    "distinguish a missing effect from the noise of the readings."});
   if (result.check_ratio && *result.check_ratio > 1)
     list.push_back({"no-gain", *result.check_ratio,
                     fmt::format("The fit does not improve the machine: the residual of the check rows is "

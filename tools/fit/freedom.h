@@ -9,8 +9,8 @@ namespace vernier::fit {
 
 /// Returns the machine with other free parameters than its file states. Patterns (* and ?) may name statics
 /// (`alpha`), columns of tables (`table.X.rY`), set-ups (`BaseShift`, `BaseShift[run]`) and scale factors
-/// (`scalefactor.X`). First the parameters of `free` are freed, then the parameters of `hold` are held.
-/// Throws InputError for a pattern that matches nothing.
+/// (`scalefactor.X`). First the parameters that match `free` are freed, then the parameters that match `hold`
+/// are fixed. Throws InputError for a pattern that matches no parameter.
 model::Machine with_freedom(const model::Machine& machine, const std::vector<std::string>& free,
                             const std::vector<std::string>& hold);
 

@@ -41,8 +41,8 @@ void scale_rotations(model::Measurement& m, double factor) {
 constexpr std::array<std::pair<const char*, double>, 6> kLengthUnits = {
     {{"in inches", 25.4},
      {"in centimetres", 10},
-     {"a thousand times too small (metres, or mm called um)", 1000},
-     {"a thousand times too large (um called mm)", 1e-3},
+     {"a thousand times too small (values in m stated as mm, or values in mm stated as um)", 1000},
+     {"a thousand times too large (values in um, stated as mm)", 1e-3},
      {"millimetres taken for centimetres", 0.1},
      {"millimetres taken for inches", 1 / 25.4}}};
 
@@ -77,9 +77,9 @@ void add_mistakes_of_readings(const model::Measurement& rows, std::vector<Mistak
                           if (o.kind == kind) o.value *= factor;
                       }});
   }
-  list.push_back({"the rotations look as if they were in radians",
+  list.push_back({"the rotations are probably in radians",
                   [](model::Measurement& mended) { scale_rotations(mended, maths::kDegPerRad); }});
-  list.push_back({"the rotations look as if radians had been written and degrees meant",
+  list.push_back({"the stated rotations are probably radians written in place of degrees",
                   [](model::Measurement& mended) { scale_rotations(mended, 1 / maths::kDegPerRad); }});
 }
 

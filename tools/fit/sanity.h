@@ -29,8 +29,8 @@ struct LikelyMistake {
 /// Returns the reason why readings do not belong to this machine, in one sentence: one gross reading, two
 /// columns swapped, a unit, a sign. Each of these mistakes is tried. A mistake is accepted if its correction
 /// reduces the misfit of the nominal machine fivefold. `plausible`: a machine may have a residual of this
-/// size. The correction must then also leave readings that the nominal machine explains: a unit that makes a
-/// deflection small explains nothing.
+/// size. After the correction of the mistake the nominal machine must explain the readings: a unit that only
+/// makes a deflection small is not accepted.
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                              const WorstReading& worst, bool plausible);
 

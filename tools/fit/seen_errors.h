@@ -42,7 +42,8 @@ class SeenErrors {
 
   std::map<int, Seen> kinds_;
   std::map<std::pair<int, int>, Seen> tables_;
-  // The same including slopes in statics (squareness). An angle may be hidden there.
+  // The same including slopes in statics (squareness). At such a pose the readings may not depend on an
+  // angle.
   std::map<int, Seen> leaning_kinds_;
   std::map<std::pair<int, int>, Seen> leaning_tables_;
 };

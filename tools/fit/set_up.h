@@ -12,19 +12,19 @@ namespace vernier::fit {
 /// points by the lever reach_of().
 double reach_of(const model::Machine& machine, const model::Measurement& rows);
 
-/// Returns the machine with its free BaseShifts fitted to the fit rows. No other value of the machine
-/// changes.
+/// Returns the machine with its free BaseShifts fitted to the fit rows. The function changes no other value
+/// of the machine.
 model::Machine set_up(const model::Machine& machine, const model::Measurement& rows);
 
-/// Fits the BaseShifts of the machine to all rows, for any orientation of the instrument. Starts are the
-/// measuring frame, the file's own set-up and the best rigid motion of the measured points. If the residuals
-/// still exceed ten times their uncertainty, all 24 orientations of the axes are tried. Use set_up_anywhere
-/// for readings of a known machine. A survey that will be fitted uses set_up(), because a rotated set-up can
-/// hide swapped columns of a flat survey.
+/// Fits the BaseShifts of the machine to all rows, for any orientation of the instrument. Start values are
+/// the measuring frame, the set-up of the file, and the best rigid motion of the measured points. If the
+/// residuals still exceed ten times their uncertainty, all 24 orientations of the axes are tried. Use
+/// set_up_anywhere for readings of a machine whose errors are known. A survey that will be fitted uses
+/// set_up(), because a rotated set-up can hide swapped columns of a flat survey.
 model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& measured);
 
-/// A file whose set-up the machine does not know: the residual of its rows in the set-up of the machine, and
-/// in a set-up of its own, um.
+/// A measurement file whose set-up is not in the machine file: the residual of its rows with the set-up of
+/// the machine file, and with a separate set-up, um.
 struct OtherSetUp {
   std::string file;
   double before_um = 0, own_um = 0;
@@ -32,8 +32,8 @@ struct OtherSetUp {
   std::string sentence() const;
 };
 
-/// Returns the files whose residual falls to a twentieth or less in a set-up of their own, and is above half
-/// a millimetre before. machine: as fitted or as given; check rows count as well. Lengths only.
+/// Returns the files whose residual is above half a millimetre, and decreases to a twentieth or less with a
+/// separate set-up. machine: the fitted or given machine; check rows count as well. Lengths only.
 std::vector<OtherSetUp> files_set_up_elsewhere(const model::Machine& machine, const model::Measurement& m);
 
 }  // namespace vernier::fit

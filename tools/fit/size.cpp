@@ -166,8 +166,8 @@ std::string size_sentence(const SizeOfMachine& size) {
            "two "
            "points, or an artefact with a known radius or known places.";
   if (size.from == "machine")
-    return "The size of the machine comes from lengths that the fit does not change (linear axes, held "
-           "values).";
+    return "The size of the machine is given by lengths that the fit does not change (scales of linear axes, "
+           "fixed parameters).";
   return fmt::format("The size of the machine comes from the {}: {:.2g} um/m.", size.from,
                      kPartsPerMillion * size.relative_std);
 }

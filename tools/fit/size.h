@@ -21,20 +21,22 @@ struct SizeDirection {
   }
 };
 
-/// Returns the direction at `point`; nullopt: the free parameters cannot change the size (the positions of
-/// linear axes or held lengths give it).
+/// Returns the direction at `point`; nullopt: the free parameters cannot change the size, because linear axes
+/// or fixed lengths determine the size.
 std::optional<SizeDirection> size_direction(const model::Machine& machine, const model::Measurement& rows,
                                             const model::ParameterSet& parameters,
                                             const Convention& convention, const Eigen::VectorXd& point);
 
-/// Decides what the size of the machine rests on, from the readings at `point` and the plausible sizes of all
-/// other parameters. Without information above the convention's own, the size is held: `problem` becomes
-/// blind along it. Only for rows that meet things (`same`, `on`): nullopt without.
+/// Finds the lengths that determine the size of the machine, from the readings at `point` and the scales of
+/// all other parameters. If the readings give no more information on the size than the convention, the size
+/// is fixed: `problem` then does not depend on the size. Only for rows with `same` or `on`; nullopt if there
+/// are no such rows.
 std::optional<SizeOfMachine> decide_size(FitProblem& problem, const model::Machine& machine,
                                          const model::ParameterSet& parameters, const Convention& convention,
                                          const Eigen::VectorXd& point);
 
-/// Returns the sentence of the finding `size-unknown`, or of what the size rests on.
+/// Returns the sentence of the finding `size-unknown`, or the sentence about the lengths that determine the
+/// size.
 std::string size_sentence(const SizeOfMachine& size);
 
 }  // namespace vernier::fit

@@ -22,8 +22,8 @@ namespace vernier::fit {
 enum class Loss : std::uint8_t { kSquared, kHuber, kCauchy };
 enum class Solver : std::uint8_t { kNormalEquations, kCeres };
 
-/// A parameter that is held near its nominal value (near its start, if the file has no nominal). A Prior acts
-/// like a measurement of the nominal value with this standard uncertainty.
+/// A parameter with a prior at its nominal value (at its start value, if the file has no nominal). A Prior
+/// acts like a measurement of the nominal value with this standard uncertainty.
 struct Prior {
   std::string pattern;  // name, with * and ? as in file names
   double std = 0;       // in the parameter's unit
@@ -87,8 +87,8 @@ struct StageFigures {
 };
 
 /// Value of each parameter if the data do not determine it, and its plausible difference from this value. The
-/// convention makes the result of a fit unique. Of all machines that the data cannot distinguish, the fit
-/// takes the machine nearest to nominal in these units.
+/// convention makes the result of a fit unique. Among all machines that the data cannot distinguish, the fit
+/// selects the machine nearest to nominal in these units.
 struct Convention {
   /// Smaller kinds are of tables. The first kind of statics: this kind and larger kinds are statics.
   static constexpr int kFirstOfStatics = 5;
@@ -124,7 +124,7 @@ struct WorstReading {
   std::string reading;  // "survey.csv:57 z"
 };
 
-/// Place, direction and radius of a thing that rows met (`same`, `on`).
+/// Position, direction and radius of a touched object (`same`, `on`).
 struct ThingEstimate {
   std::string name, setup, type;    // type: `same`, or the type of the artefact
   bool in_measuring_frame = false;  // else in workpiece coordinates
@@ -136,7 +136,7 @@ struct ThingEstimate {
   double u_radius_mm = 0;
 };
 
-/// What the size of the machine rests on.
+/// The lengths that determine the size of the machine.
 struct SizeOfMachine {
   bool known = false;       // false: held at nominal
   double relative_std = 0;  // standard uncertainty of the size, as a share; of nominal: the plausible share
@@ -171,7 +171,7 @@ struct FitResult {
   /// rows, a second ratio uses a set-up of each machine that is fitted to the check rows. The larger ratio
   /// is used. nullopt if there are too few check rows.
   std::optional<double> check_ratio;
-  /// Reason why the readings are not those of this machine; empty if they are.
+  /// Reason why the readings cannot be readings of this machine; empty if there is no such reason.
   std::string absurd;
   /// The part of `absurd` that names a mistake of all rows (a unit, a sign, columns swapped);
   /// empty if no such mistake was found.

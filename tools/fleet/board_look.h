@@ -18,14 +18,14 @@ struct BoardLook {
 /// Throws as upload::Client.
 BoardLook look_at(upload::Client& board);
 
-/// Returns a sentence with the reason why the image with this fingerprint is not in effect; empty: the image
-/// is in effect. An image is in effect if it runs, the board is active, no fault is latched, no correction is
-/// held, and the whole correction of every axis is applied.
+/// Returns a sentence with the reason why the board does not use the correction image with this fingerprint;
+/// empty: the board uses the image. An image is in effect if it runs, the board is active, no fault is
+/// latched, no correction is held, and the whole correction of every axis is applied.
 std::string not_in_effect(const BoardLook& look, const upload::BoardInfo& info, std::uint64_t fingerprint);
 
-/// Returns the reason why no image can come into effect on this board before a user changes its state; empty:
-/// an image can come into effect. Reasons: a latched fault, held corrections, or an axis with a weight below
-/// 1.
+/// Returns the reason why the board cannot start to use a correction image until a user changes the state of
+/// the board; empty: the board can start to use an image. Reasons: a latched fault, held corrections, or an
+/// axis with a weight below 1.
 std::string blocked(const BoardLook& look, const upload::BoardInfo& info);
 
 }  // namespace vernier::fleet

@@ -13,7 +13,7 @@ registry::FleetCheck parse_check(const std::string& json, const std::string& fil
 
 /// Returns the result of one check for each tested parameter of a machine. A result is the change that
 /// explains the readings best if only this parameter changed, with its standard uncertainty. Parameters of
-/// the instrument and parameters that the check does not see are excluded.
+/// the instrument, and parameters on which the readings of the check do not depend, are excluded.
 std::vector<registry::FleetReading> readings_of(const check::CheckRecord& record, const std::string& machine,
                                                 std::int64_t at_us);
 

@@ -25,7 +25,8 @@ class EdgeNode {
   bool born() const { return born_; }
   /// Publishes data of a device; publishes the birth of the device first if names or types are new.
   bool data(const std::string& device, SparkplugPayload payload);
-  /// Publishes that the device is away; sends no message if the device had no birth.
+  /// Publishes that the device is not connected (DDEATH); sends no message if the device had no birth
+  /// certificate.
   bool death(const std::string& device);
   /// Publishes the death certificate of the node, as its MQTT will does, and disconnects.
   void part();

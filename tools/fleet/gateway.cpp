@@ -138,7 +138,9 @@ class GatewayPublisher {
       if (node.born() && !publish(node)) break;
     }
     if (node.connection().connected()) node.part();
-    say_(stop ? "parted" : host_ ? "the broker is gone" : "the host is away: what comes is kept");
+    say_(stop    ? "parted"
+         : host_ ? "the broker is gone"
+                 : "the registry host is not connected: the gateway stores the samples");
   }
 
  private:
@@ -176,9 +178,7 @@ class GatewayPublisher {
     desk_.with_spool([&](Spool& spool) {
       if (text_of(command.find(kSpoolMetric)) != spool.id()) return;
       if (*stored > spool.last()) {
-        say_(
-            "the registry has later records than this store: the store is an older copy, and starts with a "
-            "new id");
+        say_("the registry has later samples than this store: the store is an older copy, and gets a new id");
         spool.begin_anew();
         sent_ = 0;
         return;

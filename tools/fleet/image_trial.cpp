@@ -223,7 +223,7 @@ TrialEnd ImageTrial::keep() {
   board_.require_board(machine_.claim);
   const SlotsReply slots = board_.slots();
   if (slots.trial == kNoSlot || slots.newest_issued != issued_)
-    return take_back({Kind::kTakenBack, "the trial ended before the image was kept"});
+    return take_back({Kind::kTakenBack, "the trial ended before the correction image was confirmed"});
   std::string why;
   try {
     board_.confirm();
@@ -232,17 +232,20 @@ TrialEnd ImageTrial::keep() {
       board_.require_board(machine_.claim);
       const BoardLook look = look_at(board_);
       const bool kept = is_kept(look.slots) && look.slots.issued == issued_;
-      why = kept ? not_in_effect(look, board_.info(), fingerprint_) : "the board has not confirmed the image";
+      why = kept ? not_in_effect(look, board_.info(), fingerprint_)
+                 : "the board has not confirmed the correction image";
       if (why.empty()) return {Kind::kKept, ""};
       std::this_thread::sleep_for(kLookEvery);
     } while (!is_over(end));
   } catch (const text::InputError& error) {
-    return {Kind::kAway,
-            std::string("the board was asked to confirm the image and does not answer: ") + error.what()};
+    return {Kind::kAway, std::string("the program sent the command to confirm the correction image, and the "
+                                     "board does not answer: ") +
+                             error.what()};
   } catch (const text::LimitNotMet& error) {
-    return {Kind::kNotInEffect, std::string("the board was asked to confirm the image: ") + error.what()};
+    return {Kind::kNotInEffect,
+            std::string("the board did not confirm the correction image: ") + error.what()};
   }
-  return {Kind::kNotInEffect, "the board was asked to confirm the image: " + why};
+  return {Kind::kNotInEffect, "the board did not confirm the correction image: " + why};
 }
 
 /// Gives the image up where the trial is this rollout's own.
@@ -271,7 +274,7 @@ KeptLook look_at_kept(const RolloutMachine& machine, const RolloutOptions& optio
       const bool confirmed =
           look.slots.confirmed != kNoSlot && look.slots.confirmed_fingerprint == fingerprint_of(machine);
       found.why = confirmed ? not_in_effect(look, board.info(), fingerprint_of(machine))
-                            : "the board does not keep the image any more";
+                            : "the board no longer has this correction image";
     } catch (const text::InputError& error) {
       found = {std::string("the board does not answer: ") + error.what(), true};
     } catch (const text::LimitNotMet& error) {

@@ -30,10 +30,10 @@ struct TrialEnd {
 /// "kept", "taken-back", ...: the state in the registry.
 const char* name_of(TrialEnd::Kind kind);
 
-/// Steps of a rollout for one machine: put its image on trial, watch that the image is in effect, evaluate
-/// it, then confirm or revert it. No data are signed or sent before the board has proved that it is the board
-/// of the machine. The board repeats this proof before each look, before the image is confirmed and before it
-/// is reverted.
+/// Steps of a rollout for one machine: start the trial of the correction image, check that the board uses the
+/// image, evaluate the machine, then confirm or revert the image. No data are signed or sent before the board
+/// has proved that it is the board of the machine. The board repeats this proof before each check, and before
+/// the correction image is confirmed or reverted.
 class ImageTrial {
  public:
   /// Opens the board. Throws InputError if the board does not answer, LimitNotMet if it is another board. All
@@ -70,8 +70,8 @@ class ImageTrial {
 };
 
 /// Result of a check of a machine with a confirmed image. The check is repeated until it passes or
-/// options.settle_s are over. To pass, the board must prove its identity, have the image confirmed and have
-/// it in effect.
+/// options.settle_s are over. To pass, the board must prove its identity, must have confirmed the correction
+/// image, and must use this image.
 struct KeptLook {
   std::string why;  // why not; empty: it is
   bool away = false;

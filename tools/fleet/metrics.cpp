@@ -51,31 +51,33 @@ void put_live(std::string& text, const std::vector<registry::LiveState>& live, s
     return registry::live_age(one, now_us, registry::kStaleAfter_s);
   };
   Family up(text, "vernier_machine_online", "gauge",
-            "Whether a gateway hears the machine's board: 0 too where the newest sample is older than 30 s.");
+            "1 if a gateway is connected to the machine's board; 0 if not, or if the newest sample is older "
+            "than 30 s.");
   for (const registry::LiveState& one : live)
     up.add({{"machine", one.machine}, {"gateway", one.gateway}},
            age_of(one).state == registry::LiveAge::State::kOnline ? 1 : 0);
   Family age(text, "vernier_machine_sample_age_seconds", "gauge",
-             "Since the registry took the newest sample, by the registry's clock.");
+             "Time since the registry received the newest sample, by the registry's clock.");
   for (const registry::LiveState& one : live)
     if (one.received_us != 0) age.add({{"machine", one.machine}}, age_of(one).age_s);
   Family clock(text, "vernier_gateway_clock_offset_seconds", "gauge",
-               "The gateway's clock less the registry's, from the machine's newest sample.");
+               "Difference gateway clock minus registry clock, from the newest sample of the machine.");
   for (const registry::LiveState& one : live)
     if (one.received_us != 0 && !one.historical)
       clock.add({{"machine", one.machine}, {"gateway", one.gateway}}, age_of(one).clock_s);
   Family at(text, "vernier_machine_newest_sample_timestamp_seconds", "gauge",
-            "When the newest stored sample was taken.");
+            "Time at which the newest stored sample was taken.");
   for (const registry::LiveState& one : live)
     at.add({{"machine", one.machine}}, static_cast<double>(one.at_us) * 1e-6);
   Family samples(text, "vernier_machine_samples_total", "counter", "Samples stored.");
   for (const registry::LiveState& one : live)
     samples.add({{"machine", one.machine}}, static_cast<double>(one.samples));
-  Family state(text, "vernier_machine_info", "gauge", "State and image of the machine's board, as labels.");
+  Family state(text, "vernier_machine_info", "gauge",
+               "State and correction image of the machine's board, as labels.");
   for (const registry::LiveState& one : live)
     state.add({{"machine", one.machine}, {"mode", one.mode}, {"fault", one.fault}, {"image", one.image}}, 1);
   Family value(text, "vernier_machine_value", "gauge",
-               "A number of the newest sample, in the unit of the machine file.");
+               "Value of a quantity in the newest sample, in the unit of the machine file.");
   for (const registry::LiveState& one : live)
     for (const auto& [name, json] : one.values)
       if (const auto number = text::parse_number(json))
@@ -96,24 +98,25 @@ std::string metrics_text(registry::Registry& registry, std::int64_t at_us) {
                registry::real(row[2]));
   const std::vector<registry::DueMachine> due = registry::due_machines(registry, at_us);
   Family overdue(text, "vernier_machine_check_due_seconds", "gauge",
-                 "Until the next check is due; negative: it is overdue.");
+                 "Time until the next check is due; negative: the check is overdue.");
   for (const registry::DueMachine& one : due)
     if (one.due_us) overdue.add({{"machine", one.machine}}, static_cast<double>(*one.due_us - at_us) * 1e-6);
-  Family verdict(text, "vernier_machine_check_info", "gauge", "The last check's verdict, as a label.");
+  Family verdict(text, "vernier_machine_check_info", "gauge", "Verdict of the last check, as a label.");
   for (const registry::DueMachine& one : due)
     if (one.last_us) verdict.add({{"machine", one.machine}, {"verdict", one.verdict}}, 1);
   Family lost(text, "vernier_lost_samples_total", "counter",
-              "Samples that a gateway discarded because its store was full.");
+              "Number of samples that a gateway discarded because its store was full.");
   lost.add({},
            registry::real(
                database.run("SELECT COALESCE(SUM(before_number - after_number - 1), 0) FROM loss").at(0)[0]));
-  Family answers(text, "vernier_batch_answers", "gauge", "Booked answers of a batch by exit status.");
+  Family answers(text, "vernier_batch_answers", "gauge",
+                 "Number of recorded answers of a batch, by exit status.");
   for (const registry::Row& row :
        database.run("SELECT name, status, COUNT(*) FROM answer GROUP BY name, status ORDER BY name, status"))
     answers.add({{"batch", registry::words(row[0])}, {"status", registry::words(row[1])}},
                 registry::real(row[2]));
   Family unknown(text, "vernier_not_entered_samples_total", "counter",
-                 "Samples of machines that are not in the registry, which were not stored.");
+                 "Number of discarded samples: the machine of the sample is not in the registry.");
   for (const registry::NotEntered& one : registry.not_entered())
     unknown.add({{"machine", one.machine}, {"gateway", one.gateway}}, static_cast<double>(one.samples));
   return text;

@@ -20,17 +20,18 @@ struct RolloutEnd {
   std::vector<std::string> notes;   // items that were not proved, one sentence each
 };
 
-/// Brings images to boards by stages. Each image is on trial first. The rollout watches its effect, the judge
-/// command evaluates it, then the image is confirmed. Before data are signed or sent, a board proves that it
-/// is the board of the machine (RolloutMachine::claim). If the registry has no key and the board has one, the
-/// key is entered in the registry (trust on first use) and reported. All machines are locked in the registry
-/// for the whole call. Machines in the state kept are checked when the call begins, before each stage and at
-/// the end. A machine stops the rollout and loses the state kept if the machine does not answer, is another
-/// board or does not have its image in effect. At the first machine that is worse, or whose result is not
-/// known, the image of this machine is reverted. The rollout stops until a user allows it to continue. The
-/// registry records the steps: an interrupted rollout continues where it stopped. A board whose trial is not
-/// confirmed returns to its previous image by itself. kept: called for each machine whose image was
-/// confirmed. Throws LimitNotMet if another caller has locked one of the machines; then no step was done.
+/// Distributes correction images to boards in stages. Each image first runs on trial. The rollout checks that
+/// the board uses the image, the judge command evaluates the machine, and then the image is confirmed. Before
+/// data are signed or sent, a board proves that it is the board of the machine (RolloutMachine::claim). If
+/// the registry has no key and the board has one, the key is entered in the registry (trust on first use) and
+/// reported. All machines are locked in the registry for the whole call. Machines in the state kept are
+/// checked when the call begins, before each stage and at the end. The rollout stops, and a machine loses the
+/// state kept, if its board does not answer, is another board, or does not use the image. At the first
+/// machine that is worse, or whose result is not known, the image of this machine is reverted. The rollout
+/// stops until a user allows it to continue. The registry records the steps: an interrupted rollout continues
+/// where it stopped. A board whose trial is not confirmed returns to its previous image by itself. kept:
+/// called for each machine whose image was confirmed. Throws LimitNotMet if another caller has locked one of
+/// the machines; then no step was done.
 RolloutEnd roll_out(registry::Registry& registry, std::vector<RolloutMachine> machines,
                     const RolloutOptions& options, const std::atomic<bool>& stop, const Say& say,
                     const std::function<void(const RolloutMachine&)>& kept);

@@ -40,7 +40,7 @@ class RolloutBook {
   void write(const RolloutMachine& machine, const char* state, const std::string& said);
   /// Records that a trial begins. issued: time of signing, by which the board identifies the trial.
   void begin_trial(const RolloutMachine& machine, std::uint64_t issued);
-  /// Machines that were taken back are tried again.
+  /// Machines whose image was reverted are tried again.
   void allow();
 
  private:

@@ -24,11 +24,10 @@ struct Receipt {
   bool resend = false;  // a record is missing: begin behind `stored`
 };
 
-/// Writes samples into the registry, each once. Records of a spool are taken in the order of their
-/// numbers. The last number is updated in the same transaction as the records, and earlier records are
-/// ignored. Two writers may run at the same time. Only samples of machines that are in the registry are
-/// stored. The samples of another machine are counted (Registry::not_entered), and the gateway may forget
-/// them.
+/// Writes samples into the registry, each once. Records of a spool are stored in the order of their numbers.
+/// The last number is updated in the same transaction as the records, and earlier records are ignored. Two
+/// writers may run at the same time. Only samples of machines that are in the registry are stored. The
+/// samples of another machine are counted (Registry::not_entered), and the gateway may forget them.
 class SampleWriter {
  public:
   explicit SampleWriter(registry::Registry& registry) : registry_(registry) {}

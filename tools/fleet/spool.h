@@ -41,13 +41,14 @@ class Spool {
   /// object a line, with the cells as they were).
   std::uint64_t count_aside() const { return count_aside_; }
   const std::string& aside() const { return aside_; }
-  /// The registry has all up to here.
+  /// The registry has all records up to this number.
   void stored(std::uint64_t number);
   std::uint64_t stored() const { return stored_; }
-  /// The last number that was given; records that were forgotten unsent for want of room.
+  /// The last number of a record; the number of records that were discarded before sending, because the spool
+  /// was full.
   std::uint64_t last() const { return last_; }
   std::uint64_t dropped() const { return dropped_; }
-  /// The last number that is no longer here.
+  /// The last number of a record that the spool no longer contains.
   std::uint64_t gone() const { return gone_; }
   /// Call begin_anew if the registry has numbers that this spool never gave: the file is an older, restored
   /// file. The records then get new numbers under a new id.

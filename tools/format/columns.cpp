@@ -52,8 +52,8 @@ constexpr ColumnGroup normal() {
 }
 constexpr ColumnGroup row_of_distance() {
   ColumnGroup group = label(columns::kFrom, true,
-                            "the row at the other end of the distance: its label in a column of words, or "
-                            "its number, from 1",
+                            "the row at the other end of the distance: the label of this row in a column of "
+                            "words, or the number of this row, from 1",
                             "`distance` is no reading");
   group.use = kBeside;
   group.form = ReadingForm::kDistance;
@@ -94,23 +94,25 @@ constexpr ColumnGroup run() {
 /// The order is that of messages and of the reference page: readings, the columns that they need, the rest.
 constexpr std::array kGroups = {
     readings(columns::kPoint, 3, "mm", ReadingForm::kPoint, false,
-             "measured tool point in the measuring frame; any of the three"),
+             "measured tool point in the measuring frame; one or more of the three columns"),
     readings(columns::kRotation, 3, "deg", ReadingForm::kRotation, false,
-             "measured rotation of the tool in the measuring frame, as a rotation vector; any of the three"),
+             "measured rotation of the tool in the measuring frame, as a rotation vector; one or more of the "
+             "three columns"),
     readings(one(columns::kLength), 1, "mm", ReadingForm::kLength, false,
              "measured distance of the tool point from a fixed centre, the full length"),
     readings(one(columns::kDeviation), 1, "mm", ReadingForm::kDeviation, false,
              "measured deviation of the tool point from the nominal point, positive along the normal"),
     readings(columns::kDirection, 3, "", ReadingForm::kDirection, true,
-             "measured direction of the tool axis in the measuring frame, a unit vector; all three"),
+             "measured direction of the tool axis in the measuring frame, a unit vector; all three columns"),
     readings(one(columns::kDistance), 1, "mm", ReadingForm::kDistance, true,
              "measured distance between the tool points of this row and of another row"),
     readings({columns::kInclination[0], columns::kInclination[1], nullptr}, 2, "arcsec",
              ReadingForm::kInclination, true,
-             "measured inclination of the tool's x axis and y axis to the horizontal; any of the two"),
+             "measured inclination of the tool's x axis and y axis to the horizontal; one of the two "
+             "columns, or both"),
     thing(columns::kSame, ReadingForm::kSame,
-          "label of the unknown point that the tool point met in this row; `u` is the uncertainty of meeting "
-          "it"),
+          "label of the unknown point at which the tool point was in this row; `u` is the uncertainty of "
+          "this coincidence"),
     thing(columns::kOn, ReadingForm::kOn,
           "name of the `<artefact>` that the tool point touched in this row; `u` is the uncertainty of the "
           "touch"),
@@ -121,14 +123,15 @@ constexpr std::array kGroups = {
     row_of_distance(),
     uncertainty(),
     angle_uncertainty(),
-    motion(columns::kTime, "s", "time; it does not fall within a run", "0"),
+    motion(columns::kTime, "s", "time of the row; the time must not decrease within a run", "0"),
     motion(columns::kFeed, "mm/min", "feed along the path", "0"),
     motion(columns::kCurvature, "1/mm", "curvature of the path", "0"),
     motion(columns::kVisit, "", "number of rows since the start of the run, from 0", "the rows are counted"),
     run(),
     label(columns::kRole, false, "`fit`, or `check`: a held-out row that only tests the fit", "`fit`"),
     label(columns::kCorrected, false,
-          "fingerprint of the image whose correction was on; its file is found with `--images`",
+          "fingerprint of the correction image that was running; `--images` names the folder with the file "
+          "of this image",
           "no correction was on"),
     label(columns::kSetup, true, "label of the set-up of the instrument, with a separate BaseShift", "`run`"),
     label(columns::kClock, true, "label of the rows with one unbroken time base", "`run`"),

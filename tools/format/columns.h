@@ -142,7 +142,7 @@ const char* unit_of(AxisQuantity quantity, bool rotary);
 /// "vX[mm/s]", "vC[deg/s]".
 std::string axis_heading(AxisQuantity quantity, std::string_view axis, bool rotary);
 
-/// A column of an axis, taken apart.
+/// Parts of the name of a column of an axis.
 struct AxisColumnName {
   AxisQuantity quantity;
   std::string axis;

@@ -16,7 +16,8 @@ constexpr bool forms_are_in_order() {
     if (kReadingForms[k].form != static_cast<ReadingForm>(k)) return false;
   return true;
 }
-static_assert(kinds_are_in_order() && forms_are_in_order(), "the tables are indexed by kind and by form");
+static_assert(kinds_are_in_order() && forms_are_in_order(),
+              "the rows of kReadingKinds and kReadingForms must be in the order of their enumerators");
 
 }  // namespace
 

@@ -33,8 +33,8 @@ enum class ReadingKind : std::uint8_t {
   kOn3
 };
 
-/// Form of a reading: how the instrument takes it. Readings of one form share their columns and their
-/// formula.
+/// Form of a reading: the quantity that the instrument reads. Readings of one form share their columns and
+/// their formula.
 enum class ReadingForm : std::uint8_t {
   kPoint,
   kRotation,
@@ -53,7 +53,7 @@ struct ReadingFormEntry {
   ReadingForm form;
   bool rotation;        // the reading is an angle, deg; else a length, mm
   bool free_of_set_up;  // the set-up of the instrument (BaseShift) does not change it
-  /// True if one reading takes all columns of the form; a row without one of these columns then has no
+  /// True if a reading requires all columns of the form; a row without one of these columns then has no
   /// reading of this form.
   bool together;
   /// The reading is the length of an arm: never below 0.
@@ -158,8 +158,8 @@ constexpr const char* report_unit_of(ReadingKind kind) { return is_rotation(kind
 constexpr bool is_free_of_setup(ReadingKind kind) { return entry_of(form_of(kind)).free_of_set_up; }
 constexpr bool is_direction(ReadingKind kind) { return form_of(kind) == ReadingForm::kDirection; }
 constexpr bool is_inclination(ReadingKind kind) { return form_of(kind) == ReadingForm::kInclination; }
-/// The reading is 0: the tool point met a thing (an unknown point, an artefact) whose unknown values a fit
-/// eliminates.
+/// The reading is 0: the tool point touched an object (an unknown point or an artefact) whose unknown values
+/// a fit eliminates.
 constexpr bool is_of_thing(ReadingKind kind) {
   return form_of(kind) == ReadingForm::kSame || form_of(kind) == ReadingForm::kOn;
 }

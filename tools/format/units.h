@@ -45,7 +45,7 @@ std::optional<Unit> find_unit(std::string_view name);
 /// arcsec, ² by ^2; a middle dot is removed.
 std::string usual_spelling(std::string_view unit);
 
-/// Returns the name that find_unit has for a unit; the text unchanged if find_unit does not know it.
+/// Returns the name of a unit as in find_unit; the unchanged text if find_unit has no such unit.
 std::string canonical_unit(std::string_view unit);
 
 /// Returns the names of all units, for messages.

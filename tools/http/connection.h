@@ -16,12 +16,13 @@ struct Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Reads the bytes that are there, without waiting. False: the client has closed the connection.
+  /// Reads the bytes that have arrived, without waiting. Returns false if the client has closed the
+  /// connection.
   bool take_bytes();
-  /// True if the header has come: request_bytes is then the size of the request.
+  /// True if the header has arrived completely: request_bytes is then the size of the request.
   bool has_header();
-  /// True if the header and its body have come. A body above `most_body`, or of a length that the header does
-  /// not state, is not waited for.
+  /// True if the header and the body have arrived completely. A body above `most_body`, or of a length that
+  /// the header does not state, is not waited for.
   bool has_request(std::size_t most_body);
 
   int fd;
@@ -31,8 +32,8 @@ struct Connection {
   Clock::time_point due;
 };
 
-/// The connection as the library reads and writes it during one request: no wait is longer than `pause`, and
-/// none goes beyond `end`.
+/// Stream for the library during one request: no wait is longer than `pause`, and no wait ends later than
+/// `end`.
 class RequestStream : public httplib::Stream {
  public:
   RequestStream(Connection& connection, Clock::duration pause, Clock::time_point end)

@@ -8,10 +8,10 @@ namespace vernier::http {
 
 class WaitingRoom;
 
-/// An HTTP server in which only a complete request header takes a thread. Connections without a complete
-/// header wait together. If more than `most_waiting` wait, the server closes the oldest connection of the
-/// peer (address) that has the most. Therefore half-open connections cannot keep out a new request. Handlers
-/// and addresses are set as in httplib::Server.
+/// An HTTP server that assigns a thread to a connection only when a complete request header has arrived.
+/// Connections without a complete header wait together. If more than `most_waiting` wait, the server closes
+/// the oldest connection of the peer (address) that has the most. Therefore half-open connections cannot keep
+/// out a new request. Handlers and addresses are set as in httplib::Server.
 class GatedServer : public httplib::Server {
  public:
   explicit GatedServer(const ServerLimits& limits = {});

@@ -5,7 +5,8 @@
 
 namespace vernier::http {
 
-/// Limits of a server. The times are those of local networks: a header of a few kilobytes takes milliseconds.
+/// Limits of a server. The times are for local networks, in which a header of a few kilobytes takes
+/// milliseconds.
 struct ServerLimits {
   std::size_t threads = 8;  // requests that are answered together
   /// Connections whose request, header and body, is not complete; the library cannot serve sockets above
@@ -18,7 +19,8 @@ struct ServerLimits {
   std::chrono::milliseconds pause{5000};      // between two bytes of an answer
   /// Longest body that is waited for; a request with a longer one is handed over for its refusal.
   std::size_t most_body = std::size_t{64} << 20;
-  /// Bytes of all requests that are not complete; beyond them the largest one is closed.
+  /// Largest total size of the incomplete requests, bytes; above this size the server closes the largest
+  /// request.
   std::size_t most_bytes = std::size_t{256} << 20;
 };
 

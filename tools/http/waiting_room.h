@@ -17,7 +17,8 @@
 
 namespace vernier::http {
 
-/// Answers one request. last: the connection is closed after it. False: the connection cannot be used again.
+/// Answers one request. last: the connection is closed after it. Returns false if the connection cannot be
+/// used again.
 using Answer = std::function<bool(httplib::Stream& stream, bool last)>;
 
 /// The connections of a GatedServer: one thread waits for headers, several threads answer. As the library's

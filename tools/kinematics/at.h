@@ -24,8 +24,8 @@ model::Machine tooled(const model::Machine& machine, const std::string& tool);
 std::vector<double> number_list(const std::string& text, const std::vector<std::size_t>& counts,
                                 const std::string& what);
 
-/// Parses the place of a part or program in workpiece coordinates, mm and deg: "X,Y,Z", "X,Y,Z,TURN" (about
-/// z), or "X,Y,Z,rX,rY,rZ" (T Rx Ry Rz, as a sixdof transform of a machine file). An empty text is the
+/// Parses the position of a part or program in workpiece coordinates, mm and deg: "X,Y,Z", "X,Y,Z,TURN"
+/// (about z), or "X,Y,Z,rX,rY,rZ" (T Rx Ry Rz, as a sixdof transform of a machine file). An empty text is the
 /// identity. Throws InputError.
 Eigen::Isometry3d placement(const std::string& text, const std::string& what);
 

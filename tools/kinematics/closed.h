@@ -16,11 +16,11 @@ struct ClosedSolution {
   double condition = 0;           // of the Jacobian
 };
 
-/// Returns the closed solution, or nullopt if the chain has none. The decision uses the expressions, not
-/// samples. Condition 1: every rotation is independent of the linear axes. Condition 2: every length is at
-/// most of first degree in the linear axes. Condition 3: the tables of the linear axes are zero. Condition 4:
-/// there are one to three linear axes, and they are independent. `at`: one state (count 1) that gives the
-/// other axes, motion and inputs.
+/// Returns the closed solution, or nullopt if the chain has no closed solution. The decision uses the
+/// expressions, not samples. Condition 1: every rotation is independent of the linear axes. Condition 2:
+/// every length is at most of first degree in the linear axes. Condition 3: the tables of the linear axes are
+/// zero. Condition 4: there are one to three linear axes, and they are independent. `at`: one state (count 1)
+/// that gives the other axes, motion and inputs.
 std::optional<ClosedSolution> closed_solution(const model::Machine& machine, const model::States& at);
 
 /// Returns linear axis positions for tool points (3 x N, mm), as columns. With fewer than three linear axes,

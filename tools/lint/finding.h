@@ -29,8 +29,8 @@ struct LintFinding {
 /// Formats a finding as one line: "file:12: error: "word": what (meaning)".
 std::string in_one_line(const LintFinding& finding);
 
-/// Lint findings in the order of files and lines. For an equal finding in many rows, only the first is kept,
-/// with the number of rows.
+/// Lint findings in the order of files and lines. If many rows have the same finding, only the first finding
+/// is reported, with the number of rows.
 class LintFindings {
  public:
   explicit LintFindings(std::string file) : file_(std::move(file)) {}

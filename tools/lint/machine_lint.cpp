@@ -178,7 +178,7 @@ std::string meaning_of(const Problem& problem, const std::string& text) {
   if (number && !problem.word.empty()) {
     std::size_t end = problem.word.find_first_not_of("0123456789.+-eE");
     if (end != std::string::npos && end > 0 && text::parse_number(problem.word.substr(0, end)))
-      return "a unit is written in unit=\"…\", not behind the number; values are in mm and deg";
+      return "write the unit as the attribute unit=\"…\", not behind the number; values are in mm and deg";
   }
   if (has(problem.what, "unknown name") || has(problem.what, "no such axis"))
     if (const auto meant = text::word_meant(problem.word, names_in(text)))
@@ -268,7 +268,7 @@ class Oddities {
     for (const model::BaseShift& shift : m_.base_shifts)
       if (shift.run && m_.base_shifts.size() == 1)
         findings_.remark(shift.line, *shift.run,
-                         "this BaseShift is for one run only; rows of other runs have none");
+                         "this BaseShift is only for one run; rows of other runs have no BaseShift");
   }
 
  private:
@@ -295,7 +295,8 @@ class Oddities {
     if (scales || base || unit == "rad" || unit == "um/m" || unit == "%") return;
     if (known->dimension == format::Dimension::kLength || known->dimension == format::Dimension::kAngle)
       findings_.warn(line, unit,
-                     "a unit never scales the value of " + name + ": the chain takes it as " +
+                     "the unit does not convert the value of " + name +
+                         ": the equations of the machine use the value in " +
                          format::base_unit(known->dimension),
                      std::string("write the value in ") + format::base_unit(known->dimension) +
                          ", or the factor in the term");
@@ -305,15 +306,16 @@ class Oddities {
     look_at_unit(item.name, item.unit, item.line, false);
     if (!used_.statics.contains(index) && item.hidden)
       findings_.add_of_kind("unused constant", LintWeight::kRemark, item.line, item.name,
-                            "no transform uses this constant", "one of several tools, or left over");
+                            "no transform uses this constant",
+                            "the chain has several tools, or this constant is not used");
     else if (!used_.statics.contains(index))
       findings_.warn(item.line, item.name, "no transform uses this static",
-                     "forgotten in a term, or left over");
+                     "add the name to a term, or remove it");
     else if (!item.hidden && !item.nominal)
-      findings_.add_of_kind(
-          "nominal", LintWeight::kRemark, item.line, item.name,
-          "free, without nominal: fit takes its value for nominal and writes it, compile wants it",
-          "nominal is the value that the control uses, mostly 0 for an error");
+      findings_.add_of_kind("nominal", LintWeight::kRemark, item.line, item.name,
+                            "this constant is free and has no nominal: fit writes its value as nominal, and "
+                            "compile requires nominal",
+                            "nominal is the value that the control uses, mostly 0 for an error");
     if (!item.hidden && item.nominal && item.unit == "mm" && std::abs(item.value - *item.nominal) > 50)
       findings_.warn(item.line, item.name,
                      fmt::format("{:.6g} mm off its nominal", item.value - *item.nominal),
@@ -328,15 +330,16 @@ class Oddities {
     for (std::size_t c = 0; c < 6; ++c) by_table |= used_.table_values.contains(index * 6 + c);
     if (!used_.axes.contains(index))
       findings_.warn(axis.line, axis.name,
-                     by_table ? "no transform moves by this axis, though its table is used"
+                     by_table ? "no transform moves with this axis, but the chain uses the table of this axis"
                               : "no transform uses this axis",
                      "X=\"" + axis.name + "\" is missing in some sixdof, or the name differs");
     if (!axis.min || !axis.max)
-      findings_.add_of_kind("travel", LintWeight::kRemark, axis.line, axis.name,
-                            "the axis has no min and max: compile and plan need its travel");
+      findings_.add_of_kind(
+          "travel", LintWeight::kRemark, axis.line, axis.name,
+          "the axis has no min and max: the commands compile and plan need the travel of the axis");
     const bool turns = axis.name.size() == 1 && std::string("ABC").find(axis.name) != std::string::npos;
     if (turns && !axis.rotary)
-      findings_.warn(axis.line, axis.name, "not marked as rotary: its positions are read as mm",
+      findings_.warn(axis.line, axis.name, "the axis has no rotary=\"true\": its positions are in mm",
                      "rotary=\"true\"?");
     if (axis.min && axis.max && !axis.rotary) {
       const double travel = *axis.max - *axis.min;
@@ -356,8 +359,9 @@ class Oddities {
                                  axis.rotary ? "deg" : "mm"),
                      "µm? It is in the axis' unit");
     if (!axis.max_correction)
-      findings_.add_of_kind("maxcorrection", LintWeight::kRemark, axis.line, axis.name,
-                            "the axis has no maxcorrection: a board may add any amount to it");
+      findings_.add_of_kind(
+          "maxcorrection", LintWeight::kRemark, axis.line, axis.name,
+          "the axis has no maxcorrection: the board does not limit the correction of this axis");
   }
 
   void look_at(const model::Input& input, std::size_t index) {
@@ -395,7 +399,7 @@ class Oddities {
                                    text::number_text(table.stations.back().loc), text::number_text(*axis.min),
                                    text::number_text(*axis.max)));
     if (table.stations.front().loc < *axis.min - slack || table.stations.back().loc > *axis.max + slack)
-      findings_.warn(table.line, axis.name, "stations outside the travel of the axis",
+      findings_.warn(table.line, axis.name, "the table has stations outside the travel of the axis",
                      "another unit, or another axis?");
   }
 

@@ -65,7 +65,7 @@ class Look {
 
   bool look_at_bytes() {
     if (const auto* const kind = importer::import_kind_of(file_))
-      return findings_.error(0, "", "the file of an instrument, no measurement file",
+      return findings_.error(0, "", "this is the file of an instrument, not a measurement file",
                              "read it: " + command(file_, kind->name)),
              false;
     if (sheet::is_workbook(text_))
@@ -73,7 +73,7 @@ class Look {
              false;
     if (text_.starts_with("\xD0\xCF\x11\xE0"))
       return findings_.error(0, "", "a workbook of the old kind (.xls)",
-                             "save it as .xlsx or CSV, then vernier import table"),
+                             "save the workbook as .xlsx or CSV, then use vernier import table"),
              false;
     const sheet::Encoding encoding = sheet::encoding_of(text_);
     if (encoding == sheet::Encoding::kUtf16Le || encoding == sheet::Encoding::kUtf16Be)
@@ -87,7 +87,7 @@ class Look {
     if (encoding == sheet::Encoding::kWindows1252) {
       if (text_.find('\0') != std::string::npos)
         return findings_.error(0, "", "zero bytes: no text file"), false;
-      findings_.warn(0, "", "not UTF-8: letters beyond ASCII are of some other code page",
+      findings_.warn(0, "", "the file is not UTF-8: letters beyond ASCII are in another code page",
                      "µ and ° in units will not be understood; " + command(file_) + " reads it");
       text_ = sheet::utf8_of(bytes_, encoding);
     }
@@ -109,7 +109,8 @@ class Look {
       lines.push_back(line);
       numbers.push_back(number);
     }
-    if (lines.empty()) return findings_.error(0, "", "the file contains only remarks and empty lines"), false;
+    if (lines.empty())
+      return findings_.error(0, "", "the file contains only comments and empty lines"), false;
     std::string joined_lines;
     for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 200); ++i)
       joined_lines += lines[i] + "\n";
@@ -132,7 +133,7 @@ class Look {
         table_.rows.push_back({text::fields_of(lines[i], {}, {file_, numbers[i]}), numbers[i]});
       } catch (const text::InputError& problem) {
         findings_.error(numbers[i], lines[i].substr(0, 30), "a quote without its fellow",
-                        "quotes go around a whole field, doubled inside");
+                        "put quotes around the whole field, and double a quote inside the field");
       }
     if (table_.rows.empty()) return false;
     header_ = table_.rows.front().cells;
@@ -147,8 +148,9 @@ class Look {
       trailing_ = true;
     }
     if (trailing_)
-      findings_.error(table_.header_line, "", "commas at the end of the header",
-                      "empty columns of a spreadsheet; read it: " + command(file_));
+      findings_.error(
+          table_.header_line, "", "commas at the end of the header",
+          "the file has empty columns, as a spreadsheet writes them; import the file with " + command(file_));
     std::size_t numbers = 0;
     for (const std::string& cell : header_) numbers += sheet::plain_number(cell, false).has_value() ? 1 : 0;
     if (numbers * 2 > header_.size())
@@ -168,8 +170,9 @@ class Look {
       if (!text::is_name(column.name) || (open != std::string::npos && !bracket)) {
         const sheet::Heading heading = sheet::parse_heading(cell);
         findings_.error(table_.header_line, cell,
-                        cell.empty() ? "a column without a name"
-                                     : "a column is name[unit], its name of letters, digits and _",
+                        cell.empty()
+                            ? "a column without a name"
+                            : "a column heading is name[unit]; the name has only letters, digits and _",
                         heading.unit.empty() ? ""
                                              : "meant is " + sheet::name_from_words(heading.name) + "[" +
                                                    heading.unit + "]? " + command(file_) + " reads it so");
@@ -204,7 +207,7 @@ class Look {
         const auto meant = text::word_meant(column.name, known);
         const bool nearly = meant && column.name.size() > 2 && text::letters_apart(column.name, *meant) <= 1;
         if (nearly)
-          findings_.warn(table_.header_line, column.name, "a column that the machine does not know",
+          findings_.warn(table_.header_line, column.name, "the machine file does not use this column",
                          "did you mean " + *meant + "?");
         else
           own.push_back(column.name);
@@ -212,10 +215,12 @@ class Look {
       table_.columns.push_back(std::move(column));
     }
     if (!own.empty())
-      findings_.remark(table_.header_line, text::joined(own, ", "),
-                       machine_ != nullptr
-                           ? "columns that the machine does not know: kept as candidates for diagnose"
-                           : "columns of one's own: kept as candidates for diagnose");
+      findings_.remark(
+          table_.header_line, text::joined(own, ", "),
+          machine_ != nullptr
+              ? "the machine file does not use these columns: diagnose tests whether they explain the "
+                "residual"
+              : "the formats do not define these columns: diagnose tests whether they explain the residual");
     look_for_columns();
     return true;
   }
@@ -245,7 +250,7 @@ class Look {
         findings_.error(table_.header_line, axis.name, "the column of this axis is missing",
                         meant && text::letters_apart(axis.name, *meant) == 0
                             ? "there is " + *meant + ": names have capitals where the machine file has them"
-                            : "if the axis stood still, add its position: vernier import table FILE " +
+                            : "if the axis did not move, add its position: vernier import table FILE " +
                                   model::set_of_axis(axis) + " -o NEW.csv");
       }
     look_for_motion();
@@ -279,11 +284,10 @@ class Look {
     if (lag) wanted.insert(format::columns::kTime);
     for (const std::string& name : wanted)
       if (table_.find(name) == nullptr)
-        findings_.warn(
-            table_.header_line, name,
-            "a term of the machine file needs this column; without it it is 0 in all rows and the term "
-            "cannot be seen",
-            "log it, or hold the term in the fit");
+        findings_.warn(table_.header_line, name,
+                       "a term of the machine file uses this column; without the column the quantity is 0 in "
+                       "all rows, and the readings do not determine the term",
+                       "record this quantity, or exclude the term from the fit (--fix)");
     for (const model::Input& input : machine_->inputs)
       if (table_.find(input.name) == nullptr)
         findings_.warn(table_.header_line, input.name,
@@ -301,8 +305,10 @@ class Look {
                         std::all_of(row.cells.begin() + static_cast<std::ptrdiff_t>(width), row.cells.end(),
                                     [](const std::string& cell) { return cell.empty(); });
       if (tail && !trailing_)
-        findings_.add_of_kind("trailing", LintWeight::kError, row.line, "", "commas at the end of the row",
-                              "empty columns of a spreadsheet; read it: " + command(file_));
+        findings_.add_of_kind(
+            "trailing", LintWeight::kError, row.line, "", "commas at the end of the row",
+            "the file has empty columns, as a spreadsheet writes them; import the file with " +
+                command(file_));
       if (tail) row.cells.resize(width);
       if (std::all_of(row.cells.begin(), row.cells.end(),
                       [](const std::string& cell) { return cell.empty(); })) {
@@ -316,14 +322,14 @@ class Look {
                               text::joined(row.cells, ",").substr(0, 30),
                               fmt::format("{} fields where the header has {}", row.cells.size(), width),
                               more ? "decimal commas? Numbers have a decimal point here"
-                                   : "a line that was cut, or a field without its comma");
+                                   : "the line is incomplete, or a comma between two fields is missing");
         continue;
       }
       kept.push_back(std::move(row));
     }
     table_.rows = std::move(kept);
     if (table_.rows.empty())
-      return findings_.error(table_.header_line, "", "no row below the header that can be read");
+      return findings_.error(table_.header_line, "", "no row below the header is readable");
     for (std::size_t k = 0; k < table_.columns.size(); ++k) read_column(k);
   }
 
@@ -340,8 +346,9 @@ class Look {
     const bool own = names_.needed_unit(column.name) == "?" && (known == nullptr || known->later);
     if (own && 2 * words > filled) {
       column.label = true;
-      findings_.remark(table_.header_line, column.name, "a column of words",
-                       "a column of numbers can explain an error; a column of words only distinguishes rows");
+      findings_.remark(
+          table_.header_line, column.name, "a column of words",
+          "only a column of numbers can explain an error; a column of words only forms groups of rows");
     }
     for (const LintRow& row : table_.rows) {
       const std::string& cell = row.cells[k];
@@ -357,7 +364,7 @@ class Look {
       if (sheet::plain_number(cell, true))
         meaning = "decimal comma? " + command(file_) + " reads it";
       else if (sheet::plain_number(cell, false))
-        meaning = "a sign between thousands? Write the number without";
+        meaning = "is this a thousands separator? Write the number without it";
       else if (names_.is_of_axis(column.name, format::AxisQuantity::kSense))
         meaning = "a direction is 1, -1 or 0";
       findings_.add_of_kind("number " + column.name, LintWeight::kError, row.line, cell,

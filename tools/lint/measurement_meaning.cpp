@@ -82,7 +82,7 @@ class Meaning {
     if (filled == 0) {
       const bool template_cells = reading;
       findings_.add(LintWeight::kWarning, table_.header_line, column.name, "all cells are empty",
-                    template_cells ? "a template that is still to be filled in?" : "");
+                    template_cells ? "is this a template without readings?" : "");
       return;
     }
     if (reading) any_reading_ = true;
@@ -106,7 +106,7 @@ class Meaning {
       findings_.warn(table_.header_line, column.name,
                      fmt::format("axis {} never moves: it is at {} {} in all rows", column.name,
                                  text::number_text(least), unit),
-                     "its errors cannot be distinguished from those of the set-up");
+                     "the readings do not distinguish the errors of this axis from those of the set-up");
     if (machine_ == nullptr) return;
     const model::Axis& axis = machine_->axes[*machine_->find_axis(column.name)];
     if (!axis.min || !axis.max) return;
@@ -155,15 +155,16 @@ class Meaning {
     if (check == table_.rows.size())
       findings_.warn(table_.header_line, columns::kRole, "all rows are check rows: the fit has no rows");
     if (check == 0)
-      findings_.remark(table_.header_line, columns::kRole, "no check rows: the fit will not be tested",
-                       "give some rows the role check, spread over the volume");
+      findings_.remark(table_.header_line, columns::kRole,
+                       "no check rows in the file: the fit is not tested on held-out rows",
+                       "give some rows the role check, distributed over the working volume");
     if (table_.find(columns::kUncertainty) == nullptr)
       findings_.remark(table_.header_line, columns::kUncertainty,
-                       "no standard uncertainty: the noise is taken from repeats, else from the residual",
+                       "no standard uncertainty u in the file: the fit estimates the noise from repeated "
+                       "rows, or from the residual",
                        "a column u[um], the instrument's");
     if (!any_reading_)
-      findings_.error(table_.header_line, "", "no row has a reading",
-                      "a template that is still to be filled in?");
+      findings_.error(table_.header_line, "", "no row has a reading", "is this a template without readings?");
   }
 
   /// Labels of unknown points, and names of artefacts.
@@ -182,7 +183,8 @@ class Meaning {
     for (std::size_t row = 0; same != nullptr && row < table_.rows.size(); ++row)
       if (!same->cell[row].empty() && !on->cell[row].empty())
         findings_.add_of_kind("same and on", LintWeight::kError, line(row), on->cell[row],
-                              "a row meets one thing: fill one of the columns same and on");
+                              "the columns same and on both have a label in this row: a touch belongs to an "
+                              "unknown point (same) or to an artefact (on); empty one of the two cells");
   }
 
   void look_at_points(const LintColumn& same) {
@@ -194,15 +196,17 @@ class Meaning {
     for (const auto& [label, rows] : rows_of) {
       any_reading_ = true;
       if (rows.size() == 1)
-        findings_.add_of_kind("one row", LintWeight::kWarning, line(rows.front()), label.first,
-                              "one row only has this label: it gives no information",
-                              "a typing error in the label? Meet a point from many poses");
+        findings_.add_of_kind(
+            "one row", LintWeight::kWarning, line(rows.front()), label.first,
+            "only one row has this label, so the row gives no information",
+            "check the label for a typing error; the tool point must touch an unknown point from many poses");
     }
     if (!rows_of.empty() && table_.find(columns::kDistance) == nullptr &&
         table_.find(columns::kOn) == nullptr)
       findings_.remark(table_.header_line, columns::kSame,
-                       "no known length: the size of a machine without linear axes stays at nominal",
-                       "the column distance gives the distance of two points");
+                       "no known length in the file: without linear axes the readings do not determine the "
+                       "size of the machine",
+                       "the column distance is the distance between two points");
   }
 
   void look_at_artefacts(const LintColumn& on) {
@@ -226,11 +230,12 @@ class Meaning {
       const auto found = touches.find(one.name);
       const auto unknown = static_cast<std::size_t>(model::unknowns_of(one));
       if (found == touches.end() || found->second * one.dimension() > unknown) continue;
-      findings_.warn(table_.header_line, one.name,
-                     fmt::format("{} touches of this artefact, which has {} unknown values: they give no "
-                                 "information",
-                                 found->second, unknown),
-                     "touch it more often, or give its radius or place if they are known");
+      findings_.warn(
+          table_.header_line, one.name,
+          fmt::format(
+              "this artefact has {} touches and {} unknown values, so the touches give no information",
+              found->second, unknown),
+          "touch the artefact more often, or state its radius or position if they are known");
     }
   }
 
@@ -248,7 +253,8 @@ class Meaning {
             fmt::format("t falls in {}: {} s after {} s",
                         label.empty() ? std::string("this file") : "run " + label,
                         text::number_text(time->value[row]), text::number_text(time->value[before->second])),
-            "rows are in the order of time; a new set-up or clock is a new run");
+            "the rows of a run must be in the order of time; begin a new run for a new set-up or another "
+            "clock");
       last[label] = row;
     }
   }
@@ -274,7 +280,7 @@ class Meaning {
       if (!fresh)
         findings_.add_of_kind("twice", LintWeight::kWarning, line(row), "",
                               fmt::format("the same row as line {}, to the last digit", line(first->second)),
-                              "copied twice? It would count as two readings");
+                              "was the row copied? The fit counts both rows as independent readings");
     }
   }
 
@@ -390,7 +396,7 @@ class Meaning {
             "wild " + column.name, LintWeight::kWarning, line(row), column.cell[row],
             fmt::format("{} differs from its column by {:.3g} times the spread of the column", column.name,
                         (values[row] > high ? values[row] - high : low - values[row]) / width),
-            "a slip, a lost point or a number for \"no reading\"? Leave the cell empty");
+            "if this value is a mistake, a lost point or a mark for \"no reading\", leave the cell empty");
   }
 
   std::size_t line(std::size_t row) const { return table_.rows[row].line; }

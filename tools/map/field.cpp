@@ -52,8 +52,9 @@ Bench::Bench(const model::Machine& machine, const model::States& at)
       axes_(kinematics::linear_axes(machine)),
       closed_(kinematics::closed_solution(nominal_, at)) {
   if (axes_.empty() || axes_.size() > 3)
-    throw text::InputError({machine.file, 0}, "",
-                           "no measurement is simulated: it needs one to three linear axes");
+    throw text::InputError(
+        {machine.file, 0}, "",
+        "no measurement is simulated, because a simulation requires one to three linear axes");
   for (const std::size_t axis : axes_) ranged(machine, axis);
 }
 

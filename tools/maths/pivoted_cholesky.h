@@ -22,9 +22,9 @@ class PivotedCholesky {
   Eigen::MatrixXd solve_many(const Eigen::MatrixXd& right) const;
   /// Returns the remaining columns.
   std::vector<char> left_over() const;
-  /// Returns n x (n - rank), orthonormal: directions that the kept rows do not determine.
+  /// Returns n x (n - rank), orthonormal: directions that the pivot rows do not determine.
   Eigen::MatrixXd null_basis() const;
-  /// Returns the inverse over the kept rows and columns, zero elsewhere.
+  /// Returns the inverse of the pivot rows and columns, and zero in all other rows and columns.
   Eigen::MatrixXd inverse() const;
 
  private:

@@ -5,7 +5,7 @@
 namespace vernier::maths {
 
 /// Returns the multiple of `digit` (a power of ten) that is nearest to a value. The result is the double that
-/// prints shortest: 242.1, not 242.10000000000002. A product with 0.1 does not give that.
+/// prints shortest: 242.1, not 242.10000000000002. A multiplication by 0.1 does not have this property.
 inline double rounded_to(double value, double digit) {
   const double inverse = std::round(1 / digit);
   return inverse >= 1 ? std::round(value * inverse) / inverse : std::round(value / digit) * digit;

@@ -15,9 +15,10 @@ inline constexpr std::array<const char*, 5> kArtefactTypes = {"point", "line", "
 /// Returns the type of this word; nullopt: no type has the word.
 std::optional<ArtefactType> artefact_type_named(std::string_view word);
 
-/// A thing that the tool point touches (`<artefact>` of the machine file). What is given is known, with its
-/// standard uncertainty; every other value is unknown, and a fit eliminates it. A place is in the measuring
-/// frame of the set-up. A thing without a place is in workpiece coordinates.
+/// An artefact that the tool point touches (`<artefact>` of the machine file). A stated value is known, with
+/// its standard uncertainty. A value that is not stated is unknown, and a fit eliminates this value. The
+/// position of an artefact is in the measuring frame of the set-up. An artefact without a stated position is
+/// in workpiece coordinates.
 struct Artefact {
   std::string name;
   ArtefactType type = ArtefactType::kPoint;

@@ -93,7 +93,7 @@ ExprPtr parse_expression(std::string_view text);
 ExprPtr parse_template(std::string_view text);
 
 /// Returns the expression with some of its names replaced. `replace` is called for every name. `replace`
-/// returns the replacement, or null to keep the name.
+/// returns the replacement, or null if the name stays.
 ExprPtr substitute(const ExprPtr& expr, const std::function<ExprPtr(const std::string&)>& replace);
 
 /// Returns a text that parses back to the same expression, with the fewest parentheses.

@@ -15,13 +15,14 @@ struct SetUpsOfFiles {
 };
 
 /// Adds a BaseShift (`setup` = file name without its ending, with its folder for a second file of
-/// one name) for each measurement file after the first. The
-/// instrument of a second file has its own place. No BaseShift is added for a file that
+/// one name) for each measurement file after the first. The instrument has another position for each file. No
+/// BaseShift is added for a file that
 /// - has a column `setup`, or has a run label that an earlier file has (one set-up as stated),
 /// - has only rows with role check, or only readings that need no set-up,
 /// - has a BaseShift in the machine file.
-/// Nothing is added if the plain BaseShift is absent or hidden. The start values are those of the plain
-/// BaseShift. text: of `machine`. The rows must be read again with the new text.
+/// The function adds no BaseShift if the machine file has no BaseShift without `setup`, or if that BaseShift
+/// is hidden. The start values are those of the BaseShift without `setup`. text: the text of the machine file
+/// of `machine`. The rows must be read again with the new text.
 SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& machine, const Measurement& rows);
 
 }  // namespace vernier::model

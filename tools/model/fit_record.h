@@ -53,8 +53,8 @@ struct FitRecord {
     std::array<double, 3> size{};
   };
   std::vector<Alternative> alternatives;
-  /// Correlation of the errors of the readings (fit::NoiseModel). The components are in units of u, or in mm
-  /// if no u was given. Kept if the errors were correlated or larger than u.
+  /// Noise model of the readings (fit::NoiseModel). The components are in units of u, or in mm if no u was
+  /// given. The record contains a noise model only if the errors were correlated or larger than u.
   struct Noise {
     double own = 1, pose = 0, run = 0, drift = 0;
     double time_constant = 0, step = 0;  // of the drift, and median of the intervals between rows: s or rows
@@ -66,8 +66,8 @@ struct FitRecord {
   /// Source of each value: data, convention, prior, as in the JSON of `fit`. `origins` is empty in files of
   /// older versions.
   std::vector<std::string> origins;
-  /// Lower triangle L, n x n; covariance = L L^T in the units of the parameters. The factor comes from the
-  /// data, and from the scales where the data do not determine the parameters.
+  /// Lower triangle L, n x n; covariance = L L^T in the units of the parameters. The data determine the
+  /// factor; for parameters that the data do not determine, the scales determine the factor.
   Eigen::MatrixXd factor;
   /// Matrix O, n x m. O O^T is the part of the covariance that no reading determines: the spread of the
   /// scales that are used there. m = 0: the readings determine everything.
@@ -98,7 +98,8 @@ Eigen::MatrixXd covariance_factor(const Eigen::MatrixXd& covariance);
 std::string fit_record_xml(const FitRecord& record);
 
 /// Returns the factor O of a part of a covariance. O has m columns: the directions (pivoted Cholesky) that
-/// are larger than 1e-3 of the covariance's own squares. O is rounded as the machine file stores it.
+/// are larger than 1e-3 of the variances (the diagonal of the covariance). O is rounded as the machine file
+/// stores it.
 Eigen::MatrixXd open_factor(const Eigen::MatrixXd& part, const Eigen::MatrixXd& covariance);
 
 /// Reads the numbers of an `open` element: n x columns. Returns false if the text has another

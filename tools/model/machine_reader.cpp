@@ -110,7 +110,8 @@ class Reader {
     if (clock != "s" && clock != "row") fail_attribute(node, "clock", clock, "expected s or row");
     if (unit != "u" && unit != "mm") fail_attribute(node, "unit", unit, "expected u or mm");
     noise.in_time = clock == "s", noise.of_u = unit == "u";
-    if (!(noise.own > 0)) fail_attribute(node, "own", "own", "a reading's own noise is above 0");
+    if (!(noise.own > 0))
+      fail_attribute(node, "own", "own", "the independent noise of a reading must be above 0");
     if (noise.drift > 0 && !(noise.time_constant > 0))
       fail_attribute(node, "time", "time", "a drift needs its time constant");
     return noise;
@@ -177,13 +178,16 @@ class Reader {
         std::istringstream origins(attribute(node, "from").value_or(""));
         for (std::string word; std::getline(origins, word, '|');) record->origins.push_back(word);
         if (!record->origins.empty() && record->origins.size() != record->parameters.size())
-          fail_attribute(node, "from", "from", "one word for each of the parameters");
+          fail_attribute(node, "from", "from",
+                         "this attribute must have one word for each of the parameters");
         if (!read_fit_numbers(attribute(node, "numbers").value_or(""), record->parameters.size(), *record))
-          fail_attribute(node, "numbers", "numbers", "these are not the numbers of the parameters named");
+          fail_attribute(node, "numbers", "numbers",
+                         "this attribute must have one number for each named parameter");
       } else if (is(node, "open")) {
         no_children(node);
         if (!read_open_numbers(attribute(node, "numbers").value_or(""), record->parameters.size(), *record))
-          fail_attribute(node, "numbers", "numbers", "these are not numbers of the covariance's parameters");
+          fail_attribute(node, "numbers", "numbers",
+                         "this attribute must have one number for each parameter of the covariance");
       } else {
         unknown(node);
       }
@@ -198,12 +202,12 @@ class Reader {
     while (words >> word) {
       const auto number = text::parse_number(word);
       if (!number || count >= 3)
-        fail_attribute(root, "gravity", word, "gravity is three numbers, a unit vector");
+        fail_attribute(root, "gravity", word, "gravity must be three numbers, a unit vector");
       machine_.gravity[count++] = *number;
     }
     const auto& g = machine_.gravity;
     if (count != 3 || std::abs(std::hypot(g[0], g[1], g[2]) - 1) > 1e-3)
-      fail_attribute(root, "gravity", value, "gravity is three numbers, a unit vector");
+      fail_attribute(root, "gravity", value, "gravity must be three numbers, a unit vector");
   }
 
   void read_variables(const pugi::xml_node& variables) {
@@ -281,7 +285,8 @@ class Reader {
     Artefact item;
     item.line = line(node);
     item.name = attribute(node, "name").value_or("");
-    if (item.name.empty()) fail(node, node.name(), "an artefact needs a name: the word of the column on");
+    if (item.name.empty())
+      fail(node, node.name(), "the artefact has no name: give the word of the column on");
     const std::string type = attribute(node, "type").value_or("");
     const auto known = artefact_type_named(type);
     if (!known) fail_attribute(node, "type", type, "type is point, line, plane, sphere or cylinder");
@@ -298,7 +303,7 @@ class Reader {
     if (item.u_place < 0) fail_attribute(node, columns::kUncertainty, u, "u must not be negative");
     if (item.u_place > 0 && !item.place)
       fail_attribute(node, columns::kUncertainty, u,
-                     "u is the uncertainty of a known place: give x, y and z");
+                     "u is the uncertainty of a known position: give x, y and z");
     check_direction(node, item);
     machine_.artefacts.push_back(std::move(item));
   }
@@ -307,7 +312,8 @@ class Reader {
     if (!item.direction) return;
     const char* const first = format::columns::kNormal.front();
     const std::string word = attribute(node, first).value_or("");
-    if (!item.has_direction()) fail_attribute(node, first, word, "a point or a sphere has no direction");
+    if (!item.has_direction())
+      fail_attribute(node, first, word, "an artefact of type point or sphere has no direction");
     const auto& n = *item.direction;
     constexpr double kUnit = 1e-3;  // tolerance of the length of a unit vector that was written with digits
     if (std::abs(std::hypot(n[0], n[1], n[2]) - 1) > kUnit)
@@ -329,12 +335,13 @@ class Reader {
       fail_attribute(node, "uradius", *attribute(node, "uradius"), "uradius needs the radius");
     item.tip = attribute(node, "tip").value_or("");
     if (!item.tip.empty() && !item.has_radius() && item.type != ArtefactType::kPlane)
-      fail_attribute(node, "tip", item.tip, "a tip touches a plane, a sphere or a cylinder");
+      fail_attribute(node, "tip", item.tip, "a tip can touch only a plane, a sphere or a cylinder");
     const std::string side = attribute(node, "side").value_or("outside");
     if (side != "outside" && side != "inside")
       fail_attribute(node, "side", side, "side is outside or inside");
     if (side == "inside" && !item.has_radius())
-      fail_attribute(node, "side", side, "only a sphere or a cylinder is touched from inside");
+      fail_attribute(node, "side", side,
+                     "only an artefact of type sphere or cylinder can be touched from inside");
     item.inside = side == "inside";
   }
 
@@ -344,11 +351,13 @@ class Reader {
       if (item.tip.empty()) continue;
       const auto found = machine_.find_static(item.tip);
       if (!found)
-        throw text::InputError({machine_.file, item.line}, item.tip,
-                               "no static has this name: the tip's radius");
+        throw text::InputError(
+            {machine_.file, item.line}, item.tip,
+            "no constant (static) has this name; tip is the name of the constant with the radius of the tip");
       if (machine_.statics[*found].unit != "mm")
-        throw text::InputError({machine_.file, item.line}, item.tip,
-                               "the static of a tip is its radius in mm: give the static unit=\"mm\"");
+        throw text::InputError(
+            {machine_.file, item.line}, item.tip,
+            "the constant (static) of a tip is its radius in mm: give the constant unit=\"mm\"");
     }
   }
 
@@ -370,7 +379,7 @@ class Reader {
     check_attributes(node, {"u", "X", "Y", "Z", "note"});
     const auto stated = attribute(node, "u");
     if (!stated)
-      fail(node, node.name(), "the instrument needs its uncertainty, for example u=\"15um + 6um/m\"");
+      fail(node, node.name(), "the uncertainty of the instrument is missing, for example u=\"15um + 6um/m\"");
     try {
       machine_.instrument = parse_reading_uncertainty(*stated);
     } catch (const text::InputError& wrong) {
@@ -577,7 +586,7 @@ class Reader {
     if (scales.empty()) return;
     if (scales.size() != 1 && scales.size() != columns.size())
       fail_attribute(node, "scale", *attribute(node, "scale"),
-                     "scale is one number, or one for each column of fit");
+                     "scale must be one number, or one number for each column of fit");
     for (std::size_t i = 0; i < columns.size(); ++i)
       table.scale[columns[i]] = scales[scales.size() == 1 ? 0 : i];
   }
@@ -634,7 +643,7 @@ class Reader {
     const double n = number(node, "n", expected);
     if (n != std::floor(n) || std::abs(n) > 1e6 || (!before.empty() && n <= before.back().n))
       fail_attribute(node, "n", attribute(node, "n").value_or(""),
-                     "the numbers n of the transforms must be whole and increasing");
+                     "the numbers n of the transforms must be integers in increasing order");
     transform.n = static_cast<int>(n);
     for (std::size_t i = 0; i < transform.dof_count(); ++i) {
       transform.text[i] = attribute(node, transform.dof_name(i)).value_or("0");

@@ -90,7 +90,7 @@ class Builder {
     std::string set;
     for (const Axis* const axis : missing) set += " " + set_of_axis(*axis);
     throw text::InputError(reader_.header(), missing.front()->name,
-                           "the column of this axis is missing; if the axis stood still, add its position: "
+                           "the column of this axis is missing; if the axis did not move, add its position: "
                            "vernier import table " +
                                reader_.header().file + set + " -o NEW.csv");
   }
@@ -239,8 +239,9 @@ class Builder {
       const auto row = static_cast<Eigen::Index>(o.row);
       const bool own_u = result_.angle_uncertainty.size() > 0 && result_.angle_uncertainty[row] > 0;
       if (is_rotation(o.kind) && !own_u)
-        throw text::InputError(reader_.place(o.row), columns::kAngleUncertainty,
-                               "the machine file states the u of lengths: a rotation needs one of its own");
+        throw text::InputError(
+            reader_.place(o.row), columns::kAngleUncertainty,
+            "the machine file states u for lengths only: give a standard uncertainty for the rotations");
       if (is_rotation(o.kind)) continue;
       const bool is_length = o.kind == ObservationKind::kLength || o.kind == ObservationKind::kDistance;
       double& u = result_.uncertainty[row];
@@ -406,7 +407,8 @@ class Builder {
       if (words[row].empty()) continue;
       if (result_.thing[row] != kNoThing)
         throw text::InputError(reader_.place(row), words[row],
-                               "a row meets one thing: fill one of the columns same and on");
+                               "the columns same and on both have a label in this row: a touch belongs to an "
+                               "unknown point (same) or to an artefact (on); empty one of the two cells");
       const auto [at, fresh] = known.try_emplace({words[row], set_up_of_thing(row)}, result_.things.size());
       if (fresh) {
         result_.things.push_back(make(row, words[row]));
@@ -573,10 +575,11 @@ class Builder {
                              "a length is not negative");
     if (kind == ObservationKind::kDistance && result_.other_end[row] == kNoRow)
       throw text::InputError(reader_.place(row), columns::kFrom,
-                             "may not be empty here: the row at the other end");
+                             "this cell must not be empty: give the row at the other end of the distance");
     if (is_inclination(kind) && !machine_.workpiece.empty())
-      throw text::InputError(reader_.header(), format::name_of(kind),
-                             "an inclination is read on the tool of a machine whose workpiece stands still");
+      throw text::InputError(
+          reader_.header(), format::name_of(kind),
+          "readings of inclination are supported only if the workpiece of the machine does not move");
     if (kind != ObservationKind::kD) return;
     if (!finite(result_.nominal_point))
       throw text::InputError(reader_.place(row), columns::kDeviation, all_needed(columns::kNominalPoint));
@@ -727,10 +730,11 @@ void add_corrections(Measurement& m, const Machine& machine, const std::string& 
         m.corrected.begin());
     if (row == m.rows()) return;  // the rows with an active image are excluded
     if (!images)
-      throw text::InputError(
-          {m.files.front(), m.line[row]}, m.corrected[row],
-          "what this image added is not known: say where it is (--images DIR), or give columns " +
-              format::axis_column(AxisQuantity::kCorrection, machine.axes.front().name) + " and so on");
+      throw text::InputError({m.files.front(), m.line[row]}, m.corrected[row],
+                             "the correction of this image is not known: give the folder of the image "
+                             "(--images DIR), or the columns " +
+                                 format::axis_column(AxisQuantity::kCorrection, machine.axes.front().name) +
+                                 " and so on");
     m.correction.assign(machine.axes.size(), Column::Zero(static_cast<Eigen::Index>(m.rows())));
     images(m, machine, text);
   }

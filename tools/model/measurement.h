@@ -33,7 +33,7 @@ struct CandidateInput {
   Column value;
 };
 
-/// A column of words, kept as written.
+/// A column of words, unchanged.
 struct LabelColumn {
   std::string name;
   std::vector<std::string> value;
@@ -42,27 +42,29 @@ struct LabelColumn {
 /// `other_end` of a row without a distance.
 inline constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
 
-/// A thing that rows met: an unknown point (`same`: an artefact of type point of which nothing is known), or
-/// an artefact of the machine file. Each thing has its own unknown values in each set-up.
+/// An object that the tool point touched: an unknown point (`same`; an artefact of type point without known
+/// values), or an artefact of the machine file. Each touched object has separate unknown values in each
+/// set-up.
 struct Thing {
   format::ReadingForm form = format::ReadingForm::kSame;
   std::string label, setup;  // setup: empty if rows state none
   Artefact artefact;
 
   bool is_unknown_point() const { return form == format::ReadingForm::kSame; }
-  /// The thing is in the measuring frame of its set-up; else in workpiece coordinates.
+  /// True if the object is in the measuring frame of its set-up; false if the object is in workpiece
+  /// coordinates.
   bool in_measuring_frame() const { return artefact.place.has_value(); }
-  /// True for the same thing, in another measurement of the same machine.
+  /// True if both are the same object, in two measurements of one machine.
   bool is(const Thing& other) const {
     return form == other.form && label == other.label && setup == other.setup;
   }
 };
 
-/// `thing` of a row that met no thing.
+/// Value of `thing` in a row that touched no object.
 inline constexpr std::size_t kNoThing = static_cast<std::size_t>(-1);
 
 /// The rows of one or several measurement files, bound to a machine (FORMATS section 2). Rows with an empty
-/// input cell are not included; only their number is kept.
+/// input cell are not included; the measurement contains only their number.
 struct Measurement {
   std::vector<std::string> files;
   States states;
@@ -105,7 +107,7 @@ std::string set_up_of_file(const std::string& path, bool with_folder = false);
 /// u. The result is 0 if the row has no uncertainty. mm or deg.
 double uncertainty_of(const Measurement& measurement, const Observation& observation);
 
-/// True if the set-up of the instrument does not change the reading. A thing without a known place is in
+/// True if the set-up of the instrument does not change the reading. An object without a known position is in
 /// workpiece coordinates.
 bool is_free_of_set_up(const Measurement& measurement, const Observation& observation);
 
@@ -133,12 +135,12 @@ Measurement read_measurement(const std::vector<std::string>& paths, const Machin
 /// time order, time-dependent terms and lags have no meaning.
 void require_time_order(const Measurement& measurement);
 
-/// Throws InputError with file, line and label if a row meets a thing (`same`, `on`). command: the command
-/// that cannot use such rows, as its user types it.
+/// Throws InputError with file, line and label if a row has `same` or `on`. command: name of the command that
+/// cannot use such rows, for the message.
 void refuse_things(const Measurement& measurement, const std::string& command);
 
 /// Returns the rows `keep` of a measurement with their observations. `keep` may contain a row several times.
-/// A distance is kept only if both its ends are kept.
+/// A distance is included only if the rows of both its ends are included.
 Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& keep);
 
 /// Appends rows that are bound to the same machine. Runs (and set-ups ...) with the same name are merged. If

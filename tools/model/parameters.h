@@ -20,8 +20,8 @@ struct Parameter {
   std::size_t column = 0;   // kStation, kBaseShift: 0..5 = X Y Z rX rY rZ
 };
 
-/// A unit that a fit frees or holds as a whole: a static, a scale factor, a column of a table, a
-/// BaseShift.
+/// A group of parameters that a fit frees or fixes together: a constant (static), a scale factor, a column of
+/// a table, a BaseShift.
 class Freedom {
  public:
   Freedom(ParameterKind kind, std::string name, bool& flag)
@@ -51,9 +51,9 @@ class ParameterSet {
  public:
   ParameterSet() = default;
   /// Contains all parameters that are free by FORMATS: statics and BaseShifts without Hide, table columns
-  /// named by `fit`. A BaseShift whose run is not in `runs` is excluded. The plain BaseShift is excluded if
-  /// every run has a separate BaseShift. In a periodic table the last station repeats the first station and
-  /// is not a parameter.
+  /// named by `fit`. A BaseShift whose run is not in `runs` is excluded. The BaseShift without `run` and
+  /// `setup` is excluded if every run has a separate BaseShift. In a periodic table the last station repeats
+  /// the first station and is not a parameter.
   ParameterSet(const Machine& machine, const std::vector<std::string>& runs);
 
   std::size_t size() const { return list_.size(); }
@@ -68,8 +68,8 @@ class ParameterSet {
   std::vector<Parameter> list_;
 };
 
-/// Returns the BaseShift of a run: the BaseShift of this run, else the plain BaseShift, else nullopt
-/// (identity).
+/// Returns the BaseShift of a run: the BaseShift for this run, or else the BaseShift without `run` and
+/// `setup`, or else nullopt (identity).
 std::optional<std::size_t> base_shift_of(const Machine& machine, const std::string& run);
 
 }  // namespace vernier::model

@@ -20,8 +20,8 @@ class StationTable {
   std::array<double, 6> values(double raw) const;
   /// Returns d value / d raw of the six columns; 0 beyond the ends.
   std::array<double, 6> slopes(double raw) const;
-  /// Appends index and weight of every station that takes part at this position. In a periodic table the last
-  /// station repeats the first station; its weight is added to index 0.
+  /// Appends index and weight of every station that contributes to the value at this position. In a periodic
+  /// table the last station repeats the first station; its weight is added to index 0.
   void weights(double raw, std::vector<std::pair<std::size_t, double>>& result) const;
 
  private:

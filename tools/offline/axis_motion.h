@@ -34,8 +34,8 @@ class AxisMotion {
   /// Returns the positions with the motion at shares of a move, all within the planned range.
   model::States along(const ProgramMove& move, const std::vector<double>& shares) const;
   /// Returns the shares of a part of a move at which the correction is evaluated, including its first and
-  /// last. The shares are those of even_looks, and closer ones where an expression of the chain is sharp
-  /// (model::Detail::Sharp).
+  /// last. The shares are those of even_looks, with smaller intervals where an expression of the chain
+  /// changes quickly (model::Detail::Sharp).
   std::vector<double> looks(const ProgramMove& move, double from, double to, double deviation_mm) const;
 
  private:

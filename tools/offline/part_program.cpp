@@ -64,8 +64,9 @@ class Translator {
       position_[static_cast<Index>(i)] = at.axis[i][0];
       const std::string& name = machine_.axes[i].name;
       if (name.size() != 1)
-        throw text::InputError({machine_.file, machine_.axes[i].line}, name,
-                               "part programs know axes of one letter; a CSV of positions takes any name");
+        throw text::InputError(
+            {machine_.file, machine_.axes[i].line}, name,
+            "a part program can only have axis names of one letter; for other names use a CSV of positions");
       letters_ += static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
     }
   }
@@ -94,10 +95,11 @@ class Translator {
                    73, 76, 81, 82, 83,   84,   85,   86,   87, 88,   89, 92,   95,   5,  5.1, 5.2, 5.3}))
       throw text::InputError(
           place_, word.text,
-          "this code changes positions in a way that is not supported; write out the moves first");
+          "this code changes positions in a way that is not supported; write the moves out first");
     if (word.letter == 'O' || word.letter == '#' ||
         (word.letter == 'M' && (word.value == 98 || word.value == 99)))
-      throw text::InputError(place_, word.text, "subprograms and loops have to be written out first");
+      throw text::InputError(place_, word.text,
+                             "subprograms and loops are not supported: write all their blocks out first");
   }
 
   void take_code(double code) {
@@ -142,7 +144,8 @@ class Translator {
       return;
     }
     if (motion_ == Motion::kNone)
-      throw text::InputError(place_, line.substr(0, 20), "an axis word has no G0, G1, G2 or G3 before it");
+      throw text::InputError(place_, line.substr(0, 20),
+                             "there is no G0, G1, G2 or G3 before this axis word");
     move(words, arc);
   }
 
@@ -169,8 +172,9 @@ class Translator {
       else if (known_[*axis] != 0)
         target[at] += value;
       else
-        throw text::InputError(place_, word.text,
-                               "a step from an unknown position of the axis: give it with --at");
+        throw text::InputError(
+            place_, word.text,
+            "an incremental move starts at an unknown position of the axis: give this position with --at");
       reached.push_back(*axis);
     }
     return target;
@@ -187,7 +191,7 @@ class Translator {
       if (known_[i] == 0)
         throw text::InputError(
             place_, std::string(1, letters_[i]),
-            "the position of this axis is not known yet: name it in the first move, or with --at");
+            "the position of this axis is not known yet: state the position in the first move, or with --at");
     if (arc && !start_known)
       throw text::InputError(place_, words.front().text,
                              "the start of this arc is not known; give it with --at");

@@ -40,9 +40,9 @@ struct PartProgram {
 /// planes G17 to G19, G20/G21, G90/G91, G90.1/G91.1, G93/G94. A block is split if the correction along it is
 /// not a straight line. An arc or helix is written as arcs in its plane, with I J K as steps, or as chords if
 /// the chords reach as far; under G93 the parts share the block's time. The speed and direction of each axis
-/// are those of the move and its F word. Words without motion are not changed. `at`: positions of the axes
-/// before the first block, and inputs. Throws InputError with file, line and word for words that would be
-/// wrong in the output. Such words: cycles, cutter compensation, other zeros and rotations, parameters,
+/// are those of the move and its F word. Words that cause no motion are not changed. `at`: positions of the
+/// axes before the first block, and inputs. Throws InputError with file, line and word for words that would
+/// be wrong in the output. Such words: cycles, cutter compensation, other zeros and rotations, parameters,
 /// loops, an axis that was never commanded and that `at` does not name.
 PartProgram corrected_program(const std::string& text, const std::string& file, const model::States& at,
                               const std::vector<char>& known, const PartProgramOptions& options,

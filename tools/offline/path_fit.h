@@ -7,7 +7,8 @@
 
 namespace vernier::offline {
 
-/// Guide for the arcs that replace an arc of the program: where along this arc the points of a path are.
+/// Guide for the arcs that replace an arc of the program: the positions of the points of a path along this
+/// arc.
 struct ArcGuide {
   std::array<Eigen::Index, 2> axis{};  // rows of the plane's axes
   std::vector<double> angle;           // of each point about the program's centre, rad, in one direction
@@ -24,12 +25,12 @@ struct PathPiece {
 /// Finds few blocks from the first point to the last. Each block is as long as possible, with all points
 /// between its ends within `most` of the block (norm over all axes, one point per column). Arcs pass through
 /// the points at their ends and turn by at most 270 degrees, or one full turn. If a line reaches as far as an
-/// arc, the line is used. The position along a block depends on the time, not on the path. Without a guide
-/// fit_path uses only lines.
+/// arc, the line is used. The position along a block depends on the time, not on the path. If no guide is
+/// given, fit_path uses only lines.
 std::vector<PathPiece> fit_path(const Eigen::MatrixXd& points, const std::optional<ArcGuide>& guide,
                                 double most);
 
-/// Returns the distance of a place from a piece that begins in the point `from` (norm over all axes, as
+/// Returns the distance of a position from a piece of the path that begins at `from` (norm over all axes, as
 /// above).
 double distance_from(const PathPiece& piece, const Eigen::MatrixXd& points, Eigen::Index from,
                      const std::optional<ArcGuide>& guide, const Eigen::VectorXd& place);

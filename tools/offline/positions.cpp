@@ -176,7 +176,7 @@ std::string corrected_positions(const std::string& text, const std::string& file
   model::States states = states_of(table, machine, at);
   if (place && found > 0)
     throw text::InputError({file, table.csv().header_line}, "--place",
-                           "needs targets x y z, not positions of axes");
+                           "this option requires targets x y z, not positions of axes");
   if (found == 0 && table.find(format::columns::kPoint.front()))
     states = solved(table, machine, states, place.value_or(Eigen::Isometry3d::Identity()));
   else

@@ -59,7 +59,8 @@ std::array<char, 2> plane_letters(int plane) {
 ProgramArc arc_of(const std::vector<Word>& words, const ArcReading& reading, const Eigen::VectorXd& from,
                   const Eigen::VectorXd& to, const text::Place& place) {
   if (const auto turns = value_of(words, 'P'); turns && *turns != 1)
-    throw text::InputError(place, "P", "an arc of several turns has to be written turn by turn");
+    throw text::InputError(place, "P",
+                           "an arc of several turns is not supported: write one arc for each turn");
   const Vector2d start(from[reading.axis[0]], from[reading.axis[1]]);
   const Vector2d end(to[reading.axis[0]], to[reading.axis[1]]);
   const auto radius = value_of(words, 'R');
@@ -71,7 +72,7 @@ ProgramArc arc_of(const std::vector<Word>& words, const ArcReading& reading, con
   constexpr double kOff = 0.05;  // mm, and a thousandth of the radius: as controls allow
   if (out.norm() <= 0 || std::abs(out.norm() - in.norm()) > kOff + 1e-3 * out.norm())
     throw text::InputError(place, words.front().text,
-                           "the ends of the arc are not at one distance from its centre");
+                           "the start and the end of the arc have different distances from the centre");
   arc.radius = out.norm(), arc.radius_at_end = in.norm();
   arc.begin = std::atan2(out.y(), out.x());
   const double sense = reading.clockwise ? -1 : 1;

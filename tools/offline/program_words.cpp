@@ -37,7 +37,7 @@ std::vector<Word> words_of(const std::string& line, const text::Place& place) {
       if (std::isalpha(static_cast<unsigned char>(c)) == 0 || !value)
         throw text::InputError(
             place, line.substr(from, std::max<std::size_t>(i - from, 8)),
-            "not understood: parameters, expressions and loops have to be written out first");
+            "parameters, expressions and loops are not supported: write the blocks out with numbers first");
       words.push_back({letter, *value, line.substr(from, i - from)});
     }
   }

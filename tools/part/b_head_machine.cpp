@@ -85,10 +85,13 @@ void set_errors(model::Machine& machine, const std::string& text) {
     const std::size_t equals = word.find('=');
     if (equals == std::string::npos) throw text::InputError({"--errors", 0}, word, "expected NAME=VALUE");
     const auto index = machine.find_static(word.substr(0, equals));
-    if (!index) throw text::InputError({"--errors", 0}, word, "no static has this name in " + machine.name);
+    if (!index)
+      throw text::InputError({"--errors", 0}, word, "no constant (static) has this name in " + machine.name);
     model::Static& target = machine.statics[*index];
     if (target.hidden)
-      throw text::InputError({"--errors", 0}, word, "a hidden static is no error of the machine");
+      throw text::InputError({"--errors", 0}, word,
+                             "this constant has Hide=\"true\" in the machine file, so it cannot be an error: "
+                             "name a constant that a fit may change");
     if (!target.nominal) target.nominal = target.value;
     target.value = error_value(target, word, word.substr(equals + 1));
   }

@@ -34,9 +34,9 @@ std::string default_b_head_text();
 inline constexpr std::array<const char*, 8> kLocationErrors = {"EC0Y", "EA0Z", "EB0Z", "EA0C",
                                                                "EB0C", "EX0B", "EA0B", "EC0B"};
 
-/// Sets statics from "EA0B=3.2419e-4rad, EX0B=0.0294": comma or blank between; a unit behind the number is
-/// converted to the static's, no unit means the static's own. Throws InputError for an unknown or hidden
-/// name, a malformed number or a unit of another dimension.
+/// Sets statics from "EA0B=3.2419e-4rad, EX0B=0.0294": comma or blank between; a number with a unit is
+/// converted to the unit of the static; a number without a unit is in the unit of the static. Throws
+/// InputError for an unknown or hidden name, a malformed number or a unit of another dimension.
 void set_errors(model::Machine& machine, const std::string& text);
 
 }  // namespace vernier::part

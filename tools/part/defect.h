@@ -59,7 +59,7 @@ PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>
                        const DefectOptions& options = {});
 
 /// Returns the hundred points of the test: 25 on each flank at the bottom and the top line (11 and 25 mm), at
-/// u = 0.02, 0.06 ... 0.98. Flank by flank, bottom line first.
+/// u = 0.02, 0.06 ... 0.98. The points are in the order of the flanks, on each flank the bottom line first.
 std::vector<PartPoint> standard_points();
 inline constexpr std::size_t kPointsPerLine = 25;  // of the test part's standard
 

@@ -13,9 +13,9 @@ struct EnvelopePoint {
   Eigen::Vector3d position, normal;
 };
 
-/// Returns the characteristic point of the swept cylinder on the generatrix at `v`. Its normal is at right
-/// angles both to the axis and to the velocity (tangency condition of sweeps, equation 5 of the paper). The
-/// velocity by u is dTip + h dR. The result is valid only where the motion is not along the axis.
+/// Returns the characteristic point of the swept cylinder on the generatrix at `v`. The normal of the
+/// envelope is perpendicular to the axis and to the velocity (tangency condition of sweeps, equation 5 of the
+/// paper). The velocity by u is dTip + h dR. The result is valid only where the motion is not along the axis.
 EnvelopePoint envelope_point(const FlankPose& pose, const Cutter& cutter, double v);
 
 /// Returns the paper's overcut R (1 - |sin theta|), theta = atan2(-V.T, V.N) (equation 6, recovered from the

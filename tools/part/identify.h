@@ -41,10 +41,10 @@ struct Identification {
   std::vector<std::string> warnings;
 };
 
-/// Weighted least squares of the free statics of the machine to the measured defects. Errors that the points
-/// cannot distinguish (at nominal errors) keep their start values along those directions; `observability`
-/// names them. Standard uncertainties are computed as in `vernier fit`. Throws InputError if no static is
-/// free or if there are fewer points than errors.
+/// Weighted least squares of the free statics of the machine to the measured defects. Combinations of errors
+/// that the points cannot distinguish (at nominal errors) stay at their start values; `observability` names
+/// these combinations. Standard uncertainties are computed as in `vernier fit`. Throws InputError if no
+/// static is free or if there are fewer points than errors.
 Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
                         const IdentifyOptions& options = {});
 

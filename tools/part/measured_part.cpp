@@ -44,7 +44,8 @@ PartPoint place_on_part(const Eigen::Vector3d& position, const text::Place& plac
   // Of the part's height that a point may lie beyond its edges.
   constexpr double kEdge = kOnSurfaceMm / kPartHeightMm;
   if (best_mm < 0)
-    throw text::InputError(place, point_text(position), "no point of the part: far from both flanks");
+    throw text::InputError(place, point_text(position),
+                           "this point is not on the part: the distance to both flanks is too large");
   if (best_mm > kOnSurfaceMm || best.v < -kEdge || best.v > 1 + kEdge)
     throw text::InputError(
         place, point_text(position),
@@ -72,7 +73,7 @@ MeasuredPart read_measured_part(const std::string& text, const std::string& file
     if (u.present()) point.uncertainty_mm = u.at(row);
     if (u.present() && !(point.uncertainty_mm > 0))
       throw text::InputError(place, text::number_text(point.uncertainty_mm),
-                             "u is a standard uncertainty above 0");
+                             "u must be a standard uncertainty above 0");
     point.at = place_on_part(position, place);
     part.points.push_back(point);
   }

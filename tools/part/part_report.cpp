@@ -59,8 +59,8 @@ ordered_json defect_section(const PartJob& job, const ordered_json& result) {
     rows.push_back({flank["flank"], flank["min_mm"], flank["max_mm"]});
   return {{"title", "Effect of the machine's errors on the part"},
           {"prose",
-           {"The part is clamped where it was cut and its offsets were set at the work origin; no "
-            "alignment to the model."}},
+           {"The part is in the position in which it was cut, and the offsets are set at the work origin; "
+            "the part is not aligned to the model."}},
           {"numbers",
            {{{"label", "least"}, {"value", maths::kUmPerMm * d["min_mm"].get<double>()}, {"unit", "µm"}},
             {{"label", "largest"}, {"value", maths::kUmPerMm * d["max_mm"].get<double>()}, {"unit", "µm"}},
@@ -68,7 +68,7 @@ ordered_json defect_section(const PartJob& job, const ordered_json& result) {
             {{"label", "points"}, {"value", d["points"]}, {"unit", ""}}}},
           {"plots", {defect_plot(job)}},
           {"tables",
-           {{{"caption", "Along the whole flank, displacement of the tool tip"},
+           {{{"caption", "Displacement of the tool tip along the whole flank"},
              {"columns", {"flank", "least [mm]", "largest [mm]"}},
              {"rows", rows}}}}};
 }
@@ -94,17 +94,18 @@ ordered_json overcut_section(const PartJob& job, const ordered_json& result) {
     rows.push_back({one["flank"], one["formula_as_printed"]["mm"], one["formula_unit_normal"]["mm"],
                     one["formula_inward_normal"]["mm"], one["distance"][0]["mm"], one["distance"][1]["mm"],
                     one["distance"][2]["mm"]});
-  return {{"title", "Limits of a cylinder on a twisted flank"},
-          {"prose",
-           {"Largest overcut of the flank path, by the two readings of the printed formula, by the formula "
-            "with the normal on the wrong side, and as distance of the envelope to the surface."}},
-          {"plots", plots},
-          {"tables",
-           {{{"caption", "Largest overcut [mm]"},
-             {"columns",
-              {"flank", "as printed", "unit normal", "inward normal", "distance, Z0", "distance, Z11",
-               "distance, Z25"}},
-             {"rows", rows}}}}};
+  return {
+      {"title", "Overcut of a cylindrical cutter on a twisted flank"},
+      {"prose",
+       {"Largest overcut of the flank path, computed by two interpretations of the printed formula, by the "
+        "formula with the normal on the wrong side, and as the distance from the envelope to the surface."}},
+      {"plots", plots},
+      {"tables",
+       {{{"caption", "Largest overcut [mm]"},
+         {"columns",
+          {"flank", "as printed", "unit normal", "inward normal", "distance, Z0", "distance, Z11",
+           "distance, Z25"}},
+         {"rows", rows}}}}};
 }
 
 ordered_json axis_curve(const PartPath& path, const char* name, const char* unit, double JointPose::*member) {
@@ -146,13 +147,13 @@ ordered_json observability_section(const ordered_json& result) {
   return {
       {"title", "Errors of the machine from the part"},
       {"prose",
-       {"With the horizontal part of the displacement alone, tilts of the Z slide and of the table axis are "
-        "one and the same; only the vertical part on the leaning flanks distinguishes them."}},
+       {"With the horizontal part of the displacement alone, tilts of the Z slide and of the table axis have "
+        "the same effect; only the vertical part on the inclined flanks distinguishes the two tilts."}},
       {"tables",
        {{{"caption", "Errors that cannot be distinguished"},
          {"columns", {"reading", "rank", "condition", "inseparable"}},
          {"rows", groups}},
-        {{"caption", "Standard uncertainty of each error per 1 µm of the points"},
+        {{"caption", "Standard uncertainty of each error, for a standard uncertainty of 1 µm of the points"},
          {"columns", {"error", "value", "std. uncertainty", "unit"}},
          {"rows", rows}}}}};
 }

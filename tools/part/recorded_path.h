@@ -19,8 +19,8 @@ struct RecordedPath {
 /// and word.
 RecordedPath read_recorded(const std::string& text, const std::string& file, const JointPose& zero = {});
 
-/// Material that a recorded path leaves on the part at a point, along the surface's normal, positive:
-/// material left.
+/// Remaining material of the part after a recorded path at a point, along the normal of the surface;
+/// positive: too much material.
 struct RecordedPoint {
   double recorded_mm = 0;  // by the recorded positions
   double path_mm = 0;      // of the ideal path: material that a cylinder cannot cut

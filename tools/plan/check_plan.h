@@ -15,7 +15,7 @@ struct CheckPlanOptions {
   double expected_um = 20;  // smallest relevant change of the tool point, rms over the poses
 };
 
-/// The smallest change that a check shows.
+/// The smallest change that a check detects.
 struct Shown {
   check::CheckedQuantity quantity;
   double change = 0;   // in its unit
@@ -31,15 +31,15 @@ struct CheckPlan {
       0;  // the first of `shows`, from the same number of random poses (median of several samples)
 };
 
-/// Chooses the poses one by one. Each pose raises most the sum over the tested parameters of log(1 +
-/// information). The information is about a change that moves the tool point by `expected_um`, with a free
-/// set-up and the uncertainty of the fit. A change is detected from five standard deviations on: an evidence
-/// of 100 with about thirty parameters of six sizes needs this. Throws InputError: never fitted, an axis
-/// without range.
+/// Chooses the poses one by one. Each new pose gives the largest increase of the sum of log(1 + information)
+/// over the tested parameters. The information is about a change that moves the tool point by `expected_um`,
+/// with a free set-up and the uncertainty of the fit. A change is detected from five standard deviations on:
+/// an evidence of 100 with about thirty parameters of six sizes needs this. Throws InputError: never fitted,
+/// an axis without range.
 CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options = {});
 
-/// Describes for a person what the poses show: the largest changes, a count of the others, and parameters
-/// that are not identifiable.
+/// Returns a text for users about the changes that the poses can detect: the largest changes, the number of
+/// the other changes, and the parameters that are not identifiable.
 std::string check_plan_text(const CheckPlan& plan, double reading_um);
 /// Returns a measurement file with the poses of the plan. The readings must be filled in.
 std::string check_plan_csv(const model::Machine& machine, const CheckPlan& plan, double reading_um);

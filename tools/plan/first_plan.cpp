@@ -184,7 +184,7 @@ PlannedParameters planned_parameters(const model::Machine& machine, double expec
         .push_back(static_cast<Index>(i));
   if (planned.own.empty())
     throw text::InputError({machine.file, 0}, machine.name,
-                           "the machine file has no free parameter that could be measured");
+                           "no reading can determine a free parameter of the machine file");
   planned.jacobian = model::linearise(machine, fit::point_readings(planned.offered), planned.all).jacobian;
   planned.scale = Eigen::VectorXd::Ones(planned.jacobian.cols());
   for (Index j = 0; j < planned.jacobian.cols(); ++j) {

@@ -21,7 +21,7 @@ struct FirstPlanOptions {
   double check_share = 0.15;  // share of additional poses that only test the fit
 };
 
-/// The free parameters of a machine, in units of what each may plausibly be.
+/// The free parameters of a machine, each in units of its plausible size.
 struct PlannedParameters {
   model::ParameterSet all;
   std::vector<Eigen::Index> own, set_up;  // indices: of the machine, of its BaseShift
@@ -38,7 +38,7 @@ struct PlannedParameters {
 /// volume. Throws InputError for an axis without a range, or without a free parameter.
 PlannedParameters planned_parameters(const model::Machine& machine, double expected_um);
 
-/// Poses to measure a machine at for the first time.
+/// Poses for the first measurement of a machine.
 struct FirstPlan {
   model::States states;                // in the order in which they are measured
   std::vector<char> check;             // role of each
@@ -49,11 +49,11 @@ struct FirstPlan {
   bool reached = true;                 // the accuracy that was asked for
 };
 
-/// Chooses one by one the poses that lower most the expected uncertainty of the tool point over the work
-/// volume with all its tools, for the free parameters of the machine file (I-optimal, without exchange:
-/// Fedorov 1972, 2.5). A rigid motion belongs to the set-up and does not count. The poses are in the order of
-/// a path through the axes' travels; the first pose is repeated, check poses are in between. Throws
-/// InputError for an axis without a range, or without a free parameter.
+/// Chooses poses one by one; each pose gives the largest decrease of the expected uncertainty of the tool
+/// point over the work volume with all tools, for the free parameters of the machine file (I-optimal, without
+/// exchange: Fedorov 1972, 2.5). A rigid motion belongs to the set-up and does not count. The poses are in
+/// the order of a path through the axes' travels; the first pose is repeated, check poses are in between.
+/// Throws InputError for an axis without a range, or without a free parameter.
 FirstPlan first_plan(const model::Machine& machine, const FirstPlanOptions& options = {});
 
 /// Returns the expanded uncertainty (k = 2) of the tool point over the work volume, um, after readings at any

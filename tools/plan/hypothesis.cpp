@@ -135,7 +135,7 @@ std::vector<std::string> split_hypotheses(const std::vector<std::string>& argume
     parts.push_back(argument.substr(from));
   }
   if (parts.size() != 2)
-    throw text::InputError("--separate needs two effects; the number given is " +
+    throw text::InputError("--separate requires two effects; the number of given effects is " +
                            std::to_string(parts.size()));
   return parts;
 }

@@ -35,7 +35,7 @@ FittedHypothesis fit_hypothesis(const effects::MachineText& model, const diagnos
                                 const model::Measurement& measurement, const std::string& name,
                                 const std::vector<effects::Effect>& effects);
 
-/// Fall of chi^2 in units of the noise less the price of the unknowns (BIC).
+/// Decrease of chi^2 in units of the noise, minus the penalty of the BIC for the unknowns.
 double value_of(const diagnose::Scored& scored, const diagnose::Evidence& evidence);
 
 /// Splits the text of `--separate` at commas. A comma separates only if the text after it begins with the id

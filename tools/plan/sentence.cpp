@@ -203,7 +203,7 @@ std::string Explanation::sentence() const {
         "input: they reach a non-centrality of {:.3g}, {:.3g} are needed.{}",
         a, b, plan_.rows.rows(), worse.planned, worse.needed, beyond);
   double best = 0;
-  std::string where = "in combinations that the rows so far lack", why;
+  std::string where = "in combinations that the existing rows do not contain", why;
   for (const Contrast& contrast : contrasts()) {
     if (!contrast.usable) continue;
     const Answer answers = answer(contrast);

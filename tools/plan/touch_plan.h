@@ -22,7 +22,7 @@ struct TouchPlan {
   bool place_is_assumed = false;  // the file does not know the place: the middle of the volume
   double before_um = 0, after_um = 0;  // expanded uncertainty of the tool point over the volume (k = 2)
   double least_um = 0;                 // from all touches that were looked at: lower limit of this artefact
-  /// Parameters that no touch of this artefact determines: their uncertainty stays.
+  /// Parameters that no touch of this artefact determines; the plan does not change their uncertainty.
   std::vector<std::string> not_seen;
   bool has_length = false;  // linear axes that the file takes as true, or a known radius, give the size
 };
@@ -35,7 +35,8 @@ struct TouchPlan {
 TouchPlan touch_plan(const model::Machine& machine, const std::string& artefact,
                      const TouchPlanOptions& options = {});
 
-/// Describes for a person what the touches determine and what they cannot.
+/// Returns a text for users: the values that the touches determine, and the values that the touches do not
+/// determine.
 std::string touch_plan_text(const TouchPlan& plan, const std::string& artefact);
 /// Returns a measurement file with the poses of the plan and the column `on`. The positions of the axes must
 /// be replaced by those of the touch.

@@ -11,9 +11,9 @@
 namespace vernier::plan {
 
 /// Returns `count` more positions of an axis between `low` and `high`, in its unit and increasing. At these
-/// positions together with the positions `taken`, two different cyclic errors with periods down to 1/1000 of
-/// the range are never equal. The function uses the best of many random sets: the set whose window has the
-/// smallest largest peak. The result is equal for equal input.
+/// positions together with the existing positions `taken`, two different cyclic errors with periods down to
+/// 1/1000 of the range are never equal. The function uses the best of many random sets: the set whose window
+/// has the smallest largest peak. The result is equal for equal input.
 std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
                                      std::size_t count);
 

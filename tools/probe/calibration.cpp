@@ -105,7 +105,8 @@ ProbeCalibration calibrate_block(TouchTable& table, const CalibrationSetup& setu
   const VectorXd upper = table.need({"upper", "up", "mean_up", "mean_upper"}, "position at the upper face");
   const VectorXd lower = table.need({"lower", "lp", "mean_lp", "mean_lower"}, "position at the lower face");
   if (!setup.ball_radius_mm)
-    throw text::InputError("a block needs the nominal radius of the stylus ball (--ball-radius)");
+    throw text::InputError(
+        "the calibration on a block requires the nominal radius of the stylus ball (--ball-radius)");
   const VectorXd difference = (upper - lower).array() - (setup.size_mm + 2 * *setup.ball_radius_mm);
   ProbeCalibration result;
   result.delay_found = varies(feed);
@@ -132,7 +133,7 @@ ProbeCalibration calibrate_block(TouchTable& table, const CalibrationSetup& setu
   say_feeds(feed, result.delay_found, result.findings);
   add_spread(result, feed / maths::kSecondsPerMinute, 2);
   result.findings.push_back(
-      "Both faces lie along one line: lobes of the pretravel and its direction are not seen.");
+      "Both faces are along one line: the touches do not determine lobes and direction of the pretravel.");
   return result;
 }
 
@@ -230,8 +231,8 @@ void say_round(const RoundTouches& touches, const LeverReach& reach, double gap,
         gap));
   if (touches.braking.cwiseAbs().maxCoeff() == 0)
     findings.push_back(
-        "Every touch counts as one at constant feed; where an approach is too short for that, record "
-        "a[mm/s^2].");
+        "The evaluation assumes a constant feed at every touch; if an approach is too short for a constant "
+        "feed, record a[mm/s^2].");
 }
 
 ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setup) {
@@ -267,7 +268,8 @@ ProbeCalibration calibrate_round(TouchTable& table, const CalibrationSetup& setu
         !explains(result.fit, fit_with({reach.delay, false}, same), kLobeChance)) {
       reach.lobes = false;
       result.findings.push_back(
-          "A three-lobed pretravel would show and does not: below the scatter of the touches.");
+          "A pretravel with three lobes is not detected, although the touches are sufficient to detect it: "
+          "the lobes are smaller than the scatter of the touches.");
       result.fit = fit_with(reach, options);
     }
   }

@@ -39,8 +39,9 @@ void say_outliers(const TouchFit& fit, const TouchTable& table, std::vector<std:
 ///
 /// A touch at speed v along the approach is recorded late by v * delay - a * delay^2 / 2, and by the
 /// pretravel. The pretravel is a constant. For a probe with three contacts, a lobe p3 cos 3(phi - phi3) of
-/// the azimuth phi of the approach is added. The constant cannot be distinguished from the radius of the
-/// ball. Only the difference of radius and constant is known: the effective tip radius.
+/// the azimuth phi of the approach is added. Touches cannot distinguish the constant pretravel from the
+/// radius of the stylus ball. The touches determine only the difference radius - pretravel: the effective tip
+/// radius.
 struct ProbeCalibration {
   TouchFit fit;
   /// Order: delay_ms first, if the touches determine it; then delay_spread, its standard deviation from touch

@@ -37,7 +37,7 @@ void check(const CirclePath& path) {
   need(arc > 0 && arc <= 360, "arc", "must go up by at most 360 deg");
   need(path.overshoot_deg >= 0 && path.overshoot_deg <= 360, "overshoot", "must be 0 to 360 deg");
   need(path.feed_in_mm > 0 && path.feed_in_mm < path.radius_mm, "feed-in",
-       "must be above zero and below the radius");
+       "the value must be above zero and below the radius");
   need(path.pause_s >= 0, "pause", "must not be negative");
   need(path.acceleration_mm_s2 > 0, "acceleration", "must be above zero");
 }

@@ -8,8 +8,8 @@ namespace vernier::probe {
 
 /// Conditions for a valid touch at speed. The machine must reach the surface at constant speed and keep this
 /// speed until the probe has triggered. The stylus must not be deflected beyond its limit. Source of the
-/// defaults: NISTIR 6415, 1999. At 2540 mm/min the axis follows 1.78 mm behind, the approach is 5.1 mm and
-/// the probe is driven 2.5 mm beyond the surface.
+/// defaults: NISTIR 6415, 1999. At 2540 mm/min the following error of the axis is 1.78 mm, the approach is
+/// 5.1 mm long, and the programmed end of the approach is 2.5 mm beyond the surface.
 struct TouchConditions {
   double gain_per_s = 2540.0 / 60 / 1.78;  // of the position loop: following error = speed / gain
   double delay_s = 6e-3;                   // from contact to the edge that the controller sees
@@ -22,7 +22,7 @@ double following_error(const TouchConditions& conditions, double feed);
 /// mm times the following error, mm.
 double least_approach(const TouchConditions& conditions, double feed);
 /// Returns the smallest distance from the surface to the end of the approach, mm: the following error. With
-/// this distance, the command still moves at the contact.
+/// this distance, the commanded position still moves at the time of the contact.
 double least_overtravel(const TouchConditions& conditions, double feed);
 /// Returns the deflection of the stylus when the machine has stopped after a touch, mm: the path
 /// during the delay, and the following error, which the axis still has to travel.

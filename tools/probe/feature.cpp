@@ -161,7 +161,8 @@ MeasuredFeature fit_plane(const Touches& touches, const FeatureSetup& setup) {
   feature.deviation = feature.fit.residual;
   if (!touches.n && setup.ball_radius_mm > 0)
     feature.findings.push_back(
-        "Without normals (nx ny nz) this is the plane of the ball's centres: its radius is not taken off.");
+        "The file has no normals (nx ny nz): the result is the plane through the centres of the stylus ball, "
+        "and the radius of the ball is not subtracted.");
   return feature;
 }
 
@@ -221,7 +222,8 @@ MeasuredFeature fit_line(const Touches& touches, const FeatureSetup& setup) {
   }
   if (!touches.n && setup.ball_radius_mm > 0)
     feature.findings.push_back(
-        "Without normals (nx ny nz) this is the line of the ball's centres: its radius is not taken off.");
+        "The file has no normals (nx ny nz): the result is the line through the centres of the stylus ball, "
+        "and the radius of the ball is not subtracted.");
   return feature;
 }
 
@@ -392,9 +394,12 @@ struct BlockModel {
 };
 
 MeasuredFeature fit_block(const Touches& touches, const FeatureSetup& setup) {
-  if (!touches.n) throw text::InputError("a block needs the normal of the touched face in each row (nx, ny)");
+  if (!touches.n)
+    throw text::InputError(
+        "the rows of a gauge block must have the normal of the touched face (columns nx, ny)");
   if (!(setup.block_size_mm[0] > 0 && setup.block_size_mm[1] > 0))
-    throw text::InputError("a block needs its size (--size X,Y)");
+    throw text::InputError(
+        "the size of the gauge block is missing: give its lengths along X and Y in mm (--size X,Y)");
   BlockModel model{
       touches, {}, {}, {setup.block_size_mm[0] / 2, setup.block_size_mm[1] / 2}, setup.ball_radius_mm};
   std::set<int> faces;
@@ -476,7 +481,8 @@ MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup) {
   feature.form_mm = high - low;
   if (feature.fit.dof == 0)
     feature.findings.push_back(
-        "As many touches as unknowns: the feature goes through all of them and nothing checks it.");
+        "The number of touches equals the number of unknowns: the feature passes through all touches, and "
+        "the residuals are 0.");
   say_outliers(feature.fit, table, feature.findings);
   feature.findings.insert(feature.findings.begin(), findings.begin(), findings.end());
   feature.findings.insert(feature.findings.end(), table.notes().begin(), table.notes().end());

@@ -13,7 +13,7 @@ namespace vernier::probe {
 
 enum class FeatureKind { kPlane, kLine, kCircle, kSphere, kCylinder, kBlock };
 
-/// Known data before a feature is fitted.
+/// Data that are known before the fit of a feature.
 struct FeatureSetup {
   FeatureKind kind = FeatureKind::kPlane;
   double ball_radius_mm = 0;  // effective; points are centres of the ball
@@ -40,8 +40,8 @@ struct MeasuredFeature {
 };
 
 /// Columns: x, y, z (z not needed for line, circle and block in the plane z = 0), nx ny nz
-/// (outward normals; for a block: of the touched face), T[degC], u[mm]. Without normals, plane and line are
-/// those of the centre of the ball.
+/// (outward normals; for a block: of the touched face), T[degC], u[mm]. If the touches have no normals, plane
+/// and line pass through the centres of the stylus ball.
 ///
 /// parameters: plane: point (nearest to the centroid), normal, tilt about x and y; line: point, direction,
 /// angle (deg from X, in the plane); circle, sphere, cylinder: centre (for a cylinder nearest to the

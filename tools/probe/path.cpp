@@ -25,7 +25,7 @@ double in_program(const ProbePath& path, double mm) { return path.inch ? mm / ma
 
 int steps_of(const ProbePath& path) {
   if (!(path.step_deg > 0) || path.to_deg < path.from_deg)
-    throw text::InputError("angles: from, to and step leave no point");
+    throw text::InputError("the angles --from, --to and --step give no point");
   const double steps = (path.to_deg - path.from_deg) / path.step_deg;
   if (steps > 100000) throw text::InputError("angles: more than 100000 points");
   return static_cast<int>(std::floor(steps + 1e-9)) + 1;
@@ -93,9 +93,9 @@ void turning_tail(std::string& text, int block) {
 }
 
 std::string turning_program(const ProbePath& path) {
-  if (!path.sphere) throw text::InputError("the turning dialect is for a sphere");
+  if (!path.sphere) throw text::InputError("--dialect turning (lathes) writes programs for a sphere only");
   if (path.feeds.size() != 1)
-    throw text::InputError("the turning dialect takes one feed: write one program for each");
+    throw text::InputError("--dialect turning (lathes) accepts one feed: write one program for each feed");
   std::string text;
   turning_head(path, text);
   auto out = std::back_inserter(text);
@@ -217,9 +217,9 @@ std::string three_axis_program(const ProbePath& path, Dialect dialect) {
     fmt::format_to(out, fmt::runtime(words.comment), comment);
     text += '\n';
   }
-  fmt::format_to(
-      out, fmt::runtime(words.comment),
-      path.sphere ? "zero: centre of the sphere" : "zero: middle between the faces, X across them");
+  fmt::format_to(out, fmt::runtime(words.comment),
+                 path.sphere ? "zero: centre of the sphere"
+                             : "zero: middle between the faces; X is perpendicular to the faces");
   text += '\n';
   lines({head.begin() + static_cast<std::ptrdiff_t>(first), head.end()});
   for (const Approach& touch : touches) {

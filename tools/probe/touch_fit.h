@@ -42,10 +42,10 @@ struct TouchFitOptions {
 
 /// Gauss-Newton with step halving from `start`. Then touches are excluded one by one: each time the touch
 /// whose deleted residual is least probable, if its probability (Student's t, Bonferroni) is below the level.
-/// Covariance: from u, times chi^2/dof if that exceeds 1; without u from the residual. Throws InputError:
-/// fewer observations than parameters plus one, or parameters that the touches do not determine (`names` of
-/// the weakest). Source of the test: R. D. Cook, S. Weisberg, Residuals and Influence in Regression,
-/// 1982, 2.2.
+/// The covariance is computed from u, and multiplied by chi^2/dof if chi^2/dof exceeds 1; without u it is
+/// computed from the residual. Throws InputError: fewer observations than parameters plus one, or parameters
+/// that the touches do not determine (`names` of the weakest). Source of the test: R. D. Cook, S. Weisberg,
+/// Residuals and Influence in Regression, 1982, 2.2.
 TouchFit fit_touches(const TouchModel& model, const Eigen::VectorXd& start, const TouchFitOptions& options,
                      const std::vector<std::string>& names);
 

@@ -180,7 +180,7 @@ PYBIND11_MODULE(vernier, module) {
       .def_readonly("paths", &MeasurementsOfPython::paths);
 
   py::class_<ResultOfPython>(module, "Result",
-                             "What a call found: the keys of the command's JSON as attributes.")
+                             "Result of a call: the keys of the command's JSON are attributes.")
       .def_property_readonly("json",
                              [](const ResultOfPython& self) {
                                return vernier::python::python_of(self.json,
@@ -194,7 +194,7 @@ PYBIND11_MODULE(vernier, module) {
           "Every reading with row, value, prediction, residual, u …; for pandas.DataFrame.")
       .def_property_readonly(
           "model", [](const ResultOfPython& self) { return *self.machine; },
-          "The machine as fitted, or at the end of the ladder.")
+          "The fitted machine, or the machine with the effects of the stepwise model.")
       .def("__getattr__",
            [](const ResultOfPython& self, const std::string& name) {
              if (!self.json.contains(name)) throw py::attribute_error(name);
@@ -218,7 +218,7 @@ PYBIND11_MODULE(vernier, module) {
         return free_of_the_lock([&] { return vernier::python::compare_of_python(machine, meas); });
       },
       py::arg("machine"), py::arg("meas"),
-      "The model as it is against measurements: how well, and where it fails.");
+      "Compares the model with measurements: size of the residual, and where the model fails.");
   module.def(
       "diagnose",
       [](const MachineOfPython& machine, const MeasurementsOfPython& meas, std::size_t most) {
@@ -226,5 +226,5 @@ PYBIND11_MODULE(vernier, module) {
       },
       py::arg("machine"), py::arg("meas"),
       py::arg("most") = vernier::diagnose::DiagnoseOptions{}.most_effects,
-      "Which physical effect is missing; .model has the effects of the ladder.");
+      "Finds the physical effect that is missing; .model has the effects of the stepwise model.");
 }

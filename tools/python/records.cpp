@@ -14,7 +14,7 @@ py::object make_record_class() {
   scope["__builtins__"] = py::module_::import("builtins");
   py::exec(R"py(
 class Record(dict):
-    """A dict whose keys are attributes too."""
+    """A dict whose keys are also attributes."""
     __module__ = "vernier"
     def __getattr__(self, name):
         try:

@@ -97,7 +97,8 @@ Batch write_batch(const std::string& folder, Batch batch) {
   }
   const std::string file = folder + "/batch.json";
   if (std::filesystem::exists(file))
-    throw text::InputError({file, 0}, "", "there is a batch in this folder; name another one with -o");
+    throw text::InputError({file, 0}, "",
+                           "this folder already contains a batch; name another folder with -o");
   const std::string json = dumped({{"vernier_batch", kVersion},
                                    {"name", batch.name},
                                    {"made", text::utc_text(text::now_us())},
@@ -181,7 +182,8 @@ Collected collect(Registry& registry, const std::string& folder, const Batch& ba
     if (!there.empty() && whole(there[0][0]) == found.answer.status && words(there[0][1]) == result)
       ++collected.before;
     else
-      collected.not_booked.push_back({machine, "refused", "differs from the answer that is booked"});
+      collected.not_booked.push_back(
+          {machine, "refused", "the answer differs from the answer in the registry"});
   }
   transaction.commit();
   list_others(folder, batch, collected);

@@ -9,7 +9,7 @@
 
 namespace vernier::registry {
 
-/// One vernier command for each of many machines, in a folder that a scheduler works through:
+/// One vernier command for each of many machines, in a folder from which a scheduler executes the commands:
 /// batch.json (this), machines (a name a line), a script for the scheduler, answers/MACHINE.json.
 struct Batch {
   std::string id;  // BLAKE2b-256 of batch.json
@@ -19,14 +19,14 @@ struct Batch {
   std::vector<std::string> machines;
 };
 
-/// The answer of a machine: what its command printed, and how it ended.
+/// The answer of a machine: the result and the exit status of its command.
 struct BatchAnswer {
   std::string machine;
   std::int64_t status = 0;        // exit status of the command: 0 done, 2 the answer is no
   nlohmann::ordered_json result;  // of `--json`; null for a command without it
 };
 
-/// An answer that is not in the registry, and why.
+/// An answer that is not recorded in the registry, with the reason.
 struct NotBooked {
   std::string machine;
   std::string state;  // "missing", "incomplete", "failed", "refused"
@@ -45,11 +45,11 @@ struct BookedAnswer {
   std::int64_t status = 0, at_us = 0;
 };
 
-/// Writes batch.json and machines into a new folder, and returns the batch with its id. Throws InputError for
-/// a folder that holds a batch already, for a machine's name that is not allowed, and for a machine that
-/// occurs twice.
+/// Writes batch.json and machines into a new folder, and returns the batch with its id. Throws InputError if
+/// the folder already contains a batch, if the name of a machine is not allowed, or if a machine occurs
+/// twice.
 Batch write_batch(const std::string& folder, Batch batch);
-/// Throws InputError if the folder holds no batch.
+/// Throws InputError if the folder contains no batch.
 Batch read_batch(const std::string& folder);
 /// The words of one machine. Throws InputError if the machine is not in the batch.
 std::vector<std::string> command_of(const Batch& batch, const std::string& machine);
@@ -59,8 +59,9 @@ void write_answer(const std::string& folder, const Batch& batch, const BatchAnsw
 /// True if the folder has the answer of a machine (exit status 0 or 2).
 bool has_answer(const std::string& folder, const Batch& batch, const std::string& machine);
 
-/// Books the answer of each machine in the registry, once. An answer that is missing, incomplete, failed, of
-/// another machine or of another batch is listed and not booked. Throws DatabaseError: no answer was booked.
+/// Records the answer of each machine in the registry, once. An answer that is missing, incomplete, failed,
+/// of another machine or of another batch is listed and not booked. Throws DatabaseError: no answer was
+/// booked.
 Collected collect(Registry& registry, const std::string& folder, const Batch& batch);
 /// The booked answers, by batch and machine; of all batches if `name` is empty.
 std::vector<BookedAnswer> booked_answers(Registry& registry, const std::string& name);

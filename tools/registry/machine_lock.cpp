@@ -79,8 +79,8 @@ void MachineLocks::require() {
   transaction.commit();
   if (!all)
     throw LockLost(
-        "the lock in the registry ended before it was renewed: another caller may have these machines now; "
-        "no further step was done on them");
+        "the lock of these machines in the registry ended before this call renewed the lock: another call "
+        "may work on these machines now, so this call stopped");
   renewed_us_ = begun;
 }
 

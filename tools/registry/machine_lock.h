@@ -16,11 +16,11 @@ class LockLost : public text::LimitNotMet {
 };
 
 /// Locks of machines in the registry: only one caller at a time works on a machine, from any computer. A lock
-/// is a lease by the database's clock. The holder renews the lease. The lease of a caller that was killed
-/// ends by itself; then the next caller may take the machine.
+/// is a lease by the database's clock. The holder renews the lease. The lease of a killed caller ends by
+/// itself; then the next caller can lock the machine.
 class MachineLocks {
  public:
-  /// Takes the locks of all machines, or of none. purpose: for people, e.g. "rollout spring". lease_s: 1 s at
+  /// Locks all machines, or no machine. purpose: text for users, e.g. "rollout spring". lease_s: 1 s at
   /// least. Throws LimitNotMet naming the machine that another caller has locked, and the latest end of that
   /// lock.
   MachineLocks(Registry& registry, std::vector<std::string> machines, std::string purpose, double lease_s);

@@ -8,7 +8,7 @@
 namespace vernier::registry {
 
 /// Opens a database: `postgresql://…` is a server, any other text a file, which is created if it does not
-/// exist. Throws InputError if the place cannot be reached or is not a database.
+/// exist. Throws InputError if the server or file cannot be reached, or is not a database.
 std::unique_ptr<Database> open_database(const std::string& place);
 
 /// True if `place` is the address of a server, which may be unavailable for a while.

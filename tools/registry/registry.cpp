@@ -166,7 +166,8 @@ void Registry::give_name(const std::string& from, const std::string& to) {
       "$5, $6, $7) ON CONFLICT DO NOTHING",
       {to, machine.url, machine.note, cell(machine.check_days), cell(machine.added_us), machine.board,
        machine.board_key});
-  if (database_->written() == 0) throw text::InputError({}, to, "a machine of this name is entered");
+  if (database_->written() == 0)
+    throw text::InputError({}, to, "the registry already has a machine of this name");
   for (const char* table : kOfMachines)
     database_->run(fmt::format("UPDATE {} SET machine = $1 WHERE machine = $2", table), {to, from});
   database_->run("DELETE FROM machine WHERE name = $1", {from});

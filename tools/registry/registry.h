@@ -90,13 +90,13 @@ class Registry {
   std::vector<FleetMachine> machines();
   /// Throws InputError if no machine has that name.
   FleetMachine machine(const std::string& name);
-  /// Gives a machine with all its entries another name. Throws InputError if no machine has the first name,
-  /// or if the second one is taken or not allowed.
+  /// Gives a machine with all its entries another name. Throws InputError if no machine has the old name, or
+  /// if the new name is already used or not allowed.
   void give_name(const std::string& from, const std::string& to);
   /// Returns the machines that are not in the registry, and whose samples arrived and were not stored.
   std::vector<NotEntered> not_entered();
-  /// Enters the key of a machine's board if no key is entered. False: the board of another machine
-  /// has this key, or a key was entered meanwhile.
+  /// Enters the key of a machine's board if no key is entered. Returns false if the board of another machine
+  /// has this key, or if a key was entered meanwhile.
   bool trust_board_key(const std::string& machine, const std::string& key);
 
   void put(const RecordedCalibration& calibration);
@@ -110,8 +110,8 @@ class Registry {
   std::vector<FleetReading> readings(std::int64_t since_us);
 
   std::vector<LiveState> live();
-  /// Deletes samples that were taken before a time; returns the number of deleted samples. A sample that was
-  /// stored once is not taken again.
+  /// Deletes samples that were taken before a time; returns the number of deleted samples. A sample that is
+  /// already stored is not stored again.
   std::int64_t forget_samples(std::int64_t before_us);
 
  private:

@@ -346,8 +346,9 @@ std::size_t corrected_rows(const model::Measurement& m) {
 void require_length(const model::Measurement& m) {
   if (std::all_of(m.observations.begin(), m.observations.end(),
                   [](const model::Observation& o) { return model::is_rotation(o.kind); }))
-    throw text::InputError({m.files.front(), 0}, "",
-                           "the measurement has no length reading; a comparison needs at least one");
+    throw text::InputError(
+        {m.files.front(), 0}, "",
+        "the measurement has no reading of a length; a comparison requires at least one such reading");
 }
 
 }  // namespace

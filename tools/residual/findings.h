@@ -18,8 +18,8 @@ struct FindingContext {
 std::size_t count_tried(const KindSample& sample, const std::vector<RecordedColumn>& columns);
 
 /// Selects the most significant term, then the most significant term beside it, and so on. Then
-/// find_structure removes terms that the others make superfluous. Sentences are filled in. Shares of every
-/// column are added to `shares`.
+/// find_structure removes terms that are superfluous beside the other terms. Sentences are filled in. Shares
+/// of every column are added to `shares`.
 std::vector<Finding> find_structure(const KindSample& sample, const FindingContext& context,
                                     std::vector<ColumnShare>& shares);
 

@@ -11,7 +11,7 @@ namespace vernier::residual {
 
 /// Scatter of rows at equal conditions, compared with the residual between conditions (lack of
 /// fit; Draper and Smith, Applied Regression Analysis, 3rd ed., section 2.1). Each file is an instrument with
-/// a scatter of its own; a file with few repeats has no part in the figures.
+/// a separate scatter; a file with few repeats does not contribute to the figures.
 struct Repeats {
   std::size_t freedom = 0;                              // of the pure error, all lengths
   std::optional<double> pure_error_um, lack_of_fit_um;  // at least 5 degrees of freedom

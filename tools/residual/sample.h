@@ -28,12 +28,12 @@ struct KindSample {
       basis;               // its matrix with weighted rows, columns of length 1; shared between kinds
   maths::Moments moments;  // of this kind alone, without a projection
   /// The moments after projection on the complement of the fit's Jacobian, which couples the kinds. Sum and
-  /// degrees of freedom are of all kinds together, each in units of its standard deviation. Without a
+  /// degrees of freedom are of all kinds together, each in units of its standard deviation. If there is no
   /// Jacobian, `projected` equals `moments`.
   maths::Moments projected;
 
   const char* name() const { return format::name_of(kind); }
-  /// Returns `held` minus the joint fit of these functions.
+  /// Returns `held` minus the joint least-squares fit of these functions.
   Eigen::VectorXd without(const maths::FunctionSet& functions) const;
 };
 

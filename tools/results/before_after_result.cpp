@@ -66,8 +66,9 @@ std::string sentence(const residual::BeforeAfter& result) {
   const std::string figures =
       fmt::format("{:.4g} um rms before, {:.4g} um after", all.before.rms, all.after.rms);
   if (!all.interval)
-    return fmt::format("It cannot be decided if the correction helped: {}; there are too few {}.", figures,
-                       result.paired ? "poses" : "rows");
+    return fmt::format(
+        "The readings do not show whether the correction reduced the error: {}; there are too few {}.",
+        figures, result.paired ? "poses" : "rows");
   const std::string how =
       fmt::format("{}: {} % less (95 % interval {} %)", figures, percent(*all.reduction), interval_text(all));
   switch (result.verdict()) {
@@ -79,7 +80,7 @@ std::string sentence(const residual::BeforeAfter& result) {
     case residual::Helped::kCannotBeTold:
       break;
   }
-  return "It cannot be decided if the correction helped: " + how + ", which holds 0.";
+  return "The readings do not show whether the correction reduced the error: " + how + ", which contains 0.";
 }
 
 /// Method of the comparison, and remarks for the reader.
@@ -89,7 +90,8 @@ std::vector<std::string> remarks(const residual::BeforeAfter& result) {
     list.push_back(fmt::format("{} poses that both have, compared one by one", result.samples));
   else
     list.push_back(
-        "the poses of the two are not the same: all rows of both, judged by blocks of neighbouring rows");
+        "the two measurements have different poses: the comparison uses all rows of both, in blocks of "
+        "neighbouring rows");
   if (result.unmatched_before + result.unmatched_after > 0)
     list.push_back(fmt::format("left out, at poses that only one has: {} rows before, {} after",
                                result.unmatched_before, result.unmatched_after));

@@ -141,7 +141,9 @@ void add_not_covered(text::Assurance& assurance, const model::Machine& machine, 
       assurance.not_covered(fmt::format("{0} is {1:.6g} {2} in every row: errors with {0} are not covered.",
                                         machine.inputs[i].name, *at, machine.inputs[i].unit));
   if (!fit::has_uncertainty(m))
-    assurance.not_covered("The rows have no u: the size of the noise is not known, only its structure.");
+    assurance.not_covered(
+        "The rows have no u: the size of the noise is not known, and the residual was tested only for "
+        "structure.");
 }
 
 /// Only one verdict has an assurance: no error can be added to the model.
@@ -151,12 +153,13 @@ text::Assurance assurance_of(const diagnose::Diagnosis& diagnosis, const model::
                     std::string("The verdict is ") + diagnose::verdict_name(diagnosis.verdict) + ".");
   assurance.require("fit-converged", diagnosis.end.converged,
                     diagnosis.end.converged ? "The fit converged." : "The fit did not converge.");
-  assurance.require(
-      "readings-of-this-machine", diagnosis.end.absurd.empty(),
-      diagnosis.end.absurd.empty() ? "The readings are those of this machine." : diagnosis.end.absurd + ".");
+  assurance.require("readings-of-this-machine", diagnosis.end.absurd.empty(),
+                    diagnosis.end.absurd.empty() ? "The residuals are small enough for readings of this "
+                                                   "machine: units, signs and columns are plausible."
+                                                 : diagnosis.end.absurd + ".");
   assurance.at_least("residual-is-noise", diagnosis.left.omnibus_p,
                      diagnose::DiagnoseThresholds().verdict.structure,
-                     "Probability that noise alone leaves a residual with as much structure.");
+                     "Probability that noise alone causes a residual with at least as much structure.");
   add_not_covered(assurance, diagnosis.base.machine, m);
   return assurance;
 }

@@ -38,7 +38,7 @@ nlohmann::ordered_json findings_json(const model::Machine& machine) {
 
 void add_findings(text::Assurance& word, const model::Machine& machine) {
   word.require("fitted", machine.fitted != nullptr,
-               "The machine file holds a fit: how well its numbers are known is in it.");
+               "The machine file contains a fit with the uncertainties of the parameters.");
   if (!machine.fitted) return;
   word.require("fit-converged", machine.fitted->converged, "The fit of the machine file converged.");
   for (const model::FitRecord::Finding& one : machine.fitted->findings) {
@@ -53,13 +53,15 @@ text::Assurance assurance_of(const fit::FitResult& result) {
   text::Assurance word(text::AssuranceKind::kFit);
   word.require("converged", result.converged, "The fit converged.");
   word.require("sensible", result.absurd.empty(),
-               result.absurd.empty() ? "The readings are those of this machine." : result.absurd);
+               result.absurd.empty() ? "The residuals are small enough for readings of this machine: units, "
+                                       "signs and columns are plausible."
+                                     : result.absurd);
   if (result.check_ratio)
-    word.at_most(
-        "check-rows", *result.check_ratio, 1,
-        "Residual of the check rows with the fitted machine, over the same with the nominal machine.");
+    word.at_most("check-rows", *result.check_ratio, 1,
+                 "Ratio of the residuals of the check rows: fitted machine to nominal machine.");
   else
-    word.not_covered("Held-out rows: there are fewer than twelve check readings.");
+    word.not_covered(
+        "The fit was not tested on held-out rows, because there are fewer than twelve check readings.");
   for (const model::FitRecord::Finding& one : result.machine.fitted->findings) {
     if (forbids(one)) continue;  // the rules above
     if (contradicts_fit(one))

@@ -23,8 +23,8 @@ void add_findings(text::Assurance& word, const model::Machine& machine);
 /// rows (if any), no reading is missing and no reading is disturbed.
 text::Assurance assurance_of(const fit::FitResult& result);
 
-/// Tests whether the correction of the machine may run, by the rules of the sheet. Rules that the machine
-/// file cannot answer are not covered.
+/// Tests whether the correction of the machine may run, by the rules of the sheet. Rules that cannot be
+/// evaluated from the machine file are listed as not covered.
 text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Machine& machine,
                              text::AssuranceKind kind);
 

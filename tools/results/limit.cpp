@@ -35,7 +35,7 @@ double u_of(const model::Measurement& m, std::size_t row, bool rotation) {
   const double u = angle > 0 ? angle : m.uncertainty[at];
   if (!(u > 0))
     throw text::InputError({m.files[m.file[row]], m.line[row]}, format::columns::kUncertainty,
-                           "the limit is in units of u, and this row has no u");
+                           "the limit is in units of u, but this row has no standard uncertainty u");
   return u;
 }
 

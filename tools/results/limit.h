@@ -22,7 +22,8 @@ ResidualLimit residual_limit(const std::string& words);
 /// Tests the residuals against the limit: {limit, of (largest or rms), role (check rows if the file has any),
 /// rows, beyond, worst: {file, line, value, limit} in um or mdeg as `unit` states, pass}. For a row with x y
 /// z, the distance in space counts (for a rotation likewise); each other reading is tested alone. residual:
-/// mm or deg, one per observation. Throws InputError if no reading of that kind, or no u, is present.
+/// mm or deg, one per observation. Throws InputError if the file has no reading of the limited kind, or if a
+/// limit in u meets a reading without a standard uncertainty.
 nlohmann::ordered_json judge_residuals(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                        const ResidualLimit& limit);
 

@@ -59,20 +59,17 @@ ordered_json loop_section(const compile::LoadedImage& image, const std::vector<R
   for (const ReplayStep& step : steps)
     rows.push_back(
         {step.label, step.result.ticks, step.result.saturated, step.result.slewing, step.result.not_active});
-  return {
-      {"title", "The loop"},
-      {"prose",
-       {"The firmware ran tick by tick along the measured motion, with the fixed-point equation, the limits "
-        "of the "
-        "machine file and the converter named; every reading was shifted by the effect of the correction on "
-        "the "
-        "nominal "
-        "machine at that moment. No reading was repeated: these are the residuals of the same errors."}},
-      {"numbers", {number("cycle", image.view.header().tick_us, "µs")}},
-      {"tables",
-       {{{"caption", "Ticks"},
-         {"columns", {"converter", "ticks", "at a limit", "slewing", "not active"}},
-         {"rows", rows}}}}};
+  return {{"title", "The loop"},
+          {"prose",
+           {"The firmware ran tick by tick along the measured motion, with the fixed-point equation, the "
+            "limits of the machine file and the stated converter. Each reading was shifted by the effect "
+            "that the correction has on the nominal machine at that time. The machine was not measured "
+            "again: the residuals are computed from the same readings."}},
+          {"numbers", {number("cycle", image.view.header().tick_us, "µs")}},
+          {"tables",
+           {{{"caption", "Ticks"},
+             {"columns", {"converter", "ticks", "at a limit", "slewing", "not active"}},
+             {"rows", rows}}}}};
 }
 
 }  // namespace
@@ -89,8 +86,8 @@ ordered_json replay_report(const std::optional<model::Machine>& before, const co
   sections.push_back(
       {{"title", "The error, step by step"},
        {"prose",
-        {"Rms of measured minus model on the rows that the fit saw and on the check rows that it did not. "
-         "A step that lowers the first and not the second is not confirmed on the check rows."}},
+        {"Rms of measured minus model on the fit rows and on the check rows (held-out rows). If a step "
+         "lowers the rms only on the fit rows, the step is not confirmed on the check rows."}},
        {"ladder", ladder}});
   if (before) sections.push_back(model_section("Against " + before->name, *before, m));
   ordered_json fitted = model_section("Against " + image.machine.name, image.machine, m);

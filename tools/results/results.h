@@ -30,7 +30,7 @@ void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
 /// Components in um, in arcsec if no length was read.
 nlohmann::ordered_json noise_json(const fit::NoiseModel& noise, const fit::NoiseUnit& unit);
 
-/// A number for people: four significant digits, "-" without a value.
+/// Returns a number as text for users: four significant digits, "-" if there is no value.
 std::string number_or_dash(const std::optional<double>& value, const char* unit);
 /// An error for people: of the lengths in um, of a measurement of angles alone in urad, "-" without a value.
 std::string error_or_dash(const std::optional<double>& um, const std::optional<double>& urad);

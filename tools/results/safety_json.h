@@ -11,7 +11,7 @@ namespace vernier::results {
 /// "culprit":…, "reason":…}…]; value is null if the file does not give it.
 nlohmann::ordered_json safety_json(const safety::SafetySheet& sheet);
 
-/// The sheet for people, a line a rule.
+/// Returns the safety sheet as text for users, one line for each rule.
 void print_safety(std::FILE* out, const safety::SafetySheet& sheet);
 
 }  // namespace vernier::results

@@ -157,9 +157,8 @@ bool is_second_line(const Sheet& sheet, std::size_t row) {
       colons += number && !is_date(cell) ? 1 : 0;
     }
   if (2 * colons > sheet.rows.size())
-    throw text::InputError(
-        {sheet.file, sheet.line.front()}, ":",
-        "columns separated by colons are not read; save the table with semicolons or tabs");
+    throw text::InputError({sheet.file, sheet.line.front()}, ":",
+                           "a colon cannot separate columns; save the table with semicolons or tabs");
   throw text::InputError(
       {sheet.file, sheet.line.front()}, "",
       none + (sheet.sheets.size() > 1
@@ -292,9 +291,10 @@ SheetTable parts_of_sheet(const Sheet& sheet) {
                            [](const auto& cell) { return !cell.empty(); });
     };
     if (filled(first) > filled(table.heading_row))
-      throw text::InputError(
-          {sheet.file, sheet.line[first]}, text::joined(sheet.rows[first], ",").substr(0, 30),
-          "more fields than headings: decimal commas in a table that commas part? Save it with semicolons");
+      throw text::InputError({sheet.file, sheet.line[first]},
+                             text::joined(sheet.rows[first], ",").substr(0, 30),
+                             "the rows have more fields than headings; if the table has decimal commas and "
+                             "its columns are separated by commas, save the table with semicolons");
   }
   std::vector<std::string> upper;
   if (table.has_headings && table.heading_row > 0 && is_second_line(sheet, table.heading_row)) {

@@ -8,8 +8,9 @@
 
 namespace vernier::sheet {
 
-/// Index of the first row of each table of a sheet, its titles included. A table begins where a line of
-/// headings follows rows of data, and has data itself. One entry for a sheet of one table.
+/// Index of the first row of each table of a sheet, its titles included. A new table begins at a line of
+/// headings that follows rows of data, if there are rows of data after this line. One entry for a sheet of
+/// one table.
 std::vector<std::size_t> tables_of(const Sheet& sheet);
 
 /// Keeps the rows of one table, from 1. Without a number the sheet must have one table. Throws InputError

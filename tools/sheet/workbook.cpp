@@ -180,7 +180,7 @@ class Reader {
       return target.starts_with("/") ? target.substr(1) : "xl/" + target;
     }
     throw text::InputError({file_, 0}, entry.attribute("name").value(),
-                           "the workbook does not say where this sheet is");
+                           "the workbook has no file for this sheet");
   }
 
   WorkbookSheet cells_of(const pugi::xml_node& entry) const {
@@ -191,14 +191,16 @@ class Reader {
     for (const pugi::xml_node row : child(document.document_element(), "sheetData").children()) {
       row_number = row.attribute("r") ? row.attribute("r").as_uint() : row_number + 1;
       if (row_number > kMostRows)
-        throw text::InputError({file_, 0}, sheet.name, "a row beyond the last of the format");
+        throw text::InputError({file_, 0}, sheet.name,
+                               "the sheet has a row beyond the last row of the format");
       std::vector<std::string> cells;
       std::vector<char> numbers;
       bool any = false;
       for (const pugi::xml_node cell : row.children()) {
         const std::size_t column = column_of(cell, cells.size());
         if (column >= kMostColumns)
-          throw text::InputError({file_, row_number}, "", "a column beyond the last of the format");
+          throw text::InputError({file_, row_number}, "",
+                                 "the sheet has a column beyond the last column of the format");
         const std::string value = text::trimmed(value_of(cell, row_number));
         if (value.empty()) continue;
         if (cells.size() <= column) {

@@ -11,8 +11,8 @@ struct SheetToWrite {
   std::vector<std::vector<std::string>> rows;  // a cell that reads as a number becomes one
 };
 
-/// The bytes of a workbook (.xlsx). The same sheets give the same bytes. Throws std::runtime_error if the
-/// workbook cannot be written.
+/// Returns the bytes of a workbook (.xlsx). The same sheets give the same bytes. Throws std::runtime_error if
+/// the workbook cannot be written.
 std::string workbook_of(const std::vector<SheetToWrite>& sheets);
 
 }  // namespace vernier::sheet

@@ -123,7 +123,7 @@ class ImageRun {
     const bool remembers = image_.view.program().equation.lag_count > 0;
     if (remembers && !rows_.has_recorded(format::columns::kTime))
       throw text::InputError({rows_.files.front(), 0}, format::columns::kTime,
-                             "the image that ran has lags: it needs this column");
+                             "the image that ran has terms with lag, which require this column");
     if (remembers) model::require_time_order(rows_);
     std::vector<std::size_t> last(rows_.states.names(rows_.states.clock).size(), rows_.rows());
     // Clock by clock, because a lag restarts with each.
@@ -146,9 +146,9 @@ class ImageRun {
     const double ticks =
         (t[static_cast<Index>(after)] - t[static_cast<Index>(before)]) * 1e6 / image_.view.header().tick_us;
     if ((ticks_ += ticks) > kMostTicks)
-      throw text::InputError(
-          {rows_.files.front(), rows_.line[after]}, format::columns::kTime,
-          "the image that ran has lags, and more than forty million ticks lie before this row");
+      throw text::InputError({rows_.files.front(), rows_.line[after]}, format::columns::kTime,
+                             "the image that ran has terms with lag, and there are more than forty million "
+                             "ticks before this row");
     const auto count = std::llround(ticks);
     const CycleInput from = input_of(before), to = input_of(after);
     for (long long k = 1; k < count; ++k)

@@ -102,7 +102,7 @@ class Loop {
   void bring_in() {
     for (bool asked = false; cycle_.mode() != Mode::kActive; ++result_.pre_roll) {
       if (result_.pre_roll == kMostPreRoll)
-        throw text::LimitNotMet(std::string("the firmware did not become active, it is in mode ") +
+        throw text::LimitNotMet(std::string("the firmware did not enter the mode Active; its mode is ") +
                                 name_of(cycle_.mode()) +
                                 "; possible cause: maxslew is too low for the correction");
       plant_.advance();

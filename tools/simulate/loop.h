@@ -51,10 +51,10 @@ struct LoopResult {
 
 /// Runs the firmware cycle on the simulated machine, without sleeping. The machine is at rest at the path's
 /// first point until the firmware is Active. Then the machine follows `states` tick by tick (machine: the
-/// machine of these states, which is that of the image). At rest, the motion state of the machine is that of
-/// the first tick, as if it had arrived on the path. A path from the middle of a longer motion therefore
-/// starts without a transient. Plausibility limits of readings are off, because the path is recorded motion.
-/// Throws LimitNotMet if the firmware never becomes Active.
+/// machine of these states, which is that of the image). At rest, the motion state of the machine is the
+/// motion state of the first tick of the path. A path from the middle of a longer motion therefore starts
+/// without a transient. Plausibility limits of readings are off, because the path is recorded motion. Throws
+/// LimitNotMet if the firmware never becomes Active.
 LoopResult run_loop(const ImageView& image, const model::Machine& machine, const model::States& states,
                     const LoopOptions& options);
 /// Runs the firmware cycle like run_loop() with states, along a path that is computed during the run.

@@ -12,9 +12,9 @@
 
 namespace vernier::simulate {
 
-/// A path file (FORMATS section 3, `simulate`): `t[s]`, axes, inputs and motion by name. Columns
-/// are converted to numbers when a machine asks for them, so one path serves machines with
-/// different inputs. A column that no machine asks for is ignored.
+/// A path file (FORMATS section 3, `simulate`): `t[s]`, axes, inputs and motion by name. Columns are
+/// converted to numbers when a machine uses them, so machines with different inputs can use one path. A
+/// column that no machine uses is ignored.
 class Path {
  public:
   /// Throws InputError: no column t, a malformed or empty time, times that do not increase.

@@ -22,7 +22,7 @@ class BetweenRows : public TickPath {
     for (std::size_t i = 1; i < rows_.size(); ++i)
       if (time_at(i) <= time_at(i - 1))
         throw text::InputError({m.files[m.file[rows_[i]]], m.line[rows_[i]]}, format::columns::kTime,
-                               "replay needs a time that increases within each run");
+                               "replay requires times that increase within each run");
     count_ =
         1 + static_cast<std::size_t>(std::floor((time_at(rows_.size() - 1) - time_at(0)) / period_s + 1e-6));
     for (std::size_t i = 0; i < rows_.size(); ++i)

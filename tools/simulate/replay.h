@@ -23,8 +23,8 @@ struct ReplayResult {
 /// Runs the firmware along every run of a measurement, tick by tick between its rows (positions, motion and
 /// inputs linear between rows, a direction keeps its value). replay() changes the readings by the effect of
 /// the correction on the nominal machine: reading' = reading + nominal(q + correction) - nominal(q). Column t
-/// must increase within each run. Without column t every row is a pose at rest, if no term of the image
-/// depends on time. Throws InputError if column t is missing and a term depends on time.
+/// must increase within each run. If the file has no column t, every row is a pose at rest; in this case no
+/// term of the image may depend on time. Throws InputError if column t is missing and a term depends on time.
 ReplayResult replay(const compile::LoadedImage& image, const model::Measurement& measurement,
                     const LoopOptions& options);
 

@@ -20,7 +20,7 @@ std::optional<std::size_t> parse_count(std::string_view text);
 /// True for a name of the formats: letters, digits and _, beginning with a letter or _ (ASCII).
 bool is_name(std::string_view text);
 
-/// Sixteen hexadecimal digits, as fingerprints of images are shown.
+/// Returns the fingerprint of a correction image as text: sixteen hexadecimal digits.
 std::string fingerprint_text(std::uint64_t fingerprint);
 
 /// Returns the shortest decimal text that reads back to the same double.

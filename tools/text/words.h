@@ -24,7 +24,7 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
 /// Replaces each occurrence of `what`, which is not empty. Text that was put in is not searched again.
 void replace_all(std::string& text, std::string_view what, std::string_view with);
 
-/// Returns a text from outside as it may be shown on a terminal and written to JSON. Control characters,
+/// Returns a text from an input file in a form that is safe for a terminal and for JSON. Control characters,
 /// marks that change the writing direction and bytes that are not UTF-8 become "?". upload::Client passes all
 /// texts of a board through this function.
 std::string printable(std::string_view text);
@@ -35,8 +35,8 @@ std::string quotable(std::string_view word);
 constexpr std::size_t kMostQuotedBytes = 200;
 
 /// Returns a message as a terminal shows it: each line printable, and shortened if it is longer than
-/// kMostMessageBytes. For the place that prints the messages of all commands: a name of a file may have any
-/// characters.
+/// kMostMessageBytes. The function that prints the messages of all commands uses this function, because a
+/// file name may contain any characters.
 std::string shown_message(std::string_view message);
 constexpr std::size_t kMostMessageBytes = 4000;
 

@@ -19,7 +19,8 @@ struct AttributeSpan {
 /// well-formed at `offset` (a parser has accepted it).
 std::vector<AttributeSpan> attribute_spans(std::string_view text, std::size_t offset);
 
-/// Offset just after the last attribute (or the name) of that start tag: place for another attribute.
+/// Offset immediately after the last attribute (or the name) of that start tag, where another attribute can
+/// be inserted.
 std::size_t end_of_attributes(std::string_view text, std::size_t offset);
 
 /// 1-based line of an offset.
@@ -33,7 +34,8 @@ struct TextEdit {
   std::size_t at = 0, size = 0;
   std::string text;
 };
-/// Applies edits that do not overlap, given in any order (edits at one place in the order given).
+/// Applies edits that do not overlap; the edits may be in any order (edits at the same offset are applied in
+/// the given order).
 std::string apply_edits(const std::string& text, std::vector<TextEdit> edits);
 
 /// A number or text, escaped for use between double quotes in an attribute.

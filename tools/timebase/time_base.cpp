@@ -205,18 +205,18 @@ void tell(const model::Measurement& m, TimeBaseFinding& finding) {
         "there.",
         m.states.run_names[gap.run], gap.missing, gap.uncertainty, gap.row, gap.row_uncertainty));
   }
-  add("Position and reading belong to different instants: samples are missing, or the positions were "
-      "computed from a "
-      "wrong clock.");
+  add("Positions and readings were recorded at different times: samples are missing, or the positions were "
+      "computed with a wrong clock.");
 }
 
 void conclude(const model::Measurement& m, const TimeBaseOptions& options, TimeBaseFinding& finding) {
   finding.found = finding.p_value < options.significance;
   if (finding.found) return tell(m, finding);
   finding.gaps.clear();
-  finding.why = finding.blocks.empty() && finding.matches.empty() && finding.closures.empty()
-                    ? "No path passes a pose twice in a comparable way: the time base cannot be tested."
-                    : "All repetitions agree with the positions.";
+  finding.why =
+      finding.blocks.empty() && finding.matches.empty() && finding.closures.empty()
+          ? "No path contains a pose twice in a comparable motion, so the time base cannot be tested."
+          : "All repetitions agree with the positions.";
 }
 
 }  // namespace

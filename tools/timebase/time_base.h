@@ -65,12 +65,12 @@ struct TimeBaseOptions {
 /// with that of the earlier pass, block by block, over the lag in rows. Examines repetitions between runs
 /// over the same path: their residuals along the path. Examines closed paths: the end of the path with its
 /// start. A time base error is found if the residuals agree at another lag, significantly better than by
-/// chance and than at the lag of the positions. This agreement must occur in two neighbouring blocks at
-/// least, or row by row between runs whose positions give another rate, or before the path closes. The
-/// probabilities of the last two cases are combined (the last case alone is no proof). A residual that is
-/// zero, white, smooth, periodic or that really repeats (hysteresis, cyclic errors, drift) gives no finding.
-/// Poses that occur only once, or a second pass at another speed, give no information. `residual`: measured -
-/// model per observation, mm. Lengths only, rotations are not tested.
+/// chance and than at the lag of the positions. One of three conditions is necessary: the agreement occurs in
+/// at least two neighbouring blocks, or row by row between runs whose positions give another rate, or before
+/// the path closes. The probabilities of the last two cases are combined (the last case alone is no proof). A
+/// residual that is zero, white, smooth, periodic or that really repeats (hysteresis, cyclic errors, drift)
+/// gives no finding. Poses that occur only once, or a second pass at another speed, give no information.
+/// `residual`: measured - model per observation, mm. Lengths only, rotations are not tested.
 TimeBaseFinding examine_time_base(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                   const TimeBaseOptions& options = {});
 

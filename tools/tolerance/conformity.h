@@ -20,7 +20,7 @@ struct ConformityOptions {
   /// two: JCGM 101:2008, 7.9).
   double tolerance = 0.05;
   std::size_t most_trials = 500000;
-  /// Probability from which a tolerance counts as kept, or as not kept: the default conformance probability
+  /// Probability from which a tolerance counts as met, or as not met: the default conformance probability
   /// limit of ISO 14253-1:2017.
   double confidence = 0.95;
   /// Standard deviation of the independent error of each point, mm: repeatability, tool, cutting. The machine
@@ -37,8 +37,9 @@ const char* verdict_words(PartVerdict verdict);
 struct Expectation {
   double value = 0;          // of the machine as it was fitted
   double mean = 0, std = 0;  // over the trials
-  /// 95 % of the trials are within the interval, as many below as above. If the model has a discrepancy, each
-  /// end of the interval is that of the wavelength with the widest interval.
+  /// Ends of the interval that contains 95 % of the trials: 2.5 % of the trials are below `low`, and 2.5 %
+  /// are above `high`. If the model has a discrepancy, each end of the interval is that of the wavelength
+  /// with the widest interval.
   double low = 0, high = 0;
   double u95 = 0;  // half of that interval
   /// Probability of conformity; with a discrepancy, that of the wavelength that is least favourable to the

@@ -36,7 +36,7 @@ class PartSheet {
       const bool number = column.name != "feature" && column.name != "kind" && column.name != "datum";
       if (!is_known(column.name))
         throw text::InputError(head(), column.name,
-                               "not a column of a part: see `vernier part conformity --help`");
+                               "a list of features has no such column: see `vernier part conformity --help`");
       if (!column.unit.empty() && (!number || !unit || unit->dimension != format::Dimension::kLength))
         throw text::InputError(head(), column.unit, "a part's numbers are lengths");
     }

@@ -29,9 +29,9 @@ struct PlacedPart {
 };
 
 /// Number of points on a circle. 12, doubled until size and form of the machine's own error agree with those
-/// of twice and three times as many points to 0.05 um or 2 % of the form: a cyclic error of a short period
-/// looks like another size on few points. At most 384. `placed`: states of n points and their outward
-/// directions.
+/// of twice and three times as many points to 0.05 um or 2 % of the form: with few points, a cyclic error of
+/// a short period can appear as an error of the size. At most 384. `placed`: states of n points and their
+/// outward directions.
 std::size_t points_on_circle(
     const model::Machine& machine,
     const std::function<std::pair<model::States, Eigen::Matrix3Xd>(std::size_t)>& placed);

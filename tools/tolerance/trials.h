@@ -33,7 +33,7 @@ Eigen::MatrixXd draw_discrepancy(Normals& normals, const Eigen::Matrix3Xd& point
 /// Statistics of blocks of trials of one value.
 class TrialTally {
  public:
-  /// Adds a block of trials; the block is sorted. limits: of the values that conform.
+  /// Adds a block of trials; the block is sorted. limits: limits of the values that conform.
   void take(std::vector<double>& block, const std::optional<std::array<double, 2>>& limits);
 
   std::size_t trials() const { return trials_; }

@@ -114,20 +114,20 @@ std::vector<std::uint8_t> Client::ask(LinkOp op, const std::vector<std::uint8_t>
         transport_->pause(std::chrono::milliseconds(attempt < 50 ? 2 : 20));
         continue;
       case LinkStatus::kUnknownOp:
-        throw text::InputError("the board does not know this request");
+        throw text::InputError("the board does not support this request");
       case LinkStatus::kNotAllowed:
-        throw text::LimitNotMet("the board refuses: not over this link (access in its board file)");
+        throw text::LimitNotMet("the board refuses this request over this link (`access` in the board file)");
       case LinkStatus::kUnsigned:
         throw text::LimitNotMet("the board refuses: the request must be signed (--key, or VERNIER_KEY)");
       case LinkStatus::kBadSignature:
         throw text::LimitNotMet("the board refuses: the key has no right for this request");
       case LinkStatus::kNotStored:
         throw text::LimitNotMet(
-            "the board carries out the request and has not stored it: a start of the board may restore an "
-            "older setting; look at the medium of the board's store, and send the request again");
+            "the board executed the request, but could not store the new setting: after a restart the board "
+            "may use an older setting. Check the storage medium of the board, and send the request again");
       case LinkStatus::kBadLength:
       case LinkStatus::kBadValue:
-        throw text::InputError("the board refuses the request: it has a wrong form");
+        throw text::InputError("the board refuses the request, because the request has a wrong form");
     }
     throw text::InputError("the board's reply has an unknown status");
   }
@@ -172,8 +172,7 @@ void Client::require_board(const BoardClaim& claim) {
     const auto proof = proof_of(info_.board);
     if (!proof) throw text::LimitNotMet("this board has no key and cannot prove its identity");
     if (std::memcmp(proof->key, claim.key->data(), claim.key->size()) != 0)
-      throw text::LimitNotMet(
-          "this board has another key than the one that is expected: it is another board");
+      throw text::LimitNotMet("the key of this board differs from the expected key: this is another board");
     std::memcpy(proved_start_.data(), proof->start_nonce, proved_start_.size());
   }
   claim_ = claim;
@@ -184,7 +183,7 @@ void Client::require_same_start(const ChallengeReply& challenge) {
   if (!claim_.key || std::memcmp(challenge.nonce, proved_start_.data(), proved_start_.size()) == 0) return;
   require_board(BoardClaim(claim_));
   if (std::memcmp(challenge.nonce, proved_start_.data(), proved_start_.size()) != 0)
-    throw text::LimitNotMet("the board that gave the challenge is not the one that proved its identity");
+    throw text::LimitNotMet("the challenge and the proof of identity came from different boards");
 }
 
 Client::Client(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {
@@ -338,7 +337,8 @@ HealthRecord Client::health() {
     const auto reply = ask(LinkOp::kHealth, {static_cast<std::uint8_t>(have)});
     if (get<std::uint8_t>(reply, 0) != kCounters || reply.size() < 9)
       throw text::InputError(
-          "the board has other counters than this tool knows; update the tool or the board");
+          "the number of counters of the board differs from the number in this tool; update the tool or the "
+          "board");
     for (std::size_t at = 1; at + 8 <= reply.size() && have < kCounters; at += 8)
       words[have++] = get<std::uint64_t>(reply, at);
   }

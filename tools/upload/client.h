@@ -32,8 +32,8 @@ struct BoardInfo {
   std::vector<std::string> inputs;
 };
 
-/// One tick as the board reported it, in the units of the machine file: mm or deg, mm or deg, the input's
-/// unit.
+/// Data of one tick that the board reported, in the units of the machine file: mm or deg, mm or deg, the
+/// input's unit.
 struct BoardTick {
   std::uint64_t number = 0;
   double time_s = 0, feed_mm_per_min = 0;
@@ -65,8 +65,8 @@ struct BoardState {
   std::vector<Axis> axes;
   std::uint8_t settings = 0;  // SettingFlag
 };
-/// What the user must know of the stored settings of the operator, one line for each flag; empty if the
-/// settings are stored.
+/// Messages for the user about settings of the operator that are not stored, one line for each flag; empty if
+/// the settings are stored.
 std::string settings_text(std::uint8_t settings);
 /// Returns "confirmed", "on trial", "lost" or "none". For limits of an axis: "at the image's limit, on its
 /// way" or empty.
@@ -117,14 +117,15 @@ struct BoardClaim {
 class Client {
  public:
   explicit Client(std::unique_ptr<Transport> transport);
-  /// From now on, requests that must be signed are signed with this key; without a key no request is signed.
+  /// After this call, requests that must be signed are signed with this key; without a key no request is
+  /// signed.
   void sign_with(const std::optional<SigningKey>& key) { key_ = key; }
 
   /// Requests the identity of the board. If the claim has a key, the board must sign a fresh nonce and its
-  /// name with that key. From then on every signed request is for the start of the board that gave this
-  /// proof. A board that was restarted meanwhile must prove its identity again first. If the claim has no
-  /// key, only the name is compared. Throws LimitNotMet if the board is another board or cannot prove its
-  /// identity.
+  /// name with that key. After this call, every signed request is valid only until the next start of the
+  /// board that gave this proof. A board that was restarted meanwhile must prove its identity again first. If
+  /// the claim has no key, only the name is compared. Throws LimitNotMet if the board is another board or
+  /// cannot prove its identity.
   void require_board(const BoardClaim& claim);
   /// Returns the key of the board after the board signed a fresh nonce with it; `nullopt` if the board has no
   /// key.
@@ -147,7 +148,7 @@ class Client {
   void revert();
   /// The confirmed upload, header and image; empty without a confirmed image.
   std::optional<std::vector<std::uint8_t>> confirmed(const std::function<void(double)>& progress);
-  /// Gives a command, which the next tick takes. The mode and `refused_commands` show whether the board
+  /// Sends a command, which the next tick executes. The mode and `refused_commands` show whether the board
   /// accepted the command.
   void command(Command command);
   void weight(std::uint8_t axis, double share);

@@ -13,9 +13,9 @@ namespace vernier::upload {
 /// line checks two signatures for the end of an upload, seconds each.
 inline constexpr std::chrono::milliseconds kReplyDeadline{15'000}, kSerialReplyDeadline{60'000};
 
-/// Opens the way to a board. wait: longest time until an answer is complete, however its bytes come (without
-/// a value: one of the deadlines above); over Modbus a request has two answers. Throws InputError naming the
-/// address.
+/// Opens the connection to a board. wait: longest time until an answer is complete, independent of the
+/// intervals between its bytes (without a value: one of the deadlines above); over Modbus a request has two
+/// answers. Throws InputError naming the address.
 std::unique_ptr<Transport> open_transport(const BoardUrl& url,
                                           std::optional<std::chrono::milliseconds> wait = std::nullopt);
 

@@ -62,7 +62,9 @@ BoardPublicKey parse_board_key(const std::string& text) {
   std::getline(file, line);
   const auto key = title == kIdentityTitle ? digits_of(line) : std::nullopt;
   if (!key)
-    throw text::InputError({text, 0}, "", "not the key of a board: 64 hexadecimal digits, or identity.pub");
+    throw text::InputError(
+        {text, 0}, "",
+        "this is not the key of a board; expected 64 hexadecimal digits, or the file identity.pub");
   return *key;
 }
 
@@ -150,7 +152,7 @@ std::vector<std::uint8_t> image_in(const std::vector<std::uint8_t>& upload) {
     std::memcpy(&header_bytes, upload.data() + offsetof(UploadHeader, header_bytes), sizeof(header_bytes));
   const bool known = header_bytes == sizeof(UploadHeader) || header_bytes == sizeof(UploadHeaderV1);
   if (!known || upload.size() < header_bytes)
-    throw text::InputError("the board's upload is not one of this tool's");
+    throw text::InputError("this tool did not send the upload that the board has");
   return {upload.begin() + static_cast<std::ptrdiff_t>(header_bytes), upload.end()};
 }
 

@@ -17,7 +17,7 @@ struct SigningKey {
   std::array<std::uint8_t, kPublicKeyBytes> public_part() const;
 };
 
-/// Public half of a board's own key (vernierd keeps the pair in its store).
+/// Public key of the board (vernierd has the key pair in its store).
 using BoardPublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
 /// Returns a key as 64 hexadecimal digits, as `vernierd` and `vernier board identify` print it.
 std::string board_key_text(const BoardPublicKey& key);
@@ -44,7 +44,7 @@ std::vector<std::uint8_t> make_upload(const std::vector<std::uint8_t>& image, co
                                       std::uint64_t issued, std::uint32_t security,
                                       const std::string& board = {});
 
-/// Returns the image in an upload as a board stores it, of this version or the previous version. Throws
+/// Returns the correction image in a stored upload of this version or of the previous version. Throws
 /// InputError.
 std::vector<std::uint8_t> image_in(const std::vector<std::uint8_t>& upload);
 

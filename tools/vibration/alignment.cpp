@@ -98,7 +98,8 @@ std::vector<Lagged> correlations(const std::vector<double>& a, const std::vector
 
 /// Returns the best lag. `second_best` gets the best of the other maxima.
 Lagged best_lag(const std::vector<Lagged>& all, double& second_best) {
-  if (all.empty()) throw text::InputError("the records have nothing in common: one of them does not move");
+  if (all.empty())
+    throw text::InputError("the records cannot be aligned, because one record contains no motion");
   const auto best = std::max_element(
       all.begin(), all.end(), [](const Lagged& a, const Lagged& b) { return a.correlation < b.correlation; });
   second_best = 0;
@@ -224,7 +225,7 @@ ClockFit align_clocks(const Series& reference, const Series& other) {
 std::vector<PathPlace> nearest_places(const Eigen::MatrixXd& path, const Eigen::MatrixXd& points,
                                       double reach) {
   if (path.cols() < 2 || path.rows() != points.rows())
-    throw text::InputError("a path needs two samples of the same axes");
+    throw text::InputError("a path must have at least two samples of the same axes");
   std::vector<PathPlace> places;
   PathPlace last;
   for (Eigen::Index p = 0; p < points.cols(); ++p) {

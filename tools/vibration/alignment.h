@@ -36,7 +36,7 @@ struct PathPlace {
 /// Returns for each point (a column) the nearest position on the path (columns in order of time), for records
 /// without a common clock. Points are in the order of the motion. The search starts at the position of the
 /// previous point and ends at most `reach` of the path's length further (mm). A second pass over the same
-/// positions is therefore not taken for the first pass. The first point is searched on the first `reach`.
+/// positions is therefore not confused with the first pass. The first point is searched on the first `reach`.
 /// Throws InputError for a path of less than two samples.
 std::vector<PathPlace> nearest_places(const Eigen::MatrixXd& path, const Eigen::MatrixXd& points,
                                       double reach);

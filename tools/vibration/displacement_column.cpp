@@ -201,7 +201,8 @@ AgreedCut agreed_cut(const VibrationRecord& record, const std::vector<KnownDispl
   }
   if (!std::isfinite(best.rms_um))
     throw text::InputError(
-        "the record is too short to find a cut-off: less than six periods of every corner");
+        "the record is too short to find a cut-off frequency: it is shorter than six periods of every tested "
+        "frequency");
   Spread measured;
   for (const Pairing& pairing : pairings) {
     const Spread spread = spread_about_mean(pairing.um);

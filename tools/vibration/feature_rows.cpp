@@ -41,7 +41,7 @@ double rate_of(const format::CsvFile& file, const std::vector<double>& t_s) {
   for (std::size_t i = 0; i < t_s.size(); ++i)
     if (!(step > 0) || std::fabs(t_s[i] - t_s.front() - step * static_cast<double>(i)) > 0.01 * step)
       throw text::InputError({file.file, file.line[i]}, text::number_text(t_s[i]),
-                             "the times t are not even to 1 % of a sample period");
+                             "the intervals between the times t differ by more than 1 % of a sample period");
   return 1 / step;
 }
 

@@ -119,7 +119,8 @@ double mean_radial_um(const AcceleratedPass& pass, double cutoff, Constants cons
 }
 
 FittedCut fitted_cutoff(const std::vector<AcceleratedPass>& passes, Constants constants, std::size_t steps) {
-  if (passes.empty()) throw text::InputError("no circular pass to find a cut-off with");
+  if (passes.empty())
+    throw text::InputError("the cut-off frequency cannot be found, because there is no circular pass");
   std::vector<double> powers;
   for (const AcceleratedPass& pass : passes) {
     check(pass);

@@ -38,13 +38,13 @@ std::vector<double> line_powers(std::span<const double> x);
 std::vector<double> integrate_lines(std::span<const double> x, double rate_Hz, double cutoff,
                                     SpectralCut* cut = nullptr);
 
-/// Returns cut-offs between lines of these powers, at most `steps`. The cut-offs keep 1, ..., all but one of
-/// the lines, even in the logarithm of their number.
+/// Returns cut-offs between lines of these powers, at most `steps`. The cut-offs select from 1 line to all
+/// lines except one, evenly in the logarithm of the number of lines.
 std::vector<double> cuts_between_lines(std::vector<double> powers, std::size_t steps);
 
 /// Returns the cut-off that lines of white noise alone exceed once in `records` records. The floor
 /// is the median line over ln 2 (lines of noise are exponentially distributed), times ln(lines *
-/// records). At most half the lines may be signal.
+/// records). The estimate requires that at most half of the lines contain signal.
 double noise_floor_cutoff(std::span<const double> x, double records = 20);
 
 /// One pass of a ball bar with an accelerometer at the tool: accelerations in mm/s^2, angle of the
@@ -55,8 +55,8 @@ struct AcceleratedPass {
   double mean_ballbar_um = 0;
 };
 
-/// Radial displacement of a pass, um, mean over the record. Lines of both axes above the cut-off
-/// are kept.
+/// Radial displacement of a pass, um, mean over the record. The result contains the lines of both axes above
+/// the cut-off.
 double mean_radial_um(const AcceleratedPass& pass, double cutoff, Constants constants);
 
 /// Finds the cut-off that minimises the objective of equation 4-1: the sum over passes (clockwise,

@@ -21,8 +21,9 @@ using SignalFeatures = std::array<double, kFeatureNames.size()>;
 /// that unit, FREQUENCY in Hz, other features are pure numbers.
 bool in_signal_unit(std::size_t feature);
 
-/// Returns the features of the samples x (n samples, the length of `fourier`) at a rate in Hz. A feature is
-/// not finite if it is 0/0. The central moments need two passes over the samples.
+/// Returns the features of the samples x (n samples, the length of `fourier`) at a rate in Hz. The value of a
+/// feature is NaN if the feature is 0/0, for example the kurtosis of a constant signal. The central moments
+/// need two passes over the samples.
 SignalFeatures signal_features(std::span<const double> x, double rate_Hz, Fourier& fourier);
 
 }  // namespace vernier::vibration

@@ -47,7 +47,7 @@ ApiReply FileReader::reply(const ApiRequest& request) {
     const std::string how = reader_->end();
     reader_.reset();
     throw text::InputError("the reading process ended during this request (" + how +
-                           "): one of its files cannot be read; nothing was changed");
+                           "): a file of the request cannot be read, and nothing was changed");
   });
 }
 

@@ -9,8 +9,8 @@
 
 namespace vernier::workbench {
 
-/// Watches one board at a time, like `vernier watch`. A thread asks the board kLiveRateHz times a second,
-/// keeps the last pictures, and disconnects after kLetGoS without a request.
+/// Watches one board at a time, like `vernier watch`. A thread reads the state of the board kLiveRateHz times
+/// a second, stores the last states, and disconnects after kLetGoS without a request of the page.
 class LiveBoard {
  public:
   static constexpr double kLiveRateHz = 20, kLetGoS = 5;

@@ -33,7 +33,7 @@ class AxisMonitor {
   Fault take(bool present, const AxisReading& reading, Health& health, TicksQ8 elapsed = kOneTick) noexcept;
 
   bool known() const noexcept { return known_; }
-  /// The newest good state; kept while readings are missing.
+  /// The newest valid motion of the axis; unchanged while readings are missing.
   const AxisInput& state() const noexcept { return state_; }
 
  private:

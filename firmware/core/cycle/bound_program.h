@@ -10,16 +10,17 @@
 
 namespace vernier {
 
-/// Returns the axes and inputs of an image, in the order of the image: the wiring of a board made for this
-/// image.
+/// Returns the axes and inputs of a correction image, in the order of the image: the wiring of a board made
+/// for this image.
 Wiring wiring_of(const ImageView& view);
 
 /// A program, the state of its execution, and the devices of the board that the program uses. A BoundProgram
-/// is made outside the tick; Cycle::use takes it over in one tick. Refers to the image's bytes.
+/// is built outside the tick; Cycle::use() starts to use the BoundProgram within one tick. Refers to the
+/// image's bytes.
 struct BoundProgram {
-  /// A program without work: no image.
+  /// The empty program, which is used if there is no image: it computes no correction.
   BoundProgram() noexcept : compensator(Program{}) {}
-  /// Binds axis i and input i of the image to axis i and input i of the board. Not real-time safe.
+  /// Binds axis i and input i of the correction image to axis i and input i of the board. Not real-time safe.
   explicit BoundProgram(const ImageView& view) noexcept;
 
   bool empty() const noexcept { return program.axis_count == 0; }
@@ -34,8 +35,8 @@ struct BoundProgram {
   InputMicro reference[kMaxInputs];      // per input of the image: its value before the first reading
 };
 
-/// Finds the image's axes and inputs among those of the board, by name. bound: made from the same view.
-/// offender: receives the name that does not fit. Not real-time safe.
+/// Finds the axes and inputs of the correction image among those of the board, by name. bound: program made
+/// from the same view. offender: receives the name that does not fit. Not real-time safe.
 BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundProgram& bound, Name& offender);
 
 }  // namespace vernier

@@ -27,8 +27,8 @@ struct InputLimits {
   std::int64_t step = INT64_MAX;  // between two readings
 };
 
-/// Limits of the cycle, and those limits of the axes that are not in the image. Indices of axes and inputs
-/// are those of the board.
+/// Limits of the cycle, and those limits of the axes that the correction image does not contain. Indices of
+/// axes and inputs are those of the board.
 struct CycleLimits {
   AxisLimits linear;
   AxisLimits rotary{.step = kTurnCounts / 100, .frozen_travel = kTurnCounts / 3600, .sense_travel = 12000};
@@ -46,13 +46,13 @@ struct TickReport {
 
 /// One tick of the firmware: reads the devices, steps the compensator, writes the corrections. A Cycle never
 /// waits. From one successful write to the next, the value at a drive changes by at most the slew limit of
-/// its axis. This holds for all readings, commands and faults. AxisSetting limits the acceleration of the
-/// change. During the ramp-out after a fault the compensator keeps the last good input: the correction can
-/// only decrease. The images and the board must outlive the cycle.
+/// its axis. This limit is valid for all readings, commands and faults. AxisSetting limits the acceleration
+/// of the change. During the ramp-out after a fault the compensator uses the last valid input: the correction
+/// can only decrease. The images and the board must outlive the cycle.
 class Cycle {
  public:
-  /// Constructs a cycle for a board whose devices are those of the image, in the order of the image. view:
-  /// opened without fault. Not real-time safe.
+  /// Constructs a cycle for a board whose devices are those of the correction image, in the order of the
+  /// image. view: opened without fault. Not real-time safe.
   Cycle(const ImageView& view, const Board& board, const CycleLimits& limits = {}) noexcept;
   /// A board with wiring but without a program. Not real-time safe.
   Cycle(const Wiring& wiring, TimeUs tick, const Board& board, const CycleLimits& limits = {}) noexcept;
@@ -93,9 +93,10 @@ class Cycle {
   /// Returns the largest change of the correction of a board's axis in a tick, counts; 0 before the first
   /// change.
   std::int64_t slew(std::uint32_t axis) const noexcept { return drive_[axis].slew; }
-  /// The correction that a board's axis was given last.
+  /// The last correction that was written to an axis of the board.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
-  /// Returns the newest good state of a board's axis, and value of a board's input.
+  /// The newest valid motion of an axis of the board (axis_state), and the newest valid value of an input of
+  /// the board (input_value).
   const AxisInput& axis_state(std::uint32_t axis) const noexcept { return axes_[axis].state(); }
   InputMicro input_value(std::uint32_t input) const noexcept { return inputs_[input]; }
   const PathReading& path() const noexcept { return path_; }

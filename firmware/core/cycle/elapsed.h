@@ -9,7 +9,8 @@
 namespace vernier {
 
 /// Time between two readings, in 1/256 of a tick; 256 if both readings came on time. A time of less than one
-/// tick counts as one tick: the tick after a late tick takes readings that a controller sends at its rate.
+/// tick counts as one tick, because the tick after a late tick reads positions that a controller sends at a
+/// constant rate.
 struct TicksQ8 {
   std::int32_t count = 256;
 };
@@ -18,7 +19,7 @@ constexpr TicksQ8 kOneTick{256};
 /// Sums of elapsed times fit 32 bits.
 constexpr TicksQ8 kMostElapsed{1 << 20};
 
-/// Turns times into ticks without a division in the tick.
+/// Converts times to ticks without a division in the tick.
 class ElapsedTicks {
  public:
   ElapsedTicks() = default;
@@ -30,7 +31,8 @@ class ElapsedTicks {
   /// Converts a time to ticks, rounded to the nearest; at least one tick, at most kMostElapsed.
   /// Real-time safe.
   TicksQ8 of(InstantNs time) const noexcept {
-    // Beyond 2^30 ns the limit holds anyway for ticks below a millisecond; above, a second is few ticks.
+    // For times above 2^30 ns the result is at the limit if the tick is shorter than 1 ms; for longer ticks
+    // such a time is few ticks.
     const std::int64_t ns = clamp<std::int64_t>(time.count, 0, std::int64_t{1} << 30);
     const std::int64_t ticks = (ns * per_ns_ + (std::int64_t{1} << (kShift - 1))) >> kShift;
     return TicksQ8{static_cast<std::int32_t>(clamp<std::int64_t>(ticks, kOneTick.count, kMostElapsed.count))};

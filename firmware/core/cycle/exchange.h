@@ -94,13 +94,13 @@ class Published {
   AtomicWords<T> value_;
 };
 
-/// Keeps the last values of one writer. A reader asks for a value by number and gets the value, or the answer
-/// that a newer value has overwritten it. The writer of a History never waits and never fails: values that
-/// were not read in time are overwritten, and readers detect this.
+/// Stores the last values of one writer. A reader requests a value by its number. The reader gets the value,
+/// or the result that a newer value has overwritten the value. The writer of a History never waits and never
+/// fails: values that were not read in time are overwritten, and readers detect this.
 template <class T>
 class History {
  public:
-  /// size: values that are kept, a power of two. Not real-time safe.
+  /// size: number of stored values, a power of two. Not real-time safe.
   explicit History(std::uint32_t size) : size_(size), values_(new AtomicWords<T>[size]) {}
 
   /// Only one thread may call add(). Real-time safe.
@@ -156,15 +156,15 @@ struct Exchange {
   Published<WorkpieceFrame> workpiece;           // written by the links
   std::atomic<Command> command{Command::kNone};  // taken by the tick
   std::atomic<std::int32_t> axis_weight[kMaxAxes];
-  // State of the mode as the store keeps it (OperatorState): bit 0 out, bit 8 holding, from bit 16 the
+  // State of the mode in the form of the store (OperatorState): bit 0 out, bit 8 holding, from bit 16 the
   // latched fault.
   std::atomic<std::uint32_t> operator_said{0};
   std::atomic<std::uint32_t> setting_flags{0};  // SettingFlag, written by the context of the store
   std::atomic<BoundProgram*> offered{nullptr};  // to be taken over by the next tick
   std::atomic<BoundProgram*> retired{nullptr};  // was taken out; the owner may free it
 
-  /// ticks_kept, touches_kept: how many ticks and touches the Exchange keeps, powers of two. The constructor
-  /// takes all memory. Not real-time safe.
+  /// ticks_kept, touches_kept: numbers of ticks and touches that the Exchange stores, powers of two. The
+  /// constructor takes all memory. Not real-time safe.
   explicit Exchange(std::uint32_t ticks_kept = kHistory, std::uint32_t touches_kept = kTouches)
       : ticks(ticks_kept), touches(touches_kept) {
     for (auto& weight : axis_weight) weight.store(kFullWeight.count);

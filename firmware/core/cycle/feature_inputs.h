@@ -26,7 +26,7 @@ struct FeatureRequest {
   std::uint32_t every = 1;      // ticks from sample to sample
   InputMicro lsb{10};           // resolution of a sample, 1e-6 of the unit of `of`; 1..2^30
   std::uint32_t bridged = 3;    // missing samples in a row for which the last one is used
-  /// Not 0: the input is the displacement (um) of an accelerometer instead of a feature of a window. Lower
+  /// If not 0, the input is the displacement (um) of an accelerometer instead of a feature of a window. Lower
   /// cut-off frequency of the displacement, mHz: rate/2^17 .. rate/64. The lsb of a sample is then lsb_nm_s2
   /// too, nm/s^2.
   std::int64_t corner_mHz = 0;
@@ -38,22 +38,23 @@ struct FeatureRequest {
 bool feature_of(std::string_view name, Feature& feature) noexcept;
 
 /// The board's inputs, some of which are features and displacements. In each tick every other input is read
-/// once. On a sampling tick each window takes its sample and computes its features. Features of the same
-/// signal, window and resolution share one window. A tick needs, for each window, one FeatureWindow::push and
-/// one features(): 5500 instructions of x86-64 at 800 samples, 8900 at 2048 (tools/docs/vibration.md).
-/// Samples: round(signal / lsb), ties away from zero, exact; limited to +-524287 lsb and counted. A feature
-/// gives no reading (kNoReading) in three cases: the window of the feature is not full; the feature is 0/0
-/// (FeatureValues::undefined); more samples than `bridged` are missing and fewer new samples have come since.
-/// No window contains a gap. A displacement has a filter (comp/vibration/displacement.h, exact at 0.18 of the
-/// rate) instead of a window. The filter of a displacement starts from rest, gives no reading for three
-/// periods of its corner, and starts again after a gap. The displacement is that of the latest sample, to 1
-/// nm. A tick of the displacement filter needs 200 instructions of x86-64.
+/// once. On a sampling tick each window receives a sample, and the features of the window are computed.
+/// Features of the same signal, window and resolution share one window. A tick needs, for each window, one
+/// FeatureWindow::push and one features(): 5500 instructions of x86-64 at 800 samples, 8900 at 2048
+/// (tools/docs/vibration.md). Samples: round(signal / lsb), ties away from zero, exact; limited to +-524287
+/// lsb and counted. A feature gives no reading (kNoReading) in three cases: the window of the feature is not
+/// full; the feature is 0/0 (FeatureValues::undefined); more samples than `bridged` are missing and fewer new
+/// samples have come since. No window contains a gap. A displacement has a filter
+/// (comp/vibration/displacement.h, exact at 0.18 of the rate) instead of a window. The filter of a
+/// displacement starts from rest, gives no reading for three periods of its corner, and starts again after a
+/// gap. The displacement is that of the latest sample, to 1 nm. A tick of the displacement filter needs 200
+/// instructions of x86-64.
 class FeatureInputs : public InputReader {
  public:
   /// source: reads all inputs that are not features, and outlives this object. inputs: number of inputs of
-  /// the board, at most kMaxInputs. tick: of the firmware. A request with an impossible window (length,
-  /// resolution, an `of` that is a feature) is refused: `refused()` then names the request.
-  /// Not real-time safe.
+  /// the board, at most kMaxInputs. tick: period of the firmware's tick. A request with an impossible window
+  /// (length, resolution, an `of` that is a feature) is refused: `refused()` then names the request. Not
+  /// real-time safe.
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::span<const FeatureRequest> requests,
                 TimeUs tick);
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::initializer_list<FeatureRequest> requests,
@@ -103,7 +104,7 @@ class FeatureInputs : public InputReader {
 
   InputReader& source_;
   std::uint32_t inputs_, refused_ = kNoInput;
-  // No more than there are features; memory is taken at construction.
+  // The number of entries is at most the number of features; the constructor allocates the memory.
   std::unique_ptr<SpectralWeights> weights_[kMaxInputs];
   std::unique_ptr<Signal> windows_[kMaxInputs];
   std::uint32_t weight_count_ = 0, window_count_ = 0;

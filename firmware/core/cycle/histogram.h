@@ -6,7 +6,7 @@
 namespace vernier {
 
 /// Histogram of durations in a fixed memory: exact below 2^(kOctaveBits + 1) ns, then 2^kOctaveBits bins per
-/// octave, to 2^40 ns. A bin that is full stays full.
+/// octave, to 2^40 ns. The count of a bin saturates.
 template <unsigned kOctaveBits>
 class HistogramOf {
  public:
@@ -26,8 +26,8 @@ class HistogramOf {
   /// Returns the upper edge of the bin that contains the given share of all durations, at most the largest
   /// duration; 0 if the histogram is empty. per_million: 990000 for p99. realtime, one pass over the bins.
   std::int64_t percentile_ns(std::uint64_t per_million) const noexcept {
-    // Rounded up: the percentile of few values is one of them and not below all. No division, because it is
-    // called in ticks. Counts stay below 2^44.
+    // The rank is rounded up: for few values, the percentile is one of the values, and not a value below all
+    // of them. The function has no division, because the tick calls it. Counts stay below 2^44.
     const std::uint64_t wanted = count_ * per_million;
     std::uint64_t seen = 0;
     for (std::uint32_t bin = 0; bin < kBins; ++bin) {

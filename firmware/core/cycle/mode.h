@@ -14,8 +14,8 @@ constexpr std::uint32_t kCheckTicks = 100;
 constexpr std::int32_t kRampTicks = 256;
 static_assert(kFullWeight.count % kRampTicks == 0);
 
-/// The state machine of the modes. In each tick the cycle calls before() with the faults of reading, takes
-/// the weight for the compensator, and calls after() with the result.
+/// The state machine of the modes. In each tick the cycle calls before() with the faults of the readings,
+/// passes the weight to the compensator, and calls after() with the result.
 class ModeControl {
  public:
   /// complete: every device has answered at least once and now. Real-time safe.
@@ -32,7 +32,7 @@ class ModeControl {
 
   Mode mode() const noexcept { return mode_; }
   WeightQ16 weight() const noexcept { return weight_; }
-  /// True if the corrections keep their present values. Only the mode Active can hold corrections.
+  /// True if the corrections are held at their present values. Only the mode Active can hold corrections.
   bool holding() const noexcept { return holding_ && mode_ == Mode::kActive; }
   /// The first fault since the last clearing.
   Fault latched() const noexcept { return latched_; }

@@ -7,8 +7,8 @@
 namespace vernier {
 
 /// The machine model that is built into this firmware (CMake: -DVERNIER_MODEL=DIR of `vernier compile -o
-/// DIR`). An image with the same equation as the built-in machine runs the compiled form; any other image is
-/// interpreted. equation: null if the firmware was built without a machine.
+/// DIR`). A correction image with the same equation as the built-in machine runs in the compiled form; any
+/// other image is interpreted. equation: null if the firmware was built without a machine.
 struct PrintedModel {
   std::uint64_t fingerprint = 0;
   PrintedEquation equation = nullptr;

@@ -10,8 +10,8 @@
 
 namespace vernier {
 
-/// Memory for one upload: header, image, and bound program. The bytes are in memory that is taken when the
-/// board is made.
+/// Memory for one upload: header, image, and bound program. The bytes are in memory that is allocated at the
+/// construction of the board.
 struct LoadedProgram {
   UploadHeader header{};
   std::unique_ptr<std::uint64_t[]> words;
@@ -63,15 +63,15 @@ class Programs {
   /// Null if every place is in use.
   ProgramRef take() noexcept;
   std::uint32_t image_bytes() const noexcept { return image_bytes_; }
-  /// The confirmed image, when the board starts.
+  /// Passes the confirmed image to the tick when the board starts.
   void run_confirmed(ProgramRef program) noexcept;
-  /// Starts the trial of an image. The trial ends trial_time after the guardian takes the program. Call
-  /// run_trial() only in Trial::kNone.
+  /// Starts the trial of an image. The trial ends at the time trial_time after the guardian passes the
+  /// program to the tick. Call run_trial() only in Trial::kNone.
   void run_trial(ProgramRef program, TimeUs trial_time) noexcept;
   /// Begins to confirm the image on trial: the trial time stops. False if no image is on trial any more.
   bool begin_to_keep() noexcept { return change(Trial::kRunning, Trial::kConfirming); }
-  /// Ends a confirmation. written: true if the medium has the record that the image is confirmed, false if it
-  /// could not be written. Call kept() only after begin_to_keep().
+  /// Ends a confirmation. written: true if the medium has the record that the correction image is confirmed,
+  /// false if the record could not be written. Call kept() only after begin_to_keep().
   void kept(bool written) noexcept { trial_.store(written ? Trial::kKept : Trial::kRunning); }
   /// The image on trial is reverted with the guardian's next round.
   bool give_up() noexcept;
@@ -81,7 +81,7 @@ class Programs {
   void given_up() noexcept { trial_.store(Trial::kNone); }
 
   // ---- the guardian
-  /// Hands the next program to the tick and ends a trial whose time is over. now: of the clock of
+  /// Hands the next program to the tick and ends a trial whose time is over. now: time of the clock of
   /// run_trial(). guard() never waits.
   void guard(TimeUs now) noexcept;
 
@@ -115,7 +115,7 @@ class Programs {
   std::atomic<const LoadedProgram*> seen_{nullptr}, looked_at_{nullptr};
   std::uint32_t taken_over_ = 0;
   SharedCount until_us_;  // of the trial; 0: no trial. Used by the guardian
-  // Used by the guardian. A program is in none, one or several of these.
+  // Pointers that the guardian uses. Several of these pointers can point to the same program.
   LoadedProgram *running_ = nullptr, *offered_ = nullptr, *wanted_ = nullptr, *kept_ = nullptr,
                 *tried_ = nullptr;
   LoadedProgram empty_[2];  // removes all corrections if no image can be restored

@@ -9,8 +9,9 @@
 
 namespace vernier {
 
-/// Limits beyond which overruns are a fault. Every system has a late tick now and then. If ticks are left out
-/// regularly, the cycle time is wrong, for any distribution of the late ticks.
+/// Limits beyond which overruns are a fault. A single late tick is not a fault, because every system has a
+/// late tick from time to time. If ticks are omitted regularly, the cycle time is wrong, for any distribution
+/// of the late ticks.
 struct OverrunLimits {
   std::uint32_t in_a_row = 10;
   std::uint32_t lost_share_q16 = 65536 / 20;  // of the ticks, that may be left out for ever
@@ -24,21 +25,21 @@ struct TickTimes {
 };
 
 /// Runs a cycle tick by tick on a clock. Sleeps until the tick is due, measures how late it woke and how long
-/// it computed. A tick that ends after the next tick was due is an overrun; the ticks that it covered are
-/// left out.
+/// it computed. A tick that ends after the next tick was due is an overrun; the ticks that were due during
+/// the overrun are omitted.
 class Runner {
  public:
   /// Constructs a runner whose first tick is due one period from now. Not real-time safe.
   Runner(Cycle& cycle, Clock& clock, TimeUs period) noexcept;
   /// Constructs a runner that starts each tick with a signal of `sync`. A signal earlier than half a period
-  /// is ignored. If no signal comes for `patience` after the tick was due, the clock starts the ticks until
-  /// the next signal. Not real-time safe.
+  /// is ignored. If no sync signal arrives within `patience` after the tick was due, the clock starts the
+  /// ticks until the next signal. Not real-time safe.
   Runner(Cycle& cycle, Clock& clock, TimeUs period, TickSync* sync, TimeUs patience,
          const OverrunLimits& overruns = {}) noexcept;
 
-  /// From now on the controller calls step() in its own cycle. step() then does not wait. Each call of step()
-  /// is then one tick of the controller's time, for any delay of its thread; no tick is skipped.
-  /// Not real-time safe.
+  /// After this call the controller must call step() in its own cycle; step() does not wait. Each call of
+  /// step() is then one tick of the controller's time, for any delay of its thread; no tick is skipped. Not
+  /// real-time safe.
   void follow_caller() noexcept { follows_ = true; }
   /// Sleeps, then runs one tick. found: a fault that was found outside the tick. The time of a tick is
   /// counted from the construction or set_time(). Real-time safe.
@@ -52,7 +53,7 @@ class Runner {
   InstantNs woke() const noexcept { return last_; }
   /// True if the ticks follow the controller's sync.
   bool in_step() const noexcept { return in_step_; }
-  /// Times that the sync was lost; only goes up.
+  /// Number of losses of the sync signal since the start; never decreases.
   std::uint64_t lost_syncs() const noexcept { return lost_syncs_; }
   const TickTimes& times() const noexcept { return times_; }
   /// The moment at which the next tick is due.

@@ -21,7 +21,7 @@ class Name {
   constexpr bool empty() const noexcept { return size_ == 0; }
   constexpr std::uint32_t size() const noexcept { return size_; }
   constexpr operator std::string_view() const noexcept { return {text_, size_}; }
-  /// A digit, a letter; dropped without room. Not real-time safe.
+  /// Appends a digit or a letter; the character is omitted if there is no room. Not real-time safe.
   constexpr void add(char letter) noexcept {
     if (size_ + 1 < sizeof(text_)) text_[size_++] = letter;
   }
@@ -40,8 +40,8 @@ class Name {
   std::uint32_t size_ = 0;
 };
 
-/// A list of at most kMost values, stored in place. Values beyond kMost are dropped: the caller checks the
-/// number before.
+/// A list of at most kMost values, without heap memory. Values beyond kMost are dropped: the caller checks
+/// the number before.
 template <class T, std::uint32_t kMost>
 class FixedList {
  public:
@@ -69,8 +69,8 @@ struct Wiring {
   struct Axis {
     Name name;
     bool rotary = false, rollover = false;
-    // The controller counts whole turns on: an image in which the axis rolls over fits as one in which it
-    // does not.
+    // The controller continues to count whole turns: a correction image fits whether its axis rolls over or
+    // not.
     bool continuous = false;
   };
   FixedList<Axis, kMaxAxes> axes;

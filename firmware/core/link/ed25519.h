@@ -4,11 +4,11 @@
 
 namespace vernier {
 
-/// Verifies a signature: Ed25519 in its pre-hashed form (RFC 8032 section 5.1, Ed25519ph, empty context). For
-/// targets without a cryptographic library; uses integers only, no heap, 7 KB of stack. The message is given
-/// in two parts, one after the other. key: 32 bytes; signature: 64. The function refuses a key
-/// or R of small order and an encoding that is not canonical, as libsodium does. The time of the verification
-/// is not constant: the function handles no secret data. Not real-time safe.
+/// Verifies a signature: Ed25519 in its pre-hashed form (RFC 8032 section 5.1, Ed25519ph, empty context).
+/// Implementation for targets without a cryptographic library: integers only, no heap, 7 KB of stack. The
+/// message is given in two parts, one after the other. key: 32 bytes; signature: 64. The function refuses a
+/// key or R of small order and an encoding that is not canonical, as libsodium does. The time of the
+/// verification is not constant: the function handles no secret data. Not real-time safe.
 bool ed25519ph_fits(const std::uint8_t* first, std::uint32_t first_bytes, const std::uint8_t* second,
                     std::uint32_t second_bytes, const std::uint8_t* signature,
                     const std::uint8_t* key) noexcept;

@@ -11,21 +11,22 @@ namespace vernier {
 
 using Nonce = std::array<std::uint8_t, sizeof(ChallengeReply::nonce)>;
 using ChallengeBytes = std::array<std::uint8_t, sizeof(ChallengeReply::challenge)>;
-/// Random bytes of one start of a board that never leave it: challenges are made from them.
+/// Random bytes of one start of a board, from which challenges are made; these bytes never leave the board.
 using ChallengeSeed = std::array<std::uint8_t, 32>;
 
-/// Where a request comes from. link: any value that differs between the links of a board; connection: a
-/// number that the link uses once (hal/command_link.h), 0 for a link without connections.
+/// Sender of a request. link: any value that differs between the links of a board; connection: a number that
+/// the link uses once (hal/command_link.h), 0 for a link without connections.
 struct Caller {
   std::uintptr_t link = 0;
   std::uint64_t connection = 0;
   friend bool operator==(const Caller&, const Caller&) = default;
 };
 
-/// Decides which requests of a link are executed. The rights of the link count. If the board has keys, only
-/// requests signed with one of them are executed. A signed request is accepted once: the request contains the
-/// nonce of this start of the board and a challenge of 128 random bits that its own connection got in the
-/// last seconds. A request that was delayed on its way, or repeated over another connection, is not valid.
+/// Decides which requests of a link are executed. The request is checked against the rights of the link. If
+/// the board has keys, only requests signed with one of them are executed. A signed request is accepted once:
+/// the request contains the nonce of this start of the board, and a challenge of 128 random bits that the
+/// board gave over the same connection in the last seconds. A request that was delayed on its way, or
+/// repeated over another connection, is not valid.
 class Gate {
  public:
   /// identity, own_key: outlive this object; own_key null: the board has no key; nonce, seed: new
@@ -34,15 +35,15 @@ class Gate {
        IdentityKey* own_key = nullptr) noexcept
       : identity_(identity), nonce_(nonce), seed_(seed), own_key_(own_key) {}
 
-  /// The request that may be executed, or the reason of a refusal. It lives until the next call.
+  /// The request that may be executed, or the reason of a refusal. The pointer is valid until the next call.
   struct Opened {
     LinkStatus status;
     const std::uint8_t* request;
     std::uint32_t size;
     bool is_signed = false;  // with a valid signature
   };
-  /// Checks a request. from: the caller of the request; now: of the clock that challenge() uses.
-  /// Not real-time safe.
+  /// Checks a request. from: the sender of the request; now: time of the clock that challenge() uses. Not
+  /// real-time safe.
   Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, const Caller& from,
               TimeUs now) noexcept;
   /// True for a request for a challenge. A challenge can be used once.

@@ -17,8 +17,8 @@ class Link {
        const BoardIdentity& identity);
 
   /// Answers one request. request: any bytes; reply: room for kMaxReplyBytes. answer() returns the bytes of
-  /// the reply, 0 if the request is too short for an answer. now: of the clock of the uploader.
-  /// Not real-time safe.
+  /// the reply, 0 if the request is too short for an answer. now: time of the uploader's clock. Not real-time
+  /// safe.
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
 
   /// True if the request needs the medium. The store then answers the request and may wait for the medium.
@@ -29,7 +29,8 @@ class Link {
   static bool may_need_store(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// True if the request sets something that a start of the board restores. Not real-time safe.
   static bool is_setting(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// "Ask again": the reply to a request that comes while the store is at work. Not real-time safe.
+  /// The reply "ask again": the board sends this reply if a request arrives while the store is busy. Not
+  /// real-time safe.
   static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept {
     return answer_with(LinkStatus::kNotReady, request, reply);
   }
@@ -37,10 +38,11 @@ class Link {
   static std::uint32_t answer_with(LinkStatus status, const std::uint8_t* request,
                                    std::uint8_t* reply) noexcept;
 
-  /// The live registers for plain Modbus masters; values: kLiveRegisters. Not real-time safe.
+  /// The live registers for Modbus masters that use only registers; values: kLiveRegisters. Not real-time
+  /// safe.
   void fill_registers(std::uint16_t* values);
-  /// Gives a command from a plain master. Refused if the number is not a command or if the previous command
-  /// has not been taken. Not real-time safe.
+  /// Passes on a command of a Modbus master that uses only registers. The command is refused if the number is
+  /// not a command, or if the tick has not executed the previous command. Not real-time safe.
   LinkStatus give(std::uint8_t command);
 
  private:

@@ -10,7 +10,7 @@
 namespace vernier {
 
 /// Passes a request that needs the medium from a link to the store. A link never waits; the store may wait
-/// for its medium without limit. StoreDesk takes one request at a time.
+/// for its medium without limit. StoreDesk accepts one request at a time.
 class StoreDesk {
  public:
   // ---- the links
@@ -20,8 +20,8 @@ class StoreDesk {
     const State state = state_.load(std::memory_order_acquire);
     return state == State::kFree || (state == State::kDone && ++asked_while_done_ > kPatience);
   }
-  /// Call only if free(). op: repeated by the reply; the op of the request's cover. Returns the ticket for
-  /// collect().
+  /// Call this function only if free(). op: code that the reply repeats (the op of the signed cover of the
+  /// request). Returns the ticket for collect().
   std::uint32_t leave(const std::uint8_t* request, std::uint32_t size, std::uint8_t op) noexcept {
     op_ = op;
     size_ = std::min<std::uint32_t>(size, sizeof(request_));

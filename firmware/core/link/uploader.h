@@ -23,7 +23,7 @@ struct UploadResult {
   BindFault bind = BindFault::kNone;
   Name offender;  // the name that does not fit
 };
-/// A line of text in place; longer text is cut.
+/// A line of text without heap memory; longer text is truncated.
 struct Line {
   char text[160] = {};
   const char* c_str() const noexcept { return text; }
@@ -32,7 +32,7 @@ struct Line {
 /// Returns one line of text for people: "of another machine: the board has no such axis: W".
 Line describe(const UploadResult& result) noexcept;
 
-/// The images in the store, as the links report them.
+/// State of the images in the store, for the links.
 struct SlotsRecord {
   std::uint64_t confirmed_fingerprint = 0, trial_fingerprint = 0;  // 0: no image
   std::uint64_t issued = 0, newest_issued = 0;  // of the confirmed image, and of all that were ever tried
@@ -43,7 +43,8 @@ static_assert(sizeof(SlotsRecord) % 8 == 0);
 
 /// Receives, checks, tries, confirms and reverts images. Functions that access the medium may take time and
 /// run in a separate context; the next program is passed to Programs. After a power failure at any time, the
-/// next boot() finds the image that was confirmed before or, if confirm() had returned, the new image.
+/// next boot() finds the correction image that was confirmed before or, if confirm() had returned, the new
+/// image.
 class Uploader {
  public:
   struct Options {
@@ -57,12 +58,13 @@ class Uploader {
   Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, const Options& options);
 
   // ---- the store
-  /// Call boot() once after power-on. boot() reverts an image that was on trial, checks the confirmed image,
-  /// and starts it. The result gives the reason if no image runs. kNone: also if no image was ever confirmed;
-  /// kStore: no record of the store can be read, so the state is not known. Not real-time safe.
+  /// Call boot() once after power-on. boot() reverts a correction image that was on trial, checks the
+  /// confirmed image, and starts the confirmed image. The result gives the reason if no image runs. kNone:
+  /// also if no image was ever confirmed; kStore: no record of the store can be read, so the state is not
+  /// known. Not real-time safe.
   UploadResult boot();
-  /// Starts like boot(), but runs an image that the operator gives at the start of the board. This image is
-  /// not signed; the medium is not changed. Not real-time safe.
+  /// Starts like boot(), but runs a correction image that the operator gives at the start of the board. This
+  /// image is not signed, and the function does not change the medium. Not real-time safe.
   UploadResult boot_with(std::span<const std::uint8_t> image);
   /// Ends an upload: writes the received data to the medium, checks the image and starts its trial.
   /// Not real-time safe.

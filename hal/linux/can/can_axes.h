@@ -24,8 +24,8 @@ struct CanCounts {
   std::uint64_t broken = 0;      // ticks in which the socket failed (interface down or gone)
 };
 
-/// Axis positions over SocketCAN, one frame per axis and controller cycle (CanAxisFrame). Positions only: the
-/// firmware derives the motion. Axis i is the frame with the i-th identifier.
+/// Axis positions over SocketCAN, one frame per axis and controller cycle (CanAxisFrame). The frames contain
+/// only positions: the firmware derives the motion. Axis i is the frame with the i-th identifier.
 class CanAxes : public PositionReader {
  public:
   static constexpr std::uint32_t kMostFrames = 256;   // taken from the socket in one tick
@@ -35,8 +35,8 @@ class CanAxes : public PositionReader {
   /// Returns null with `error` set if the kernel refuses the socket. Not real-time safe.
   static std::unique_ptr<CanAxes> open(const std::string& interface, const std::vector<std::uint32_t>& ids,
                                        std::string& error);
-  /// Takes over any socket that keeps frames apart, does not block, and gives frames as the kernel's
-  /// can_frame. Not real-time safe.
+  /// Takes ownership of the socket. Any socket is possible that preserves the boundaries of frames, does not
+  /// block, and transmits frames as the kernel's can_frame. Not real-time safe.
   CanAxes(int socket, const std::vector<std::uint32_t>& ids);
   ~CanAxes() override;
   CanAxes(const CanAxes&) = delete;

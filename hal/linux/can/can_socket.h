@@ -17,9 +17,9 @@ bool bind_can(int socket, const std::string& interface, sockaddr_can address, st
 
 /// Opens a non-blocking socket for frames with these identifiers. bus_errors: the kernel also reports the
 /// bus-off state. An interface with a '/' is the path of a local socket (SOCK_SEQPACKET) of a program in the
-/// place of a bus: the first message has the filters (can_filter), the others are frames (can_frame). Each
-/// frame of a program comes back to it, too, if its filters have the identifier. -1 with `error` set if the
-/// kernel refuses. Not real-time safe.
+/// place of a bus: the first message has the filters (can_filter), the others are frames (can_frame). A
+/// program also receives each of its own frames if its filters contain the identifier of the frame. Returns
+/// -1 with `error` set if the kernel refuses. Not real-time safe.
 int open_can(const std::string& interface, const std::vector<std::uint32_t>& ids, bool bus_errors,
              std::string& error);
 

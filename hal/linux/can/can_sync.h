@@ -13,7 +13,8 @@ class CanSync : public TickSync {
  public:
   /// interface: "can0"; id: 11 bits, or 29 above 0x7ff. Null with `error` set. Not real-time safe.
   static std::unique_ptr<CanSync> open(const std::string& interface, std::uint32_t id, std::string& error);
-  /// Takes over any socket that keeps frames apart and does not block. Not real-time safe.
+  /// Takes ownership of the socket. Any socket is possible that preserves the boundaries of frames and does
+  /// not block. Not real-time safe.
   explicit CanSync(int socket) : socket_(socket) {}
   ~CanSync() override;
   CanSync(const CanSync&) = delete;

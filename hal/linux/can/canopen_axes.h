@@ -11,7 +11,7 @@
 namespace vernier {
 
 /// Positions of CiA 402 drives: position actual value (0x6064) with the statusword in a TPDO. One socket for
-/// all drives of a bus. Positions only: the firmware derives the motion.
+/// all drives of a bus. The TPDOs contain only positions: the firmware derives the motion.
 class CanopenAxes : public PositionReader {
  public:
   struct Axis {
@@ -23,7 +23,8 @@ class CanopenAxes : public PositionReader {
   /// Returns null with `error` set if the kernel refuses the socket. Not real-time safe.
   static std::unique_ptr<CanopenAxes> open(const std::string& interface, const std::vector<Axis>& axes,
                                            std::string& error);
-  /// Takes over any socket that keeps frames apart and does not block. Not real-time safe.
+  /// Takes ownership of the socket. Any socket is possible that preserves the boundaries of frames and does
+  /// not block. Not real-time safe.
   CanopenAxes(int socket, const std::vector<Axis>& axes);
   ~CanopenAxes() override;
   CanopenAxes(const CanopenAxes&) = delete;

@@ -38,8 +38,8 @@ struct CanopenCounts {
 
 /// State of one CiA 402 drive, and the offset that it gets: a state machine without a device.
 ///
-/// The drive takes an offset with the next SYNC (RPDO transmission type 0 to 240). A frame that the board
-/// sends comes back to it, in its order on the bus: a SYNC may overtake an offset that waits for the bus.
+/// The drive uses an offset from the next SYNC on (RPDO transmission type 0 to 240). The board also receives
+/// the frames that it sends, in the order on the bus: a SYNC may overtake an offset that waits for the bus.
 ///   Operation enabled                    the offset follows, within most_per_sync; it stays while
 ///                                        the drive leaves out a TPDO
 ///   Quick stop, fault reaction           the offset goes to zero within most_per_sync; the drive still moves
@@ -58,17 +58,17 @@ class CanopenDrive {
     bool send = false;
     std::int32_t offset = 0;
   };
-  /// Judges the drive and chooses the offset for this tick. wanted: counts of the object. The caller calls
-  /// sent() if the bus took the frame. Real-time safe.
+  /// Judges the drive and chooses the offset for this tick. wanted: counts of the object. The caller must
+  /// call sent() if the CAN bus accepted the frame. Real-time safe.
   Step step(std::int64_t wanted, InstantNs now) noexcept;
   void sent(std::int32_t offset, InstantNs now) noexcept {
     sent_ = offset, pending_ = true, pending_since_ = now;
     if (doubt_ == Doubt::kRepeat) doubt_ = Doubt::kOnItsWay;
     ++counts_.offsets;
   }
-  /// The bus did not take the frame. Real-time safe.
+  /// Call this function if the CAN bus did not accept the frame. Real-time safe.
   void not_sent() noexcept { ++counts_.refused; }
-  /// What the drive has from before. Not real-time safe.
+  /// The offset that the drive has from an earlier run. Not real-time safe.
   void begin_with(std::int32_t offset) noexcept { sent_ = on_bus_ = applied_ = offset; }
 
   /// The newest position actual value since the last call of begin_tick(). Real-time safe.
@@ -80,9 +80,10 @@ class CanopenDrive {
 
   /// Offset that the drive has, or gets with the next SYNC. Real-time safe.
   std::int32_t offset() const noexcept { return sent_; }
-  /// True: the last step was sent as it was wanted. Real-time safe.
+  /// True if the last step was sent without a limit. Real-time safe.
   bool follows() const noexcept { return follows_; }
-  /// Null, or what is missing: "SYNC", "the heartbeat", ... Not real-time safe.
+  /// Returns the name of the missing signal ("SYNC", "the heartbeat", ...), or null if no signal is missing.
+  /// Not real-time safe.
   const char* missing(InstantNs now) const noexcept;
   bool enabled() const noexcept { return (status_ & kStateMask) == kOperationEnabled; }
   std::uint16_t status() const noexcept { return status_; }

@@ -9,7 +9,7 @@
 
 namespace vernier {
 
-/// Where a drive is, and how its PDOs are tested.
+/// Address of a drive, and the method of testing its PDOs.
 struct CanopenPlace {
   std::string interface;  // as for open_can()
   std::uint32_t node = 1;
@@ -21,19 +21,20 @@ struct CanopenPlace {
 /// and no wait. Rules: CanopenDrive.
 class CanopenOutput : public OutputDevice {
  public:
-  /// Returns null with `error` set if the bus is not there, or the drive's PDOs are not those of `settings`.
-  /// Not real-time safe.
+  /// Returns null with `error` set if the CAN bus does not exist, or if the PDOs of the drive differ from
+  /// `settings`. Not real-time safe.
   static std::unique_ptr<CanopenOutput> open(const CanopenPlace& place, const CanopenSettings& settings,
                                              const AnalogueScale& scale, std::string& error);
-  /// Takes over any socket that keeps frames apart and does not block. Not real-time safe.
+  /// Takes ownership of the socket. Any socket is possible that preserves the boundaries of frames and does
+  /// not block. Not real-time safe.
   CanopenOutput(int socket, const CanopenPlace& place, const CanopenSettings& settings,
                 const AnalogueScale& scale);
   ~CanopenOutput() override;
   CanopenOutput(const CanopenOutput&) = delete;
   CanopenOutput& operator=(const CanopenOutput&) = delete;
 
-  /// kRefused: the drive takes no offset (no SYNC, bus off), or the tick must learn of a loss.
-  /// Real-time safe.
+  /// kRefused: the drive does not accept an offset (no SYNC, bus off), or a loss must be reported to the
+  /// tick. Real-time safe.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
   /// The correction that the drive has, if it does not follow. Real-time safe.
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;

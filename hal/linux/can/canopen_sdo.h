@@ -19,7 +19,8 @@ class CanopenSdo {
  public:
   /// interface: as for open_can(). node: 1 .. 127. Null socket with `error` set. Not real-time safe.
   CanopenSdo(const std::string& interface, std::uint32_t node, std::string& error);
-  /// Takes over any socket that keeps frames apart and does not block. Not real-time safe.
+  /// Takes ownership of the socket. Any socket is possible that preserves the boundaries of frames and does
+  /// not block. Not real-time safe.
   CanopenSdo(int socket, std::uint32_t node) : socket_(socket), node_(node) {}
   ~CanopenSdo();
   CanopenSdo(const CanopenSdo&) = delete;

@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-/// Requests and replies as ISO 15765-2 messages on a CAN interface, by the kernel's own protocol.
+/// Requests and replies as ISO 15765-2 messages on a CAN interface, with the protocol of the kernel.
 class IsotpLink : public CommandLink {
  public:
   /// interface: "can0"; receive, transmit: identifiers, 11 bits, or 29 bits above 0x7ff. Null with `error`

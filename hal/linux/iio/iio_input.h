@@ -15,8 +15,8 @@ struct IioScale {
   double scale = 1;
 };
 
-/// A sensor of the kernel's industrial I/O class, or of hwmon. The sensor is one attribute, for example
-/// in_temp0_input in 1/1000 degC, or in_voltage3_raw.
+/// A sensor of the kernel's industrial I/O class (IIO), or of the class hwmon. The sensor is one attribute,
+/// for example in_temp0_input in 1/1000 degC, or in_voltage3_raw.
 class IioInput : public SampledInput {
  public:
   /// attribute: path. Null with `error` set. Not real-time safe.

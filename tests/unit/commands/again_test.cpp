@@ -104,7 +104,7 @@ TEST_F(Again, ChangedMissingAndEditedFilesAreReported) {
   EXPECT_EQ(run("vernier again fitted.xml"), 1);
   EXPECT_NE(said().find("data/survey.csv"), std::string::npos) << said();
   EXPECT_EQ(run("vernier again data/machine.xml"), 1);
-  EXPECT_NE(said().find("does not say how it was made"), std::string::npos) << said();
+  EXPECT_NE(said().find("has no record of how it was made"), std::string::npos) << said();
   EXPECT_EQ(run("vernier again said.txt"), 1);
   EXPECT_EQ(run("vernier again nothing.html"), 1);
 }
@@ -126,7 +126,7 @@ TEST_F(Again, ARecordRunsNoOtherCommandAndLeavesNoFile) {
   page("vernier 0.1.0",
        R"(["new","gantry","\u002do","../../../../../../../../../../../../../../tmp/out.xml"])");
   EXPECT_EQ(run("vernier again page.html"), 1);
-  EXPECT_NE(said().find("leaves the folder"), std::string::npos) << said();
+  EXPECT_NE(said().find("leads out of the temporary folder"), std::string::npos) << said();
   page("x--><h1>ACCEPTED</h1><!--", R"(["compare","m.xml"])");
   EXPECT_EQ(run("vernier again page.html"), 1);
   EXPECT_NE(said().find("version of this program"), std::string::npos) << said();

@@ -64,7 +64,7 @@ TEST_F(Manners, WordBehindOneDashIsNamedWithTheOneMeant) {
   EXPECT_EQ(run("vernier import table sheet.csv -decimal comma -o a.csv"), 1);
   EXPECT_TRUE(said("\"-decimal\": did you mean --decimal?")) << said_;
   EXPECT_EQ(run("vernier fit m.xml rows.csv -qqq"), 1);
-  EXPECT_TRUE(said("\"-qqq\": no option of this command; --help lists them")) << said_;
+  EXPECT_TRUE(said("\"-qqq\": this command has no such option; --help lists the options")) << said_;
   EXPECT_EQ(run("vernier import table sheet.csv -oread.csv --set -note=a"), 1);  // a value of --set
   EXPECT_FALSE(said("did you mean")) << said_;
   EXPECT_EQ(run("vernier import table sheet.csv -oread.csv"), 0) << said_;
@@ -205,11 +205,12 @@ TEST_F(Manners, HelpFitsEightyColumns) {
 TEST_F(Manners, SwappedFilesAreRecognised) {
   EXPECT_EQ(run("vernier fit rows.csv m.xml -o f.xml"), 1);
   EXPECT_TRUE(
-      said("rows.csv: a table of measurements where the machine file (XML) is wanted; did you mean vernier "
+      said("rows.csv: this is a measurement file, but the machine file (XML) is expected here; did you mean "
+           "vernier "
            "fit m.xml rows.csv -o f.xml?"))
       << said_;
   EXPECT_EQ(run("vernier compare m.xml m.xml"), 1);
-  EXPECT_TRUE(said("a machine file where a measurement file (CSV) is wanted")) << said_;
+  EXPECT_TRUE(said("this is a machine file, but a measurement file (CSV) is expected here")) << said_;
 }
 
 TEST_F(Manners, SpreadsheetIsRefusedWithTheCommandThatReadsIt) {

@@ -186,9 +186,9 @@ TEST(Orientation, OneRotaryAxisCorrectsAcrossItself) {
   EXPECT_NEAR(left.tilt_before_deg, std::hypot(0.02, 0.01), 1e-4);
   EXPECT_NEAR(left.tilt_deg, 0.01, 1e-4);
   EXPECT_LE(left.left_um, 0.1);
-  EXPECT_TRUE(
-      std::any_of(test.compiled.notes.begin(), test.compiled.notes.end(),
-                  [](const std::string& note) { return note.find("one axis alone") != std::string::npos; }));
+  EXPECT_TRUE(std::any_of(
+      test.compiled.notes.begin(), test.compiled.notes.end(),
+      [](const std::string& note) { return note.find("only one rotary axis") != std::string::npos; }));
 }
 
 TEST(Orientation, RefusedWhereLinearAxesDoNotPutThePointRight) {

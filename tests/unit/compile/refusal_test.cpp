@@ -44,7 +44,7 @@ void expect_one_line(const std::string& message, const std::string& word, const 
 
 TEST(Compile, RefusesInOneLineWithTheReason) {
   expect_one_line(refusal("<BX value=\"0.0021\" nominal=\"0\"", "<BX value=\"0.0021\""), "BX",
-                  "without nominal");
+                  "without `nominal`");
   expect_one_line(refusal("min=\"0\" max=\"600\"", "min=\"0\""), "X", "min and max");
   expect_one_line(refusal("BY*dirY", "BY*log(Y)"), "BY*log(Y)", "log");
   expect_one_line(refusal("BY*dirY", "BY/(Y-100)"), "BY/(Y-100)", "division");
@@ -54,7 +54,8 @@ TEST(Compile, RefusesInOneLineWithTheReason) {
                   "can exceed 1e100");
   expect_one_line(refusal("BY*dirY", "BY*atan2(Y-5,X-5)"), "atan2", "180 deg");
   expect_one_line(refusal("lag(T_column-20,600)", "lag(T_column-20,100+Y)"), "lag", "time constant");
-  expect_one_line(refusal("Z=\"lYz\"", "Z=\"abs(X-100)\""), "X", "direction of motion with a step");
+  expect_one_line(refusal("Z=\"lYz\"", "Z=\"abs(X-100)\""), "X",
+                  "direction of motion that changes in a step");
 }
 
 TEST(Compile, TakesRunAndNormalAsZeroWithANote) {
@@ -67,7 +68,7 @@ TEST(Compile, TakesRunAndNormalAsZeroWithANote) {
                         run = program_with("+BY*run(&quot;a&quot;)");
   EXPECT_TRUE(plain.notes.empty());
   ASSERT_EQ(normal.notes.size(), 1u);
-  EXPECT_NE(normal.notes[0].find("nx, ny and nz are 0"), std::string::npos);
+  EXPECT_NE(normal.notes[0].find("nx, ny and nz are columns of a measurement"), std::string::npos);
   ASSERT_EQ(run.notes.size(), 1u);
   EXPECT_NE(run.notes[0].find("run(\"a\") is 0"), std::string::npos);
   // The image differs in the hash of its source alone: the equation is the same.

@@ -106,7 +106,7 @@ TEST(IsgCsv, RefusesWhatATableCannotHold) {
     return std::string();
   };
   EXPECT_NE(message("C0Y A0Z\n0.1 0.2\n").find("x.csv:1: \"C0Y\""), std::string::npos);
-  EXPECT_NE(message("Z X EXX\n0 0 1\n0 5 1\n").find("two arguments"), std::string::npos);
+  EXPECT_NE(message("Z X EXX\n0 0 1\n0 5 1\n").find("depends on two axes"), std::string::npos);
   EXPECT_NE(message("X EXX\n0 1\n5\n").find("x.csv:3"), std::string::npos);
   EXPECT_NE(message("X EXX\n0 1\n5 x\n").find("\"x\": not a number"), std::string::npos);
   EXPECT_NE(message("X EXY\n0 1\n5 2\n").find("EXY"), std::string::npos);

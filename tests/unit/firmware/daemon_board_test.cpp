@@ -127,7 +127,8 @@ TEST_F(DaemonBoard, SettingThatCannotBeStoredIsSaidAndNeverActivates) {
       client.command(Command::kDeactivate);
       ADD_FAILURE() << "the answer was: done";
     } catch (const LimitNotMet& refused) {
-      EXPECT_NE(std::string(refused.what()).find("has not stored it"), std::string::npos) << refused.what();
+      EXPECT_NE(std::string(refused.what()).find("could not store the new setting"), std::string::npos)
+          << refused.what();
     }
     EXPECT_TRUE(wait_for([&] { return client.newest().mode == Mode::kReady; })) << "it acts";
     EXPECT_EQ(client.state().settings & kSettingRefused, kSettingRefused);

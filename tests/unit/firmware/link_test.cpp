@@ -247,7 +247,8 @@ TEST_F(GateTest, WithoutASignatureABoardWithKeysShowsItsStateAndDoesNothing) {
 
 TEST_F(GateTest, LinkIsUsedForWhatItMayBeUsedForWhoeverSigns) {
   board_->sign_with(key_);
-  const std::string not_allowed = "the board refuses: not over this link (access in its board file)";
+  const std::string not_allowed =
+      "the board refuses this request over this link (`access` in the board file)";
   over(LinkAccess::kRead, true);
   EXPECT_EQ(refused([&] { board_->command(Command::kActivate); }), not_allowed);
   EXPECT_EQ(refused([&] { board_->confirm(); }), not_allowed);

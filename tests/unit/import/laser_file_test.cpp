@@ -68,7 +68,7 @@ TEST(LaserFile, WhatDoesNotAgreeIsRefusedWithItsPlace) {
       {std::string("a\0b", 3), "bytes of value 0"},
   };
   for (const auto& [text, says] : kBad) EXPECT_NE(read(text).find(says), std::string::npos) << read(text);
-  EXPECT_NE(read(file(kBoth), "C").find("do not say"), std::string::npos);
+  EXPECT_NE(read(file(kBoth), "C").find("do not state the unit of the deviations"), std::string::npos);
 }
 
 }  // namespace

@@ -136,7 +136,8 @@ TEST(MachineLog, BadLogsAreRefusedWithLineAndWord) {
   EXPECT_NE(error("t[s],X[mm],Y[mm]\n0,0,0\n").find("log.csv:1: \"Z\""), std::string::npos);
   EXPECT_NE(error("t[s],X[mm],Y[mm],Z[mm]\n0,0,0,0\n1,0,a,0\n").find("log.csv:3: \"a\""), std::string::npos);
   EXPECT_NE(error("t[s],X[mm],Y[mm],Z[mm]\n1,0,0,0\n0,0,0,0\n").find("log.csv:3"), std::string::npos);
-  EXPECT_NE(error("t[s],X[mm],Y[mm],Z[mm]\n0,0,0,0\n1,9,0,0\n").find("never at rest"), std::string::npos);
+  EXPECT_NE(error("t[s],X[mm],Y[mm],Z[mm]\n0,0,0,0\n1,9,0,0\n").find("no dwell of this length"),
+            std::string::npos);
 }
 
 }  // namespace

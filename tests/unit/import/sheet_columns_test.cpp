@@ -122,7 +122,7 @@ const Case kCases[] = {
     {"RunsWithoutDirections", "X soll [mm];Messung 1 [mm];Messung 2 [mm]\n0;0,1;0,2\n9;9,1;9,2\n",
      "X[mm],run,x[mm]\n0,1,0.1\n9,1,9.1\n0,2,0.2\n9,2,9.2\n"},
     {"OneRunWithoutDirection", "X soll [mm];Lauf 1 + [um];Lauf 1 - [um];Lauf 2 [um]\n0;1;2;3\n9;1;2;3\n",
-     "refused: s.csv:1: \"Lauf 2 [um]\": the other runs have an approach direction"},
+     "refused: s.csv:1: \"Lauf 2 [um]\": the heading of this run has no approach direction"},
     {"MeanBesideTheRuns", "X [mm];1+ [µm];1- [µm];Mittelwert [µm]\n0;1;2;1,5\n9;1;2;1,5\n",
      "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n9,1,1,9.001\n0,-1,1,0.002\n9,-1,1,9.002\n"},
     {"MeanDeviationBesideTheReading",
@@ -149,7 +149,7 @@ const Case kCases[] = {
     {"RowsWithoutReadingsBeginNoTable", "X [mm];x [mm];y [mm];Dir\n0;1;2;+\n;n/a;-;+\n9;10;11;+\n",
      "X[mm],x[mm],y[mm],dirX\n0,1,2,1\n,,,1\n9,10,11,1\n"},
     {"TheSameRunTwice", "Z [mm];1+ [um];1+ [um]\n0;1;2\n9;1;2\n",
-     "refused: s.csv:1: \"1+ [um]\": this run occurs twice in this direction"},
+     "refused: s.csv:1: \"1+ [um]\": the table contains this run twice"},
     {"ThermometersAreNoRuns", "X[mm];x[mm];T1 [°C];T2 [°C]\n1;2;20;21\n2;3;20;21\n",
      "X[mm],x[mm],T1[degC],T2[degC]\n1,2,20,21\n2,3,20,21\n"},
     {"WordInARun", "X [mm];1+ [µm];1- [µm]\n0;1;2\n100;5;bad\n",
@@ -178,8 +178,7 @@ const Case kCases[] = {
      "X[mm],dirX,run,x[mm]\n0,1,1,-0.001\n9,1,1,8.999\n0,-1,1,-0.002\n9,-1,1,8.998\n"},
     {"NoUnits", "X;x\n1;2\n", "refused: s.csv:1: no unit: give it for all (--unit mm)"},
     {"TwoSigns", "X[mm];x[mm]\n1,5;2\n3.5;2\n", "--decimal comma or point"},
-    {"CommaInCommas", "X[mm],x[mm]\n0,5,1,5\n",
-     "decimal commas in a table that commas part? Save it with semicolons"},
+    {"CommaInCommas", "X[mm],x[mm]\n0,5,1,5\n", "separated by commas, save the table with semicolons"},
     {"Words", "X[mm];x[mm]\n1;2\n2;abc\n3;4\n", "refused: s.csv:3: \"abc\": not a number, for x"},
     {"NothingMeasured", "X[mm];Y[mm]\n1;2\n", "nothing measured among the columns"},
     {"OldWorkbook", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "save it as .xlsx or as CSV"},
@@ -232,8 +231,7 @@ const Case kCases[] = {
      "unit in the heading ([mm])"},
     {"UnitsInTheReadings", "X[mm];x[mm]\n1;2 mm\n2;3 mm\n",
      "refused: s.csv:2: \"2 mm\": a number with the unit mm, for x; write the unit in the heading ([mm])"},
-    {"Colons", "X[mm]:x[mm]\n1:2.5\n2:3.5\n",
-     "refused: s.csv:1: \":\": columns separated by colons are not read"},
+    {"Colons", "X[mm]:x[mm]\n1:2.5\n2:3.5\n", "refused: s.csv:1: \":\": a colon cannot separate columns"},
     {"SmallNumbersHaveNoExponent", "X [mm];Abw. X [µm]\n0;0,6\n1;-1000\n", "X[mm],x[mm]\n0,0.0006\n1,0\n"},
     {"ShortRowsOfBlanks", "X[mm] Y[mm] x[mm]\n0 1 2\n9 10\n",
      "refused: s.csv:3: \"9 10 \": 2 cells, the headings in line 1 are 3"},
@@ -301,7 +299,7 @@ TEST(SheetWish, TheSameInEveryRowIsAReadingToo) {
   add_constant(map, "x[mm]=0");
   wishes.constants = map.columns;
   EXPECT_EQ(import("X [mm];T\n1;20\n2;21\n", wishes), "X[mm],T,x[mm]\n1,20,0\n2,21,0\n");
-  EXPECT_NE(import("X [mm];x [mm]\n1;20\n", wishes).find("--set would give it a second time"),
+  EXPECT_NE(import("X [mm];x [mm]\n1;20\n", wishes).find("the table already has this column: omit --set"),
             std::string::npos);
 }
 

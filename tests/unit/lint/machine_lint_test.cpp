@@ -51,13 +51,14 @@ TEST(MachineLint, EveryErrorIsSaidAtOnce) {
 </machine>)");
   some_line_has(lines, "m.xml:4: error: \"0,001\": value must be a number -- decimal comma?");
   some_line_has(lines, "m.xml:5: warning: \"inch\": unknown unit, of offset -- did you mean in?");
-  some_line_has(lines, "m.xml:6: error: \"5mm\": value must be a number -- a unit is written in unit=");
+  some_line_has(lines,
+                "m.xml:6: error: \"5mm\": value must be a number -- write the unit as the attribute unit=");
   some_line_has(lines, "m.xml:8: error: \"offset\": this name stands twice");
   some_line_has(lines,
                 "m.xml:11: error: \"maxcorection\": unknown attribute of <X> -- did you mean maxcorrection?");
   some_line_has(lines, "m.xml:13: warning: \"Q\": no transform uses this axis");
   some_line_has(lines, "m.xml:13: warning: \"Q\": a travel of 0.4 mm -- metres or inches?");
-  some_line_has(lines, "m.xml:14: warning: \"B\": not marked as rotary");
+  some_line_has(lines, "m.xml:14: warning: \"B\": the axis has no rotary=\"true\"");
   some_line_has(lines, "m.xml:17: error: \"Xm\": no such axis");
   some_line_has(lines, "m.xml:18: error: \"50\": stations must increase");
   some_line_has(lines, "m.xml:18: warning: \"X\": fit frees column rZ, which no transform uses");

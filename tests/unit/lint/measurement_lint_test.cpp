@@ -58,7 +58,7 @@ const Case kCases[] = {
     {"QuotedDecimalComma", kHead + "0,0,-300,1,0,1,20,\"0,5\",0,-300,a,fit\n" + kRow2,
      "s.csv:2: error: \"0,5\": not a number, in column x -- decimal comma?"},
     {"TrailingCommas", "X[mm],Y[mm],Z[mm],x[mm],,\n1,2,3,4,,\n",
-     "commas at the end of the header -- empty columns of a spreadsheet"},
+     "commas at the end of the header -- the file has empty columns, as a spreadsheet writes them"},
     {"TrailingCommasInRows", "X[mm],Y[mm],Z[mm],x[mm]\n1,2,3,4,,\n2,3,4,5,,\n",
      "s.csv:2: error: commas at the end of the row; so in 1 further place, the last in line 3"},
     {"ByteOrderMark", "\xEF\xBB\xBF" + kHead + kRow1 + kRow2 + kRow3,
@@ -71,13 +71,14 @@ const Case kCases[] = {
     {"UnitInAnotherSpelling", "X[Inch],Y[mm],Z[mm],x[mm]\n1,2,3,4\n",
      "\"Inch\": unknown unit -- meant is in?"},
     {"UnitInParentheses", "X(mm),Y[mm],Z[mm],x[mm]\n1,2,3,4\n",
-     "\"X(mm)\": a column is name[unit], its name of letters, digits and _ -- meant is X[mm]?"},
+     "\"X(mm)\": a column heading is name[unit]; the name has only letters, digits and _ -- meant is X[mm]?"},
     {"NoUnit", "X,Y[mm],Z[mm],x[mm]\n1,2,3,4\n", "\"X\": no unit -- write X[mm]"},
     {"WrongDimension", "X[deg],Y[mm],Z[mm],x[mm]\n1,2,3,4\n",
      "\"X[deg]\": this column needs a unit, for example mm"},
     {"NameTwice", "X[mm],X[mm],Y[mm],Z[mm],x[mm]\n1,1,2,3,4\n", "\"X\": this column occurs twice"},
     {"AxisMissing", "X[mm],Y[mm],x[mm]\n1,2,3\n",
-     "\"Z\": the column of this axis is missing -- if the axis stood still, add its position: vernier import "
+     "\"Z\": the column of this axis is missing -- if the axis did not move, add its position: vernier "
+     "import "
      "table FILE --set \"Z[mm]=POSITION\" -o NEW.csv"},
     {"AxisInSmallLetters", "X[mm],Y[mm],z[mm],x[mm]\n1,2,3,4\n", "there is z: names have capitals"},
     {"NothingMeasured", "X[mm],Y[mm],Z[mm]\n1,2,3\n", "no measured column"},
@@ -89,10 +90,10 @@ const Case kCases[] = {
     {"UncertaintyOfMillimetresUnderMicrons", "X[mm],Y[mm],Z[mm],x[mm],u[um]\n0,0,0,0,0.002\n9,0,0,9,0.002\n",
      "mm under a heading of µm? Write u[mm]"},
     {"NotFilledIn", kHead + "0,0,-300,1,0,1,20,,,,a,fit\n",
-     "no row has a reading -- a template that is still to be filled in?"},
+     "no row has a reading -- is this a template without readings?"},
     {"NoHeader", "1,2,3,4\n5,6,7,8\n", "the first line contains numbers, but it must be the header"},
     {"ShortRow", kHead + kRow1 + "1,2,3\n",
-     "s.csv:3: error: \"1,2,3\": 3 fields where the header has 12 -- a line that was cut"},
+     "s.csv:3: error: \"1,2,3\": 3 fields where the header has 12 -- the line is incomplete"},
     {"LongRow", "X[mm],Y[mm],Z[mm],x[mm]\n1,5,2,3,4\n", "5 fields where the header has 4 -- decimal commas?"},
     {"Word", kHead + kRow1 + "1,2,abc,1,0,4,20,1,2,-3,a,fit\n", "\"abc\": not a number, in column Z"},
     {"AxisNeverMoves", kHead + "0,0,-300,1,0,1,20,0,0,-300,a,fit\n5,9,-300,1,0,2,20,5,9,-300,a,fit\n",
@@ -114,13 +115,13 @@ const Case kCases[] = {
     {"RoleMistyped", kHead + kRow1 + "300,200,-100,1,0,2,21,300,200,-100,a,chek\n",
      "\"chek\": a role is fit or check -- did you mean check?"},
     {"MotionMissing", "X[mm],Y[mm],Z[mm],x[mm]\n1,2,-3,4\n2,3,-4,5\n",
-     "warning: \"dirX\": a term of the machine file needs this column"},
+     "warning: \"dirX\": a term of the machine file uses this column"},
     {"TimeForALagMissing", "X[mm],Y[mm],Z[mm],x[mm]\n1,2,-3,4\n2,3,-4,5\n",
-     "warning: \"t\": a term of the machine file needs this column"},
+     "warning: \"t\": a term of the machine file uses this column"},
     {"InputMissing", "X[mm],Y[mm],Z[mm],x[mm]\n1,2,-3,4\n2,3,-4,5\n",
      "\"T_column\": no column for this input: it is 20 in all rows"},
     {"InputMistyped", "X[mm],Y[mm],Z[mm],Tcolumn[degC],x[mm]\n1,2,-3,20,4\n2,3,-4,20,5\n",
-     "\"Tcolumn\": a column that the machine does not know -- did you mean T_column?"},
+     "\"Tcolumn\": the machine file does not use this column -- did you mean T_column?"},
     {"NoUncertainty", kHead + kRow1 + kRow2 + kRow3, "remark: \"u\": no standard uncertainty"},
     {"NoCheckRows", kHead + kRow1 + kRow2, "remark: \"role\": no check rows"},
     {"RowTwice", kHead + kRow1 + kRow2 + kRow1 + kRow3, "s.csv:4: warning: the same row as line 2"},
@@ -135,7 +136,7 @@ const Case kCases[] = {
     {"CheckRowsOnly", kHead + kRow3, "all rows are check rows"},
     {"EmptyAxisCell", kHead + "0,,-300,1,0,1,20,0,0,-300,a,fit\n" + kRow2,
      "\"Y\": an axis position may not be empty"},
-    {"OnlyRemarks", "# nothing\n\n", "the file contains only remarks and empty lines"},
+    {"OnlyRemarks", "# nothing\n\n", "the file contains only comments and empty lines"},
     {"OpenQuote", kHead + kRow1 + "\"1,2\n", "a quote without its fellow"},
 };
 
@@ -198,7 +199,7 @@ TEST(MeasurementLintOf, EveryKindOfReadingOfTheFormatsIsOne) {
     EXPECT_NO_THROW(parse_measurement(text, "s.csv", simple)) << text;
     for (const LintFinding& finding : lint_measurement(text, "s.csv", &simple)) {
       EXPECT_NE(finding.weight, LintWeight::kError) << text << in_one_line(finding);
-      EXPECT_EQ(finding.what.find("does not know"), std::string::npos) << in_one_line(finding);
+      EXPECT_EQ(finding.what.find("does not use"), std::string::npos) << in_one_line(finding);
     }
   }
   // A distance without its other end is a column of one's own.

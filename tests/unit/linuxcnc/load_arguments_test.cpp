@@ -52,8 +52,8 @@ TEST(LoadArguments, RefuseByNameWhatCannotBe) {
   EXPECT_EQ(why(Load({"X"}, {"T", "T"})), "inputs=T: there twice");
   EXPECT_EQ(why(Load({"X"}, {long_name})), "inputs=" + long_name + ": longer than 23 characters");
   EXPECT_EQ(why(Load({"X"}, {""})), "inputs=: an empty name");
-  EXPECT_EQ(why(Load({"X/Y"})), "axes=X/Y: a name has letters, digits, _ and - only");
-  EXPECT_EQ(why(Load({"%s%n"})), "axes=%s%n: a name has letters, digits, _ and - only");
+  EXPECT_EQ(why(Load({"X/Y"})), "axes=X/Y: a name may contain only letters, digits, _ and -");
+  EXPECT_EQ(why(Load({"%s%n"})), "axes=%s%n: a name may contain only letters, digits, _ and -");
   EXPECT_EQ(why(Load({"X", "X"})), "axes=X: there twice");
   EXPECT_EQ(why(Load({"X"}, {}, {}, "furlong")), "units=furlong: mm or inch");
   EXPECT_EQ(why(Load({std::string(500, 'X')})),

@@ -93,7 +93,7 @@ TEST(MachineFile, ReadsScalesToolsAndVolume) {
   EXPECT_EQ(with_tool(machine, {1, 2, -30}).tool.size(), 2U);
   EXPECT_NE(error_of(text("<Q min=\"0\" max=\"1\"/>", "0.1")).find("no such axis"), std::string::npos);
   EXPECT_NE(error_of(text("<X min=\"0\"/>", "0.1")).find("needs a max"), std::string::npos);
-  EXPECT_NE(error_of(text("", "0.1 0.2 0.3")).find("one for each column"), std::string::npos);
+  EXPECT_NE(error_of(text("", "0.1 0.2 0.3")).find("one number for each column of fit"), std::string::npos);
   EXPECT_NE(error_of(text("", "-1")).find("greater than 0"), std::string::npos);
 }
 

@@ -148,7 +148,7 @@ TEST(MeasurementFile, EmptyCellsAreAbsentObservationsOrExcludedRows) {
 
 TEST(MeasurementFile, ErrorsNameFileLineAndWord) {
   EXPECT_EQ(error_of("X[mm],x[mm]\n1,2\n"),
-            "m.csv:1: \"B\": the column of this axis is missing; if the axis stood still, add its position: "
+            "m.csv:1: \"B\": the column of this axis is missing; if the axis did not move, add its position: "
             "vernier "
             "import table m.csv --set \"B[deg]=POSITION\" -o NEW.csv");
   EXPECT_EQ(error_of("X[mm],B[deg],x[mm]\n1,2,3\n1,2\n").substr(0, 14), "m.csv:3: \"1,2\"");

@@ -65,7 +65,7 @@ TEST(Artefacts, AreReadWithWhatIsKnown) {
 
 TEST(Artefacts, ThatAreWrongAreNamedWithTheirLine) {
   for (const auto& [artefact, word] : std::map<std::string, std::string>{
-           {R"(<artefact type="point"/>)", "needs a name"},
+           {R"(<artefact type="point"/>)", "the artefact has no name"},
            {R"(<artefact name="A" type="cube"/>)", "cube"},
            {R"(<artefact name="A" type="point" radius="3"/>)", "only a sphere or a cylinder"},
            {R"(<artefact name="A" type="sphere" radius="3s"/>)", "3s"},
@@ -85,7 +85,8 @@ TEST(Things, ThatARowCannotMeetAreNamed) {
   const std::string point = R"(<artefact name="A" type="point" setup="left"/>)";
   EXPECT_NE(error_of(point, "on\n0,0,0,B\n").find("no artefact of this name"), std::string::npos);
   EXPECT_NE(error_of(point, "on,setup\n0,0,0,A,right\n").find("\"left\""), std::string::npos);
-  EXPECT_NE(error_of(point, "on,same,setup\n0,0,0,A,Q,left\n").find("one thing"), std::string::npos);
+  EXPECT_NE(error_of(point, "on,same,setup\n0,0,0,A,Q,left\n").find("empty one of the two cells"),
+            std::string::npos);
   EXPECT_NE(error_of("", "same,distance[mm],from\n0,0,0,P,,\n9,0,0,,9,1\n").find("one end"),
             std::string::npos);
   EXPECT_EQ(error_of("", "x[mm],on\n0,0,0,1,word\n"), "accepted") << "a column of words of an older file";

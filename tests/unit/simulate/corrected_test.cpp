@@ -166,7 +166,7 @@ TEST_F(CorrectedRows, LagsFollowTheRowsOfTheirRun) {
     EXPECT_NEAR(correction[static_cast<Eigen::Index>(row)], -0.002 * lagging, 5e-6) << row;
   }
   EXPECT_NE(error_of("X[mm],Y[mm],Z[mm],T[degC],x[mm],corrected\n1,1,1,20,0," + fingerprint + "\n")
-                .find("\"t\": the image that ran has lags"),
+                .find("\"t\": the image that ran has terms with lag"),
             std::string::npos);
 }
 

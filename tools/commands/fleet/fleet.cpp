@@ -43,7 +43,9 @@ struct AddArguments {
 /// one.
 void trust_board(registry::FleetMachine& machine) {
   if (machine.url.empty())
-    throw text::InputError({}, machine.name, "--trust asks the board: enter its address with --url");
+    throw text::InputError(
+        {}, machine.name,
+        "--trust reads name and key from the board: give the address of the board with --url");
   upload::Client board(upload::open_transport(upload::parse_url(machine.url)));
   if (board.info().board.empty())
     throw text::LimitNotMet(machine.url +
@@ -58,11 +60,12 @@ void trust_board(registry::FleetMachine& machine) {
 void enter_board(const AddArguments& arguments, registry::FleetMachine& machine) {
   if (arguments.trust && (arguments.board || arguments.board_key))
     throw text::InputError(
-        "--trust takes name and key from the board; --board and --board-key state them: give one");
+        "--trust reads name and key from the board, --board and --board-key state name and key: give either "
+        "--trust or the other two options");
   if (arguments.board && *arguments.board != machine.board)
     machine.board = *arguments.board, machine.board_key.clear();
   if (arguments.board && arguments.board->size() >= kBoardNameBytes)
-    throw text::InputError({}, *arguments.board, "too long for the name of a board");
+    throw text::InputError({}, *arguments.board, "this text is too long for the name of a board");
   if (arguments.board_key)
     machine.board_key = arguments.board_key->empty()
                             ? ""
@@ -201,7 +204,7 @@ void run_status(const ListArguments& arguments) {
     for (const auto& [name, value] : one.values) fmt::print(out, "  {:<40} {}\n", name, value);
   }
   if (!arguments.machine.empty() && all.empty())
-    throw text::InputError({}, arguments.machine, "no data of this machine received yet");
+    throw text::InputError({}, arguments.machine, "the registry has not received data of this machine");
   Json unknown = Json::array();
   for (const registry::NotEntered& one : registry.not_entered()) {
     unknown.push_back({{"machine", one.machine},
@@ -273,28 +276,31 @@ void run_check(const CheckArguments& arguments) {
 
 void add_machine_kinds(CLI::App& fleet) {
   const auto add = std::make_shared<AddArguments>();
-  CLI::App* command = fleet.add_subcommand("add", "enter a machine, or change its entry");
-  command->add_option("MACHINE", add->name, "its name, also the device of its topics: letters, digits, . _ -")
+  CLI::App* command =
+      fleet.add_subcommand("add", "add a machine to the registry, or change the entry of a machine");
+  command
+      ->add_option("MACHINE", add->name,
+                   "name of the machine, and name of the device in its MQTT topics: letters, digits, . _ -")
       ->required();
   add_registry(*command, add->registry);
   command->add_option("--url", add->url, "its board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE");
-  command->add_option("--board", add->board, "the name that its board must have (name in the board file)");
-  command->add_option(
-      "--board-key", add->board_key,
-      "key of its board: 64 hexadecimal digits (vernier board identify), or its file identity.pub");
-  command->add_flag(
-      "--trust", add->trust,
-      "ask the board at the address now, and enter its name and key: only where you know that it "
-      "is the right board");
+  command->add_option("--board", add->board,
+                      "name that the machine's board must have (name in the board file)");
+  command->add_option("--board-key", add->board_key,
+                      "public key of the machine's board: 64 hexadecimal digits (vernier board identify), or "
+                      "the file identity.pub of the board");
+  command->add_flag("--trust", add->trust,
+                    "read name and key from the board at the address, and store both in the registry; use "
+                    "this option only if you are sure that the right board is at this address");
   command
       ->add_option("--check-days", add->check_days,
-                   "a check is due so many days after the last one; 0: never")
+                   "number of days after the last check when the next check is due; 0: no check is due")
       ->check(CLI::Range(0.0, kMostDays));
   command->add_option("--note", add->note, "for people");
   command->callback([add] { run_add(*add); });
 
   const auto names = std::make_shared<std::array<std::string, 3>>();
-  command = fleet.add_subcommand("rename", "give a machine with all its entries another name");
+  command = fleet.add_subcommand("rename", "rename a machine; all entries of the machine stay");
   command->add_option("MACHINE", (*names)[0], "its name in the registry")->required();
   command->add_option("NEW_NAME", (*names)[1], "letters, digits, . _ - ; the first a letter or digit")
       ->required();
@@ -309,15 +315,14 @@ void add_machine_kinds(CLI::App& fleet) {
   command->callback([list] { run_list(*list); });
 
   const auto status = std::make_shared<ListArguments>();
-  command = fleet.add_subcommand("status",
-                                 "newest state of each machine: online, stale or away; mode, fault, image");
+  command = fleet.add_subcommand(
+      "status", "newest state of each machine: online, stale or away; mode, fault, correction image");
   command->add_option("MACHINE", status->machine, "only this machine, with all values");
   add_registry(*command, status->registry);
   command
-      ->add_option(
-          "--stale", status->stale_s,
-          "s; a machine whose newest sample is older is stale, not online (a multiple of the gateway's "
-          "period_s)")
+      ->add_option("--stale", status->stale_s,
+                   "age limit of the newest sample, s: with an older sample the machine is stale, not "
+                   "online; a multiple of the gateway's period_s")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str();
   command->add_option("--json", status->json, "result for programs; - for standard output");
@@ -332,7 +337,7 @@ void add_forget(CLI::App& fleet) {
   const auto forget = std::make_shared<ForgetArguments>();
   CLI::App* command = fleet.add_subcommand("forget", "delete old samples; other data do not change");
   add_registry(*command, forget->registry);
-  command->add_option("--days", forget->days, "samples of so many days are kept")
+  command->add_option("--days", forget->days, "number of days: older samples are deleted")
       ->required()
       ->check(CLI::Range(0.0, kMostDays));
   command->callback([forget] {
@@ -343,19 +348,22 @@ void add_forget(CLI::App& fleet) {
 
 void add_record_kinds(CLI::App& fleet) {
   const auto record = std::make_shared<RecordArguments>();
-  CLI::App* command = fleet.add_subcommand(
-      "record", "record what runs on a machine: model, image, data, signer, data of its check");
+  CLI::App* command = fleet.add_subcommand("record",
+                                           "record the calibration that a machine uses: model, correction "
+                                           "image, measurements, signer, measurements of the check");
   command->add_option("MACHINE", record->machine, "its name in the registry")->required();
   add_registry(*command, record->registry);
   command->add_option("--model", record->model, "machine file (XML)")->type_name(kReads)->required();
   command->add_option("--image", record->image, "directory that `vernier compile` wrote")
       ->type_name(kReadsFolder);
-  command->add_option("--data", record->data, "measurement files that the model was fitted to")
+  command->add_option("--data", record->data, "measurement files to which the model was fitted")
       ->type_name(kReads);
   command->add_option("--signed-by", record->signed_by, "person responsible for it")->required();
-  command->add_option("--against", record->against, "measurement files that it was checked against")
+  command->add_option("--against", record->against, "measurement files with which the model was checked")
       ->type_name(kReads);
-  command->footer("Files are written down by name and BLAKE2b-256. Exit status 0 done, 1 bad input.");
+  command->footer(
+      "The registry stores the name and the hash (BLAKE2b-256) of each file. Exit status 0 done, 1 bad "
+      "input.");
   command->callback([record] { run_record(*record); });
 
   const auto check = std::make_shared<CheckArguments>();
@@ -366,12 +374,12 @@ void add_record_kinds(CLI::App& fleet) {
       ->type_name(kReads)
       ->required();
   command
-      ->add_option(
-          "--history", check->history,
-          "file of `vernier check --history`: what its last check reads of each parameter, for `alike`")
+      ->add_option("--history", check->history,
+                   "file of `vernier check --history`: the last check in this file gives the changes of the "
+                   "parameters, which `alike` compares between machines")
       ->type_name(kReads);
   command->add_option("--at", check->at, "time of the measurement (UTC): 2026-11-23T13:05:00Z; default: now");
-  command->footer("Exit status 0 done, 1 bad input, 2 this check is there already.");
+  command->footer("Exit status 0 done, 1 bad input, 2 the registry already contains this check.");
   command->callback([check] { run_check(*check); });
 }
 
@@ -386,7 +394,7 @@ void add_registry(CLI::App& command, std::string& place) {
 std::int64_t time_of(const std::string& text, std::int64_t otherwise) {
   if (text.empty()) return otherwise;
   const auto at = text::parse_utc(text);
-  if (!at) throw text::InputError({}, text, "a time such as 2026-11-23T13:05:00Z is wanted");
+  if (!at) throw text::InputError({}, text, "expected a time such as 2026-11-23T13:05:00Z");
   return *at;
 }
 
@@ -404,7 +412,7 @@ registry::Registry open_registry(const std::string& place) {
 
 void register_fleet(CLI::App& vernier) {
   CLI::App* fleet = vernier.add_subcommand(
-      "fleet", "Manage many machines: state, due checks, common drift, images in stages, batches");
+      "fleet", "Manage many machines: state, due checks, common drift, correction images in stages, batches");
   fleet->require_subcommand(1);
   add_machine_kinds(*fleet);
   add_record_kinds(*fleet);

@@ -63,10 +63,11 @@ std::vector<std::string> command_of(const CLI::App& vernier, const BatchArgument
   std::vector<std::string> words = words_of(arguments.command);
   const CLI::App& command = command_for(vernier, words);
   if (words.front() == "fleet" || words.front() == "workbench")
-    throw text::InputError({}, words.front(), "is not a command for each machine of a batch");
+    throw text::InputError({}, words.front(), "this command cannot run for each machine of a batch");
   for (const std::string& word : words)
     if (word == "--json" || word.starts_with("--json="))
-      throw text::InputError({}, word, "leave it out: a batch keeps the result of each machine itself");
+      throw text::InputError({}, word,
+                             "remove this option: the batch stores the result of each machine by itself");
   if (std::none_of(words.begin(), words.end(),
                    [](const std::string& word) { return word.find("{machine}") != std::string::npos; }))
     throw text::InputError("no {machine} in the command: it would be the same for each machine");
@@ -97,7 +98,8 @@ std::string parallel_script(const registry::Batch& batch) {
 std::string slurm_script(const registry::Batch& batch, const std::string& folder) {
   const std::string place = std::filesystem::absolute(folder).lexically_normal().string();
   if (place.find_first_of("\"\\%\n") != std::string::npos)
-    throw text::InputError({}, place, "the folder of a Slurm batch has no \", \\, % in its name");
+    throw text::InputError({}, place,
+                           "the folder name of a Slurm batch must not contain \", \\, % in its name");
   const std::size_t machines = batch.machines.size(), tasks = std::min(machines, kMostTasks);
   return fmt::format(
       "#!/bin/sh\n"
@@ -122,7 +124,8 @@ std::string slurm_script(const registry::Batch& batch, const std::string& folder
 
 void run_batch(const CLI::App& vernier, const BatchArguments& arguments) {
   if (!registry::is_machine_name(arguments.name))
-    throw text::InputError({}, arguments.name, "the name of a batch has letters, digits, . _ and - only");
+    throw text::InputError({}, arguments.name,
+                           "the name of a batch may contain only letters, digits, . _ and -");
   registry::Registry registry = open_registry(arguments.registry);
   registry::Batch batch{"", arguments.name, std::filesystem::current_path().string(),
                         command_of(vernier, arguments), arguments.machines};
@@ -232,7 +235,9 @@ void add_batch(CLI::App& fleet) {
   command->add_option("--scheduler", batch->scheduler, "program that runs the commands: parallel or slurm")
       ->check(CLI::IsMember({"parallel", "slurm"}))
       ->capture_default_str();
-  command->add_option("--machine", batch->machines, "only these; default: all of the registry")
+  command
+      ->add_option("--machine", batch->machines,
+                   "names of the machines of the batch; default: all machines of the registry")
       ->allow_extra_args(false);
   command->prefix_command();
   command->footer(
@@ -255,12 +260,13 @@ void add_batch(CLI::App& fleet) {
       ->required();
   command->add_option("MACHINE", task->machine, "machine of the batch")->required();
   command->footer(
-      "A machine that has an answer is left alone. Exit status 0 the answer is written, 1 bad input, 2 the "
-      "command failed.");
+      "If the machine already has an answer, the command does not run again. Exit status 0 the answer is "
+      "written, 1 bad input, 2 the command failed.");
   command->callback([task] { run_task(*task); });
 
   const auto collect = std::make_shared<CollectArguments>();
-  command = fleet.add_subcommand("collect", "book the answers of a batch in the registry, each once");
+  command =
+      fleet.add_subcommand("collect", "record the answers of a batch in the registry, each answer once");
   command->add_option("DIR", collect->folder, "directory that `fleet batch` wrote")
       ->type_name(kReadsFolder)
       ->required();

@@ -22,10 +22,10 @@ registry::Registry open_registry(const std::string& place);
 /// the text is not a time.
 std::int64_t time_of(const std::string& text, std::int64_t otherwise);
 
-/// A line on standard error, whole, from any thread.
+/// Writes one complete line to standard error; any thread may call this function.
 void say_line(const std::string& line);
 
-/// The kinds of `vernier fleet`, a file each.
+/// The subcommands of `vernier fleet`; each subcommand has one source file.
 void add_services(CLI::App& fleet);
 void add_batch(CLI::App& fleet);
 void add_trends(CLI::App& fleet);

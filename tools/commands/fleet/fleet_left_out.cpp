@@ -7,7 +7,7 @@ namespace vernier::commands::fleet_cli {
 
 void register_fleet(CLI::App& vernier) {
   CLI::App* fleet = vernier.add_subcommand(
-      "fleet", "Manage many machines: state, due checks, common drift, images in stages, batches");
+      "fleet", "Manage many machines: state, due checks, common drift, correction images in stages, batches");
   fleet->allow_extras();
   fleet->callback([] {
     throw text::InputError(

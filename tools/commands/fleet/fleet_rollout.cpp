@@ -29,11 +29,11 @@ struct RolloutArguments {
 /// Required identity of the board of a machine. Without a name in the registry no identity can be proved.
 upload::BoardClaim claim_of(const registry::FleetMachine& one) {
   if (one.board.empty())
-    throw text::InputError({}, one.name,
-                           "the registry has no board name for this machine; enter it: vernier fleet add " +
-                               one.name +
-                               " --board NAME --board-key KEY, or --trust to enter those of the board that "
-                               "answers at its address");
+    throw text::InputError(
+        {}, one.name,
+        "the registry has no board name for this machine; add the name: vernier fleet add " + one.name +
+            " --board NAME --board-key KEY, or --trust to store name and key of the board that answers at "
+            "the address");
   upload::BoardClaim claim{one.board, std::nullopt};
   if (!one.board_key.empty()) claim.key = upload::parse_board_key(one.board_key);
   return claim;
@@ -62,7 +62,8 @@ std::vector<fleet::RolloutMachine> machines_of(const RolloutArguments& arguments
           std::filesystem::is_directory(registry::for_machine(arguments.images, one.name)))
         names.push_back(one.name);
   if (names.empty())
-    throw text::InputError({}, arguments.images, "no machine with a board has an image there");
+    throw text::InputError({}, arguments.images,
+                           "no machine that has a board has a correction image in these directories");
   const std::vector<std::size_t> ends = fleet::stage_ends(arguments.stages, names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     const registry::FleetMachine one = registry.machine(names[i]);
@@ -97,7 +98,8 @@ text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet
                       const fleet::RolloutEnd* end) {
   text::Assurance assurance(text::AssuranceKind::kRollout);
   if (end == nullptr) {
-    assurance.not_covered("no board was asked: the registry reports earlier calls");
+    assurance.not_covered(
+        "the command did not connect to a board: the state is from earlier calls, as the registry stores it");
     return assurance;
   }
   const auto total = static_cast<double>(states.size());
@@ -116,7 +118,7 @@ text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet
   for (const std::string& note : end->notes) assurance.not_covered(note);
   if (arguments.options.judge.empty())
     assurance.not_covered("whether the machines are more accurate: no --judge was given");
-  assurance.not_covered("what happens to a board after this call");
+  assurance.not_covered("The command did not observe the boards after the end of this call");
   return assurance;
 }
 
@@ -151,9 +153,12 @@ void run_rollout(const RolloutArguments& arguments) {
     return;
   }
   const auto key = upload::given_key(arguments.key);
-  if (!key) throw text::InputError("--key is missing: the secret key that signs the images");
+  if (!key)
+    throw text::InputError(
+        "--key is missing: give the file of the secret key with which the command signs the correction "
+        "images");
   if (arguments.signed_by.empty())
-    throw text::InputError("--signed-by is missing: name the person responsible for the images");
+    throw text::InputError("--signed-by is missing: name the person responsible for the correction images");
   RolloutArguments mine = arguments;
   mine.options.key = *key;
   const std::vector<fleet::RolloutMachine> machines = machines_of(mine, registry);
@@ -168,7 +173,8 @@ void run_rollout(const RolloutArguments& arguments) {
   const bool holds = tell(mine, registry, &end);
   if (!end.stood.empty()) throw text::LimitNotMet(end.stood);
   if (!holds)
-    throw text::LimitNotMet("not every machine of this rollout has its image confirmed and in effect");
+    throw text::LimitNotMet(
+        "at least one machine of this rollout does not run its confirmed correction image");
 }
 
 /// Without its registry a rollout stops, because its steps could not be recorded.
@@ -186,40 +192,45 @@ void run_or_stand(const RolloutArguments& arguments) {
 
 void add_rollout(CLI::App& fleet) {
   const auto arguments = std::make_shared<RolloutArguments>();
-  CLI::App* command =
-      fleet.add_subcommand("rollout",
-                           "images to boards by stages: tried, watched to be in effect, "
-                           "judged, kept; stops at the first worse machine and takes it back");
+  CLI::App* command = fleet.add_subcommand(
+      "rollout",
+      "send correction images to boards in stages: trial, judgement, confirmation. At the first machine that "
+      "becomes less accurate the rollout reverts the image and stops");
   command->add_option("NAME", arguments->options.name, "name of this rollout; a second call continues it")
       ->required();
   add_registry(*command, arguments->registry);
-  command->add_option(
-      "--images", arguments->images,
-      "directories that `vernier compile` wrote, {machine} in the name; without it: how far it is");
+  command->add_option("--images", arguments->images,
+                      "directories that `vernier compile` wrote, {machine} in the name; without this option "
+                      "the command prints the state of the rollout");
   command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)")
       ->type_name(kReads);
   command->add_option("--signed-by", arguments->signed_by,
-                      "person responsible for the images; recorded in the registry");
+                      "person responsible for the correction images; the registry stores this name");
   command->add_option("--machine", arguments->machines,
-                      "these, in this order; default: all that have a board and an image");
-  command->add_option("--stages", arguments->stages, "how many machines until the end of each stage")
+                      "names of the machines, in the order of the rollout; default: all machines that have a "
+                      "board and a correction image");
+  command
+      ->add_option("--stages", arguments->stages,
+                   "size of each stage: total number of machines at the end of the stage")
       ->capture_default_str();
   command
       ->add_option("--watch", arguments->options.watch_s,
-                   "s on trial and in effect, without a break, before it is judged")
+                   "time in s for which a correction image must run on trial without interruption before its "
+                   "accuracy is judged")
       ->check(CLI::Range(0.0, 86400.0))
       ->capture_default_str();
   command->add_option(
       "--judge", arguments->options.judge,
       "command for a shell, {machine} for the name: 0 not worse; anything else takes the image back");
   command
-      ->add_option("--settle", arguments->options.settle_s, "s within which an image must come into effect")
+      ->add_option("--settle", arguments->options.settle_s,
+                   "time in s within which the board must start to use a correction image")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   command
-      ->add_option(
-          "--lease", arguments->options.lease_s,
-          "s after which the lock of a caller that was killed ends; more than a board may take to answer")
+      ->add_option("--lease", arguments->options.lease_s,
+                   "duration of the lock on a machine, s: after a killed call, another call must wait so "
+                   "long. The value must be longer than the slowest answer of a board")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
   command->add_flag("--go-on", arguments->options.go_on,

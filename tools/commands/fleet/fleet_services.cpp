@@ -56,9 +56,9 @@ void say_line(const std::string& line) {
 
 void add_services(CLI::App& fleet) {
   const auto file = std::make_shared<std::string>();
-  CLI::App* gateway = fleet.add_subcommand(
-      "gateway",
-      "read boards and publish what they say (Sparkplug B), kept here while broker or registry is away");
+  CLI::App* gateway = fleet.add_subcommand("gateway",
+                                           "read the state of boards and publish it (Sparkplug B); the "
+                                           "gateway stores the samples until the registry has received them");
   gateway->add_option("FILE", *file, "gateway file (TOML): name, broker, store, boards")
       ->type_name(kReads)
       ->required();
@@ -68,8 +68,8 @@ void add_services(CLI::App& fleet) {
   gateway->callback([file] { run_gateway_command(*file); });
 
   const auto options = std::make_shared<fleet::IngestOptions>();
-  CLI::App* ingest =
-      fleet.add_subcommand("ingest", "write what gateways publish into the registry, each sample once");
+  CLI::App* ingest = fleet.add_subcommand(
+      "ingest", "write the samples that gateways publish into the registry, each sample once");
   add_registry(*ingest, options->registry);
   ingest->add_option("--broker", options->broker.address, "tcp://HOST:1883 or ssl://HOST:8883")
       ->capture_default_str();
@@ -79,7 +79,9 @@ void add_services(CLI::App& fleet) {
                    "file (PEM) of the authority that signs the broker")
       ->type_name(kReads);
   ingest->add_option("--group", options->group, "Sparkplug group of the gateways")->capture_default_str();
-  ingest->add_option("--host", options->host, "name of this host application, as the gateways wait for it")
+  ingest
+      ->add_option("--host", options->host,
+                   "name of this host application (Sparkplug); the gateway files must state the same name")
       ->capture_default_str();
   ingest->footer(
       "Runs until interrupted; broker and database may go and come back. The broker's password is taken "
@@ -93,9 +95,12 @@ void add_services(CLI::App& fleet) {
   });
 
   const auto metrics = std::make_shared<MetricsArguments>();
-  CLI::App* command = fleet.add_subcommand("metrics", "the fleet's state for Prometheus: printed, or served");
+  CLI::App* command =
+      fleet.add_subcommand("metrics", "print or serve the state of the machines in the format of Prometheus");
   add_registry(*command, metrics->registry);
-  command->add_option("-o,--output", metrics->output, "file, as node_exporter's textfile collector reads it")
+  command
+      ->add_option("-o,--output", metrics->output,
+                   "output file in the format of node_exporter's textfile collector")
       ->type_name(kWrites);
   command->add_option("--listen", metrics->listen, "serve /metrics at HOST:PORT until interrupted");
   command->footer("Exit status 0 done, 1 bad input or no registry.");

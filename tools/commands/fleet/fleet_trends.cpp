@@ -96,17 +96,21 @@ void run_alike(const TrendArguments& arguments) {
 
 void add_trends(CLI::App& fleet) {
   const auto due = std::make_shared<TrendArguments>();
-  CLI::App* command = fleet.add_subcommand("due", "machines that are due for a check, and why");
+  CLI::App* command =
+      fleet.add_subcommand("due", "list the machines that are due for a check, with the reason");
   add_registry(*command, due->registry);
-  command->add_option("--at", due->at, "as of this time (UTC); default: now");
+  command->add_option("--at", due->at, "time at which the checks are due (UTC); default: now");
   command->add_option("--json", due->json, "result for programs; - for standard output");
   command->callback([due] { run_due(*due); });
 
   const auto alike = std::make_shared<TrendArguments>();
-  command = fleet.add_subcommand(
-      "alike", "common changes of the machines' parameters (a common cause), and machines that drift alone");
+  command = fleet.add_subcommand("alike",
+                                 "find parameter changes that several machines have in common (a common "
+                                 "cause), and changes of a single machine");
   add_registry(*command, alike->registry);
-  command->add_option("--since", alike->since, "readings from this time on (UTC); default: all");
+  command->add_option(
+      "--since", alike->since,
+      "start of the evaluated time (UTC): earlier readings are ignored; default: all readings");
   command->add_option("--every", alike->alike.every_days, "days that count as one time")
       ->check(CLI::Range(0.001, 3660.0))
       ->capture_default_str();

@@ -69,7 +69,7 @@ std::string put_right(const CheckArguments& arguments, model::Machine machine, c
 void run_check(const CheckArguments& arguments) {
   if (!(arguments.false_alarms > 0 && arguments.false_alarms < 1))
     throw text::InputError({}, fmt::format("{}", arguments.false_alarms),
-                           "a rate of false alarms is between 0 and 1");
+                           "the rate of false alarms must be between 0 and 1");
   const model::Machine machine = read_model(arguments.machine);
   const model::Measurement rows = model::read_measurement(arguments.measurements, machine,
                                                           simulate::corrections_of_images(arguments.images));
@@ -115,20 +115,25 @@ void register_check(CLI::App& vernier) {
       ->type_name(kReads)
       ->required();
   command
-      ->add_option(
-          "--history", arguments->history,
-          "file of all checks so far; this check is added (the file is created if it does not exist)")
+      ->add_option("--history", arguments->history,
+                   "file with the results of all earlier checks; the command adds this check (and creates "
+                   "the file if it does not exist)")
       ->type_name(kWrites);
   command
       ->add_option("--false-alarms", arguments->false_alarms,
-                   "probability of ever reporting a change if nothing changed, over all checks together")
+                   "rate of false alarms: probability that at least one of all checks reports a change "
+                   "although nothing changed")
       ->capture_default_str();
-  command->add_option("--label", arguments->label, "name of this check; default: its files");
+  command->add_option("--label", arguments->label,
+                      "name of this check; default: the names of its measurement files");
   command
       ->add_option("-o,--output", arguments->output,
                    "the machine file with the changed parameter corrected, if a parameter changed")
       ->type_name(kWrites);
-  command->add_option("--images", arguments->images, "folder of images, for rows measured with one running")
+  command
+      ->add_option(
+          "--images", arguments->images,
+          "folder of correction images, for rows that were measured while a correction image was running")
       ->type_name(kReadsFolder);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(

@@ -63,7 +63,7 @@ evaluate::PositioningBudget budget_of(const PositioningArguments& arguments,
   for (const std::string& one : arguments.budget) evaluate::add_to_budget(budget, one);
   if (!budget.given) return budget;
   if (file.unit != "mm")
-    throw text::InputError("--budget: of a linear axis; state --uncertainty for a rotary one");
+    throw text::InputError("--budget is only for a linear axis; for a rotary axis give --uncertainty");
   std::size_t runs = file.rows;
   for (const evaluate::TargetReadings& target : file.readings)
     for (const auto& list : target.deviation)
@@ -140,12 +140,16 @@ void register_evaluate(CLI::App& vernier) {
       evaluate->add_subcommand("iso230-2", "Accuracy and repeatability of positioning of one axis");
   kind->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->type_name(kReads)->required();
   kind->add_option("--axis", arguments->axes, "the axis that was moved")->required()->allow_extra_args(false);
-  kind->add_option("--reading", arguments->reading,
-                   "column that was measured along it; default: the axis' name in small letters");
-  kind->add_option("--tolerance", arguments->tolerances, "A=10um (also E M R B); again for each")
+  kind->add_option(
+      "--reading", arguments->reading,
+      "column with the measured positions of the axis; default: the name of the axis in small letters");
+  kind->add_option(
+          "--tolerance", arguments->tolerances,
+          "tolerance of a characteristic: A=10um (also E M R B); repeat the option for each characteristic")
       ->allow_extra_args(false);
   kind->add_option("--uncertainty", arguments->uncertainties,
-                   "expanded uncertainty (k = 2) of a characteristic: A=2um; again for each")
+                   "expanded uncertainty (k = 2) of a characteristic: A=2um; repeat the option for each "
+                   "characteristic")
       ->allow_extra_args(false);
   kind->add_option("--budget", arguments->budget,
                    "a part of the uncertainty, from which the uncertainty of each characteristic is "
@@ -160,7 +164,8 @@ void register_evaluate(CLI::App& vernier) {
       "Deviation = reading - position. A, R, E, B, M by ISO 230-2:2014, both approach directions, from dirX "
       "or the order "
       "of the rows. Exit status 0 "
-      "done, 1 bad input, 2 a tolerance is not met (ISO 14253-1: beyond it by more than the uncertainty).");
+      "done, 1 bad input, 2 a tolerance is not met (ISO 14253-1: the value exceeds the tolerance by more "
+      "than its uncertainty).");
   kind->callback([arguments] { run_positioning(*arguments); });
   add_diagonals_kind(*evaluate);
   add_robot_kind(*evaluate);

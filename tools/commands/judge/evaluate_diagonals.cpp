@@ -162,18 +162,19 @@ void add_diagonals_kind(CLI::App& evaluate) {
       ->required();
   kind->add_option("--reading", arguments->reading, "column of the displacement along the diagonal")
       ->capture_default_str();
-  kind->add_option("--tolerance", arguments->tolerances, "E=20um of the largest body diagonal (also A M R B)")
+  kind->add_option("--tolerance", arguments->tolerances,
+                   "tolerance of the largest value of the body diagonals: E=20um (also A M R B)")
       ->allow_extra_args(false);
   kind->add_option("--uncertainty", arguments->uncertainties,
-                   "expanded uncertainty (k = 2) of such a value: E=3um")
+                   "expanded uncertainty (k = 2) of a characteristic: E=3um")
       ->allow_extra_args(false);
   add_report_header(*kind, arguments->header);
   kind->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
-      "Each diagonal is evaluated as an axis by ISO 230-2, by the distance along it from row to row; what "
-      "the "
-      "volumetric accuracy of the machine is the largest of its body diagonals (E_d, B_d …). Exit status 0 "
+      "Each diagonal is evaluated like an axis by ISO 230-2; the position is the distance along the "
+      "diagonal. The result for the machine is the largest value of its body diagonals (E_d, B_d …). Exit "
+      "status 0 "
       "done, 1 bad input, "
       "2 a "
       "tolerance is not met (ISO 14253-1).");

@@ -165,24 +165,31 @@ void add_robot_kind(CLI::App& evaluate) {
       "iso9283", "Pose accuracy and repeatability of a robot; of paths, distances, drift");
   kind->add_option("MEAS", arguments->measurements, "measurement files (CSV)")->type_name(kReads)->required();
   kind->add_option("--machine", arguments->machine,
-                   "machine file: commanded poses by its nominal chain from the axes; else px py pz")
+                   "machine file: the nominal chain computes the commanded poses from the axis positions; "
+                   "without a machine file the columns px py pz are the commanded poses")
       ->type_name(kReads);
   CLI::Option* path =
-      kind->add_flag("--path", arguments->path, "rows are samples along one path, a cycle a run: AT and RT");
-  CLI::Option* distance = kind->add_flag("--distance", arguments->distance,
-                                         "distance from each pose to the next, visits in pairs: AD and RD")
-                              ->excludes(path);
+      kind->add_flag("--path", arguments->path,
+                     "the rows are samples along one path, and each run is one cycle: evaluate AT and RT");
+  CLI::Option* distance =
+      kind->add_flag("--distance", arguments->distance,
+                     "evaluate the distance from each pose to the next pose in pairs of visits: AD and RD")
+          ->excludes(path);
   kind->add_flag("--drift", arguments->drift,
-                 "a run is a block of cycles of a long test: dAP and dRP against the first block")
+                 "each run is a block of cycles of a long test: evaluate dAP and dRP, the drift from the "
+                 "first block")
       ->excludes(path)
       ->excludes(distance);
-  kind->add_option("--stations", arguments->stations, "places along the path that are looked at")
+  kind->add_option("--stations", arguments->stations,
+                   "number of positions along the path at which the path is evaluated")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   kind->add_flag("--align", arguments->align,
-                 "the instrument's frame is not the robot's: best fit of both first");
+                 "the frame of the instrument differs from the frame of the robot: align both by best fit "
+                 "before the evaluation");
   kind->add_option("--tolerance", arguments->tolerances,
-                   "RP=100um (also AP; AT RT with --path, AD RD, dAP dRP); again for each")
+                   "tolerance of a characteristic: RP=100um (also AP; AT RT with --path, AD RD, dAP dRP); "
+                   "repeat the option for each characteristic")
       ->allow_extra_args(false);
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(

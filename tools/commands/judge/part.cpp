@@ -271,7 +271,9 @@ void add_s_shape(CLI::App& part) {
   command->add_option("--tool-diameter", a->tool_diameter_mm, "mm")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  command->add_option("--tool-length", a->tool_length_mm, "tip below the top of the part, mm")
+  command
+      ->add_option("--tool-length", a->tool_length_mm,
+                   "distance of the tool tip below the top of the part, mm")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   command->add_option("--feed", a->feed_mm_min, "mm/min on the top curve")
@@ -282,7 +284,7 @@ void add_s_shape(CLI::App& part) {
       ->check(CLI::Range(0.005, 20.0));
   command
       ->add_option("--reading", a->reading,
-                   "contact, tip (the paper's) or in-plane: where the defect is taken")
+                   "point at which the defect is evaluated: contact, tip (as in the paper) or in-plane")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, part::DefectReading>{{"contact", part::DefectReading::kContact},
                                                      {"tip", part::DefectReading::kTip},
@@ -293,40 +295,43 @@ void add_s_shape(CLI::App& part) {
                                                       {"positive-b", part::RotarySolution::kPositiveB}}));
   command
       ->add_option("--tool-path", a->tool_path,
-                   "analytical, TP5C1 or TP6C2: the cutter touches at the top, the foot or Z11")
+                   "path of the cutter: analytical, TP5C1 or TP6C2; the cutter touches the flank at the top, "
+                   "at the foot, or at Z = 11 mm")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, part::ToolPath>{{"analytical", part::ToolPath::kAnalytical},
                                                 {"TP5C1", part::ToolPath::kTp5c1},
                                                 {"TP6C2", part::ToolPath::kTp6c2}}));
   CLI::Option* recorded_option =
       command
-          ->add_option(
-              "--recorded", a->recorded,
-              "positions that the controller recorded (CSV: X Y Z B C): their deviations at the points")
+          ->add_option("--recorded", a->recorded,
+                       "positions that the controller recorded (CSV: X Y Z B C); the command computes their "
+                       "effect on the defect at each point")
           ->type_name(kReads);
   command
       ->add_option("--recorded-zero", a->recorded_zero,
                    "recorded values at which the axes of the paths are at 0: \"X=120,Z=-40\"")
       ->needs(recorded_option);
-  CLI::Option* identify_option =
-      command
-          ->add_option("--identify", a->identify,
-                       "measured part (CSV: sx sy sz defect, u): fit the errors to it")
-          ->type_name(kReads);
-  command->add_option("--free", a->free, "only these statics are fitted, e.g. EA0B,EX0B");
+  CLI::Option* identify_option = command
+                                     ->add_option("--identify", a->identify,
+                                                  "measured part (CSV: sx sy sz defect, u): fit the errors "
+                                                  "of the machine to the measured defects")
+                                     ->type_name(kReads);
+  command->add_option(
+      "--free", a->free,
+      "names of the constants (statics) that are fitted, e.g. EA0B,EX0B; all others are fixed");
   command
       ->add_flag("--aligned", a->aligned, "the measured part was aligned by best fit: fit a rigid motion too")
       ->needs(identify_option);
   command->add_flag("--tool-radius", a->tool_radius, "fit the error of the tool radius too")
       ->needs(identify_option);
   command
-      ->add_option(
-          "--tolerance", a->tolerance_mm,
-          "width of the zone that the part's surface must lie in, mm (0.12); exit status 2 where not")
+      ->add_option("--tolerance", a->tolerance_mm,
+                   "width of the tolerance zone of the part's surface, mm (0.12); exit status 2 if the "
+                   "surface is outside the zone")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--uncertainty", a->u95_mm,
-                   "expanded uncertainty (k = 2) of the machine that measured it, mm")
+                   "expanded uncertainty (k = 2) of the machine that measured the part, mm")
       ->check(CLI::NonNegativeNumber);
   command->add_option("-o,--output", a->output, "directory for paths (CSV, G-code), defect, machine, report")
       ->type_name(kWritesFolder)
@@ -339,7 +344,8 @@ void add_s_shape(CLI::App& part) {
 void add_gauge_block(CLI::App& part) {
   auto a = std::make_shared<GaugeArguments>();
   CLI::App* command = part.add_subcommand(
-      "gauge-block", "EA0B and EX0B from a gauge block read in Y at C = 0, 90, 180, 270 deg");
+      "gauge-block",
+      "compute EA0B and EX0B from readings of a gauge block along Y at C = 0, 90, 180, 270 deg");
   command->add_option("FILE", a->file, "CSV with C[deg] and y[mm]")->type_name(kReads)->required();
   command->add_option("--pivot-length", a->pivot_mm, "B axis to tool tip, mm")
       ->required()

@@ -86,17 +86,22 @@ text::Assurance assurance_of(const model::Machine& machine, const tolerance::Par
     open += *verdict == tolerance::PartVerdict::kConforms ? 0 : 1;
   }
   word.at_least("tolerances", static_cast<double>(asked), 1, "Characteristics with a tolerance.");
-  word.at_most(
-      "not-conforming", static_cast<double>(open), 0,
-      "Characteristics whose probability of conformity is below 95 %, or that were not measured there.");
+  word.at_most("not-conforming", static_cast<double>(open), 0,
+               "Number of characteristics that have a probability of conformity below 95 %, or that are "
+               "outside the measured range.");
   results::add_findings(word, machine);
-  word.require("settled", result.settled, "The ends of the intervals have converged.");
+  word.require("settled", result.settled,
+               "The number of trials is sufficient: the limits of the intervals have converged.");
   for (const std::string& range : result.outside)
     word.not_covered("The part is outside the measured range: " + range + ".");
   for (const std::string& name : result.stale) word.not_covered(name + " was set by hand since the fit.");
-  if (arguments.process_um <= 0) word.not_covered("Repeatability, tool and cutting: no --process was given.");
+  if (arguments.process_um <= 0)
+    word.not_covered(
+        "The result does not include repeatability, tool and cutting, because --process was not given.");
   if (!result.open_known)
-    word.not_covered("Errors that the readings did not determine: the machine file does not list them.");
+    word.not_covered(
+        "The result does not include errors that the readings did not determine, because this machine file "
+        "does not list such errors.");
   return word;
 }
 
@@ -159,17 +164,16 @@ std::string least_known(const tolerance::CharacteristicResult& one) {
 
 /// What the machine does at a point: the same bore may differ as a feature and as a program by this alone.
 std::string motion_words(const tolerance::PlacedPart& part) {
-  return part.program
-             ? "Motion: as in the part program, with its speeds, directions and reversals."
-             : "Motion: at rest at each point, approached from the point before (no feed). A part program "
-               "adds speeds and reversals.";
+  return part.program ? "The motion is that of the part program, with its speeds, directions and reversals."
+                      : "The machine is at rest at each point, and approaches the point from the previous "
+                        "point. Effects of speed and reversal along a part program are not included.";
 }
 
 void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
                       const tolerance::PartConformity& result) {
-  fmt::print(
-      out, "{} trials, seed {}, {}\n", result.trials, result.seed,
-      result.exact ? "each through the whole chain" : "linear in the uncertain parameters of the machine");
+  fmt::print(out, "{} trials, seed {}, {}\n", result.trials, result.seed,
+             result.exact ? "each through the whole chain"
+                          : "the model is linear in the uncertain parameters of the machine");
   fmt::print(out, "{}\n", motion_words(part));
   if (!result.settled) fmt::print(out, "the trials stopped before the ends of the intervals converged\n");
   for (const std::string& name : result.stale) fmt::print(out, "set by hand since the fit: {}\n", name);
@@ -218,7 +222,7 @@ std::string conformity_page(const model::Machine& machine, const ConformityArgum
   Json notes = Json::array();
   for (const std::string& range : result.outside)
     notes.push_back("The part is outside the measured range: " + range +
-                    ". Characteristics there have no verdict.");
+                    ". Characteristics outside the measured range have no verdict.");
   if (machine.fitted)
     for (const model::FitRecord::Finding& one : machine.fitted->findings)
       notes.push_back("Found by the fit: " + one.text);
@@ -300,7 +304,8 @@ void add_conformity(CLI::App& part) {
       ->required();
   command
       ->add_option("MEAS", a->measurements,
-                   "measurement files (CSV) to fit the machine to first; none: the state of its file")
+                   "measurement files (CSV) for a fit of the machine before the prediction; without them the "
+                   "machine file is used as it is")
       ->type_name(kReads);
   command->add_option(
       "--place", a->part.place,
@@ -313,7 +318,8 @@ void add_conformity(CLI::App& part) {
                       "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command
       ->add_option("--frame", a->frame,
-                   "part: places count from the datums, else from all features; machine: from the machine")
+                   "part: positions are relative to the datum features, or to all features if there is no "
+                   "datum; machine: positions are machine coordinates")
       ->check(CLI::IsMember({"part", "machine"}))
       ->capture_default_str();
   command
@@ -327,8 +333,9 @@ void add_conformity(CLI::App& part) {
   command->add_option("--form", a->part.form_mm, "width of the form zone of a program's circles, mm")
       ->check(CLI::PositiveNumber);
   command
-      ->add_option("--process", a->process_um,
-                   "standard deviation of each point's own error, um: repeatability, tool, cutting")
+      ->add_option(
+          "--process", a->process_um,
+          "standard deviation of the independent error of each point, um: repeatability, tool, cutting")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--seed", a->seed, "of the trials")->capture_default_str();
@@ -336,8 +343,9 @@ void add_conformity(CLI::App& part) {
       ->add_option("--effects", a->effects, "files with effects of your own, for the names; may be repeated")
       ->type_name(kReads);
   command->add_flag("--rotary", a->with_rotary, "correct with all axes; default: as in the machine file");
-  command->add_flag("--uncorrected", a->uncorrected,
-                    "the machine runs without its correction: that decides the exit status");
+  command->add_flag(
+      "--uncorrected", a->uncorrected,
+      "predict the part for the machine without its correction; the exit status is for this case");
   command->add_option("--images", a->images, simulate::kImagesHelp)->type_name(kReadsFolder);
   command->add_option("-o,--output", a->output, "the result as a page (HTML)")->type_name(kWrites);
   add_report_header(*command, a->header);

@@ -8,13 +8,13 @@
 
 namespace vernier::commands::part_cli {
 
-/// A part as the options of a command name it.
+/// The options of a command that name a part.
 struct PartSource {
   std::string path, at, zero, place;
   double position_mm = 0, size_mm = 0, form_mm = 0;  // for all that a program cuts
 };
 
-/// Returns the part at its place in the machine, from a list of features or a part program. Throws
+/// Returns the part in its position in the machine, from a list of features or a part program. Throws
 /// InputError, and LimitNotMet if a point is out of reach.
 tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine& machine);
 

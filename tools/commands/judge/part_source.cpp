@@ -25,17 +25,22 @@ tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine
   const model::States at = kinematics::state_at(machine, source.at);
   if (is_list(source.path, text)) {
     if (!source.zero.empty())
-      throw text::InputError({}, "--zero", "needs a part program; for a list use --place");
+      throw text::InputError({}, "--zero",
+                             "this option is only for a part program; for a list of features use --place");
     for (const auto& [value, name] :
          {std::pair(source.position_mm, "--position"), std::pair(source.size_mm, "--size"),
           std::pair(source.form_mm, "--form")})
-      if (value > 0) throw text::InputError({}, name, "needs a part program; in a list use its columns");
+      if (value > 0)
+        throw text::InputError(
+            {}, name,
+            "this option is only for a part program; a list of features has columns for these values");
     tolerance::PartDrawing part = tolerance::parse_part(text, source.path);
     part = tolerance::placed_at(part, kinematics::placement(source.place, "--place"));
     return tolerance::place_part(machine, part, at);
   }
   if (!source.place.empty())
-    throw text::InputError({}, "--place", "needs a list of features; for a part program use --zero");
+    throw text::InputError({}, "--place",
+                           "this option is only for a list of features; for a part program use --zero");
   tolerance::ProgramOptions options;
   const model::States zero = kinematics::state_at(machine, source.zero);
   std::vector<char> known;

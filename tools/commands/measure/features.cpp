@@ -278,59 +278,72 @@ void register_features(CLI::App& vernier) {
   auto arguments = std::make_shared<FeaturesArguments>();
   CLI::App* command = vernier.add_subcommand(
       "features", "Compute features of an accelerometer record as inputs of measured rows");
-  command->add_option("RECORD", arguments->record, "CSV: t[s] and signals, evenly sampled (table_x[g], ...)")
+  command
+      ->add_option("RECORD", arguments->record,
+                   "accelerometer record (CSV): t[s] and signals, evenly sampled (table_x[g], ...)")
       ->type_name(kReads)
       ->required();
   command
-      ->add_option("-o,--output", arguments->output,
-                   "CSV to write: the rows with a column SIGNAL_FEATURE each")
+      ->add_option(
+          "-o,--output", arguments->output,
+          "output file (CSV): the rows, with a column SIGNAL_FEATURE for each feature of each signal")
       ->type_name(kWrites)
       ->required();
   command
       ->add_option("--rows", arguments->rows,
-                   "measurement file that gets the columns; without it one row a window")
+                   "measurement file to which the command adds the columns; without this option the output "
+                   "has one row for each window")
       ->type_name(kReads);
   command->add_option("--window", arguments->window,
-                      "samples of a window, the last one at the row's instant (1500)");
-  command->add_option("--every", arguments->every, "samples from window to window without --rows (a window)");
-  command->add_option("--rate", arguments->rate_Hz, "samples per second of a record without t")
+                      "number of samples of a window; the last sample is at the time of the row (1500)");
+  command->add_option("--every", arguments->every,
+                      "without --rows: number of samples from the start of a window to the start of the next "
+                      "window (default: the length of a window)");
+  command->add_option("--rate", arguments->rate_Hz, "samples per second, for a record without the column t")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--features", arguments->features,
-                   "features to compute (default: all, MAV .. BANDPOWER, PEAK); DISPLACEMENT: by double "
-                   "integration of accelerations, at the row's instant")
+                   "features to compute (default: all, MAV .. BANDPOWER, PEAK); DISPLACEMENT is the double "
+                   "integral of an acceleration, at the time of the row")
       ->delimiter(',');
-  command->add_option("--corner", arguments->corner,
-                      "DISPLACEMENT as a board has it: its filter's corner, Hz, or fit");
+  command->add_option(
+      "--corner", arguments->corner,
+      "compute DISPLACEMENT with the filter of a board: corner frequency of the filter in Hz, or fit");
   command
       ->add_option("--cutoff", arguments->cutoff,
                    "DISPLACEMENT of the whole record: spectral lines above this |F|^2/N, (mm/s^2)^2; noise "
                    "(from the floor of each signal, the default) or fit")
       ->excludes("--corner");
   command
-      ->add_option(
-          "--against", arguments->against,
-          "SIGNAL=COLUMN: displacement that the rows have of it; fit finds the cut-off that agrees best")
+      ->add_option("--against", arguments->against,
+                   "SIGNAL=COLUMN: column of the rows with the measured displacement of the signal; fit "
+                   "finds the cut-off with the best agreement")
       ->delimiter(',');
   command
       ->add_option("--resolution", arguments->resolution,
-                   "with --corner: resolution of a sample, in the signal's unit (1e-5), as on the board")
+                   "with --corner: resolution of a sample on the board, in the unit of the signal (1e-5)")
       ->check(CLI::PositiveNumber);
-  command->add_option("--difference", arguments->differences, "one more signal, NAME=A-B (table minus base)");
-  command->add_flag("--centre", arguments->centred, "take the record's mean off each signal");
+  command->add_option("--difference", arguments->differences,
+                      "additional signal as a difference of two signals, NAME=A-B (table minus base)");
+  command->add_flag("--centre", arguments->centred, "subtract from each signal its mean over the record");
   command->add_option("--align", arguments->align,
-                      "SIGNAL=AXIS: find the record's clock from the axis' acceleration in the rows");
-  command->add_option("--offset", arguments->offset_s, "t of the rows at t 0 of the record, s (0)");
-  command->add_option("--clock", arguments->clock_rate, "seconds of the rows per second of the record (1)")
+                      "SIGNAL=AXIS: estimate offset and rate of the record's clock by comparing the signal "
+                      "with the acceleration of the axis in the rows");
+  command->add_option("--offset", arguments->offset_s,
+                      "time difference of the two clocks, s: the value of column t in the rows at the time "
+                      "when the record begins (t = 0); default 0");
+  command
+      ->add_option("--clock", arguments->clock_rate,
+                   "rate between the clocks: seconds of the rows per second of the record (1)")
       ->check(CLI::PositiveNumber);
   command
-      ->add_option(
-          "--by-position", arguments->positions,
-          "axes whose positions the record has too (X,Y): rows take the window at the nearest position")
+      ->add_option("--by-position", arguments->positions,
+                   "axes whose positions the record also contains (X,Y): each row gets the window at the "
+                   "nearest position")
       ->delimiter(',');
   command
       ->add_option("--reach", arguments->reach_mm,
-                   "with --by-position: how far from row to row at most, mm (20)")
+                   "with --by-position: largest distance between two consecutive rows, mm (20)")
       ->check(CLI::PositiveNumber);
   command->add_option("--json", arguments->json, "result for programs, - for standard output");
   command->callback([arguments] { run_features(*arguments); });

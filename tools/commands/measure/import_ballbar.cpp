@@ -190,7 +190,9 @@ struct BallbarArguments {
 std::shared_ptr<BallbarArguments> add_common(CLI::App& kind) {
   auto arguments = std::make_shared<BallbarArguments>();
   kind.add_option("files", arguments->files, "Files of the instrument")->type_name(kReads)->required();
-  kind.add_option("--pause", arguments->options.pause_s, "Time between two runs, which no file logs (s)")
+  kind.add_option(
+          "--pause", arguments->options.pause_s,
+          "Time from the end of a run to the start of the next run (s); the files do not contain this time")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
   add_import_output(kind, arguments->output);
@@ -224,10 +226,9 @@ void add_ballbar_kind(CLI::App& kind) {
       "the "
       "feed-in that do not repeat have no length.");
   const auto arguments = add_common(kind);
-  kind.add_flag(
-      "--repair-time-base", arguments->repair,
-      "Find the samples that a turn takes and those that are missing from the record itself, and give "
-      "each sample its own angle and time");
+  kind.add_flag("--repair-time-base", arguments->repair,
+                "Estimate the samples per turn and the missing samples from the record itself, and compute "
+                "the angle and time of each sample again");
   kind.callback([arguments] {
     std::vector<importer::BallbarFile> files;
     for (const auto& path : arguments->files) files.push_back(importer::read_b5r(path));
@@ -236,7 +237,9 @@ void add_ballbar_kind(CLI::App& kind) {
 }
 
 void add_ballbar_trace_kind(CLI::App& kind) {
-  kind.footer("Such a file holds readings only; where and how fast the circle was run must be given.");
+  kind.footer(
+      "A trace file contains only readings; give plane, radius, feed and start angle of the circle as "
+      "options.");
   const auto arguments = add_common(kind);
   importer::TraceSetup& setup = arguments->setup;
   const CLI::Range positive(1e-6, 1e9);
@@ -246,13 +249,14 @@ void add_ballbar_trace_kind(CLI::App& kind) {
                   "Radius of the programmed circle (mm); default: the bar's length")
       ->check(positive);
   kind.add_option("--plane", arguments->planes,
-                  "Plane, first axis first (XY); of a path of several circles all, as they were run: "
-                  "XY,YZ,ZX. The runs of all files go to them in that order, as many to each")
+                  "Plane of the circle, first axis first (XY). For a path of several circles: all planes in "
+                  "the order of the path, XY,YZ,ZX; the runs of all files belong to the planes in this "
+                  "order, with the same number of runs for each plane")
       ->delimiter(',')
       ->check(CLI::IsMember({"XY", "YZ", "ZX", "YX", "ZY", "XZ"}));
   kind.add_option("--start-angle", arguments->starts_deg,
-                  "Angle of the first reading, from the first axis to the second (deg, 180): one, or one per "
-                  "plane")
+                  "Angle of the first reading, counted from the first axis to the second axis of the plane "
+                  "(deg, 180): one value, or one value per plane")
       ->delimiter(',');
   kind.add_option("--rate", setup.sample_rate_hz, "Readings per second")
       ->capture_default_str()

@@ -13,7 +13,7 @@ struct ImportOutput {
 /// Adds `-o FILE` (required) and `--json FILE` to a kind.
 void add_import_output(CLI::App& kind, ImportOutput& output);
 
-// One function a kind: adds its options and callback to its subcommand.
+// One function for each kind of import: adds the options and the callback to the subcommand.
 #define X(id, name, reads, ending) void add_##id##_kind(CLI::App& kind);
 #include "tools/import/kinds.inc"
 #undef X

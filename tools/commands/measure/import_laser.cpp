@@ -45,9 +45,11 @@ void run_laser(const LaserArguments& arguments) {
 void add_laser_kind(CLI::App& kind) {
   const auto arguments = std::make_shared<LaserArguments>();
   kind.add_option("file", arguments->file, "file of targets and runs")->type_name(kReads)->required();
-  kind.add_option("--axis", arguments->axis, "which axis was measured; default: the file's own");
+  kind.add_option("--axis", arguments->axis,
+                  "name of the measured axis; default: the axis that the file states");
   kind.add_option("--senses", arguments->senses,
-                  "listed: by the order of the lines; alternate: odd runs forward, even back; forward")
+                  "approach directions of the runs: listed (from the order of the lines), alternate (odd "
+                  "runs forward, even runs back), or forward")
       ->check(CLI::IsMember({"listed", "alternate", "forward"}));
   add_import_output(kind, arguments->output);
   kind.footer("vernier evaluate iso230-2 reads the output.");

@@ -123,7 +123,9 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
   std::optional<importer::LoggedTable> logged;
   if (!arguments.log.empty()) {
     if (arguments.machine.empty())
-      throw text::InputError({}, "--log", "needs --machine: it defines the axis columns and the positions");
+      throw text::InputError(
+          {}, "--log",
+          "this option requires --machine: the machine file states the axis columns and the positions");
     logged = importer::with_log(table, text::read_file(arguments.log), arguments.log,
                                 model::read_machine(arguments.machine), arguments.log_options);
     table = logged->table;
@@ -135,20 +137,25 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
 void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& arguments) {
   kind.add_option("file", arguments->file, "table of the instrument (text)")->type_name(kReads)->required();
   kind.add_option("--map", arguments->map, "column map: the meanings of the columns")->type_name(kReads);
-  kind.add_option("--column", arguments->columns, "one column: \"3=x[mm]\" or \"Name=x[mm]\"; again for each")
+  kind.add_option("--column", arguments->columns,
+                  "meaning of a column: \"3=x[mm]\" or \"Name=x[mm]\"; repeat the option for each column")
       ->allow_extra_args(false);
-  kind.add_option("--set", arguments->constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
+  kind.add_option("--set", arguments->constants,
+                  "column with the same value in every row: \"run=s1\", \"u[um]=5\"")
       ->allow_extra_args(false);
   kind.add_option("--separator", arguments->separator, "space: blanks; default: auto")
       ->check(CLI::IsMember(importer::separator_words()));
   kind.add_option("--decimal", arguments->decimal, "decimal sign")->check(CLI::IsMember({"point", "comma"}));
   kind.add_option("--skip", arguments->skip, "number of lines at the top to skip");
-  kind.add_option("--comment", arguments->comment,
-                  "lines that begin with it are skipped; none: no such lines; default: #");
-  kind.add_flag("--header", arguments->header, "the first line names columns (implied by a column by name)");
+  kind.add_option(
+      "--comment", arguments->comment,
+      "mark of a comment: lines that begin with this text are skipped; none: no comments; default: #");
+  kind.add_flag("--header", arguments->header,
+                "the first line contains the column names (implied if --column uses a name)");
   kind.add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
       ->check(CLI::Range(2, 1000000));
-  kind.add_option("--machine", arguments->machine, "machine file: read the result as a fit of it would")
+  kind.add_option("--machine", arguments->machine,
+                  "machine file: check that a fit of this machine can read the result")
       ->type_name(kReads);
   add_import_output(kind, arguments->output);
   kind.callback([arguments, &kind] { run_survey(kind.get_name(), *arguments, kind); });
@@ -160,10 +167,9 @@ void add_tracker_kind(CLI::App& kind) {
   const auto arguments = std::make_shared<SurveyArguments>();
   add_survey_options(kind, arguments);
   importer::LogOptions& log = arguments->log_options;
-  kind.add_option(
-          "--log", arguments->log,
-          "log of the machine (CSV: t and its axes): points are paired with its dwells, by order, ways and "
-          "time; with --machine")
+  kind.add_option("--log", arguments->log,
+                  "log of the machine (CSV: t and all axes); the command pairs each point with a dwell of "
+                  "the machine, by order, distances and times; requires --machine")
       ->type_name(kReads);
   kind.add_option("--dwell", log.dwell_s, "--log: least standstill, s")
       ->check(CLI::PositiveNumber)
@@ -171,8 +177,9 @@ void add_tracker_kind(CLI::App& kind) {
   kind.add_option("--still", log.still, "--log: an axis is at rest if it stays within this range, mm or deg")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  kind.add_option("--tolerance", log.tolerance_mm,
-                  "--log: largest difference of the distances measured and nominal, mm")
+  kind.add_option(
+          "--tolerance", log.tolerance_mm,
+          "--log: largest permitted difference between measured and nominal distance of two points, mm")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   kind.footer(
@@ -186,8 +193,8 @@ void add_probe_kind(CLI::App& kind) {
   const auto arguments = std::make_shared<SurveyArguments>();
   add_survey_options(kind, arguments);
   kind.add_option("--radius", arguments->radius_mm,
-                  "radius of the stylus ball (mm), if recorded points are its centre and nominal points are "
-                  "on the surface");
+                  "radius of the stylus ball (mm), if the recorded points are centres of the ball and the "
+                  "nominal points are on the surface");
   kind.footer(
       "Each touch: the normal nx ny nz, the nominal point px py pz, and the deviation d or the recorded "
       "point\n"

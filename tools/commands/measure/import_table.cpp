@@ -114,38 +114,47 @@ void add_table_kind(CLI::App& kind) {
   const auto arguments = std::make_shared<TableArguments>();
   kind.add_option("file", arguments->file, "the table")->type_name(kReads)->required();
   kind.add_option("-o,--output", arguments->output, "Measurement file to write (CSV)")->type_name(kWrites);
-  kind.add_flag("--preview", arguments->preview, "show how the table was understood, write nothing");
-  kind.add_option("--column", arguments->words.columns,
-                  "meaning of a column: \"x[mm]=X ist\" (heading or number); again for each")
+  kind.add_flag("--preview", arguments->preview,
+                "print the meaning of the columns and the first rows, and write nothing");
+  kind.add_option(
+          "--column", arguments->words.columns,
+          "meaning of a column: \"x[mm]=X ist\" (heading or number); repeat the option for each column")
       ->allow_extra_args(false);
   kind.add_option("--deviation", arguments->words.deviations,
                   "\"X[um]=Abweichung\": position of X plus this was measured; again for each")
       ->allow_extra_args(false);
-  kind.add_option("--leave", arguments->words.left, "heading of a column to leave out; again for each")
+  kind.add_option("--leave", arguments->words.left,
+                  "heading of a column that the command ignores; repeat the option for each column")
       ->allow_extra_args(false);
-  kind.add_option("--set", arguments->words.constants, "the same in every row: \"run=s1\", \"u[um]=5\"")
+  kind.add_option("--set", arguments->words.constants,
+                  "column with the same value in every row: \"run=s1\", \"u[um]=5\"")
       ->allow_extra_args(false);
-  kind.add_option("--unit", arguments->words.unit, "unit of lengths and angles whose heading has none");
+  kind.add_option("--unit", arguments->words.unit,
+                  "unit of the lengths and angles whose heading has no unit");
   kind.add_option("--separator", arguments->words.separator, "default: detected and printed")
       ->check(CLI::IsMember(importer::separator_words()));
   kind.add_option("--decimal", arguments->words.decimal, "decimal sign; default: detected and printed")
       ->check(CLI::IsMember({"point", "comma"}));
-  kind.add_option("--sheet", arguments->words.sheet,
-                  "sheet of a workbook, name or number; default: the first with rows of numbers");
+  kind.add_option(
+      "--sheet", arguments->words.sheet,
+      "sheet of a workbook, by name or number; default: the first sheet that has rows of numbers");
   kind.add_option("--table", arguments->words.table,
-                  "of several tables below each other, the number of this one, from 1");
+                  "number of the table, from 1, if the file has several tables below each other");
   kind.add_option("--skip", arguments->words.skip, "number of lines at the top to skip");
-  kind.add_option("--comment", arguments->words.comment,
-                  "lines that begin with it are skipped; none: no such lines; default: #");
-  kind.add_option("--profile", arguments->profile, "read the file with the assignments of this profile")
+  kind.add_option(
+      "--comment", arguments->words.comment,
+      "mark of a comment: lines that begin with this text are skipped; none: no comments; default: #");
+  kind.add_option("--profile", arguments->profile,
+                  "read the file with the settings of this profile (--save-profile)")
       ->type_name(kReads);
   kind.add_option("--save-profile", arguments->save_profile,
-                  "write the settings as a profile for the next file")
+                  "write the settings of this call as a profile for further files")
       ->type_name(kWrites);
   kind.add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
       ->check(CLI::Range(2, 1000000));
   kind.add_option("--machine", arguments->machine,
-                  "machine file: its axes are found, the result is read as a fit would")
+                  "machine file: the command finds the columns of its axes, and checks that a fit can read "
+                  "the result")
       ->type_name(kReads);
   kind.add_option("--json", arguments->json, "result for programs; - for standard output")
       ->type_name(kWrites);

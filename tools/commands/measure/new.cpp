@@ -115,7 +115,9 @@ create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& comma
   if (!arguments.name.empty()) plan.name = arguments.name;
   plan.positioning_only = arguments.errors == "positioning";
   if (plan.positioning_only && !plan.arm.empty())
-    throw text::InputError("--errors positioning: of machines with slides; a robot's rows are all it has");
+    throw text::InputError(
+        "--errors positioning is only for machines with linear axes; a robot always has all errors of its "
+        "joints and links");
   return plan;
 }
 
@@ -169,22 +171,21 @@ void register_new(CLI::App& vernier) {
   command->add_option("TYPE", arguments->type, "type of the machine")->check(machine_type())->required();
   command
       ->add_option("--axis", arguments->axes,
-                   "NAME:MIN:MAX in mm or deg; again for each. After it, if the name does not define it: X Y "
-                   "Z (along) or "
-                   "A B C (about); wrap (turns without end)")
+                   "axis: NAME:MIN:MAX in mm or deg; repeat the option for each axis. If the name does not "
+                   "state the direction, add :X :Y :Z (linear axis along X, Y, Z) or :A :B :C (rotary axis "
+                   "about X, Y, Z). Add :wrap for a rotary axis without end stops")
       ->allow_extra_args(false);
   command->add_option("-o,--output", arguments->output, "the machine file (XML)")
       ->type_name(kWrites)
       ->required();
   command
       ->add_option("--measurements", arguments->measurements,
-                   "also a measurement file to be filled in: CSV, or a workbook (.xlsx)")
+                   "also write an empty measurement file for the readings: CSV, or a workbook (.xlsx)")
       ->type_name(kWrites);
   command
       ->add_option("--errors", arguments->errors,
-                   "parameters that a fit may find: all; positioning (along each axis, what an "
-                   "interferometer or a dial "
-                   "gauge sees)")
+                   "parameters that a fit may estimate: all, or positioning (errors along each axis, for an "
+                   "interferometer or a dial gauge)")
       ->check(CLI::IsMember({"all", "positioning"}))
       ->capture_default_str();
   command
@@ -193,7 +194,7 @@ void register_new(CLI::App& vernier) {
           "quantities that the survey reads: " + format::survey_words("or") + " (" + reading_help() + ")")
       ->capture_default_str();
   command->add_option("--tool", arguments->tool,
-                      "tool point in the frame of the last axis that carries it, mm: 0,0,-120");
+                      "tool point in the frame of the last axis that carries the tool, mm: 0,0,-120");
   command->add_option("--name", arguments->name, "name of the machine");
   command->add_option("--tool-side", arguments->tool_side, "axes from the bed to the tool: Y,X,Z");
   command->add_option("--work-side", arguments->work_side, "axes from the bed to the workpiece: A,C");
@@ -203,18 +204,22 @@ void register_new(CLI::App& vernier) {
       ->allow_extra_args(false);
   command
       ->add_option("--dh", arguments->dh,
-                   "robot: its rows as CSV, theta[deg],d[mm],a[mm],alpha[deg] (type R or P)")
+                   "robot: table of the rows of Denavit and Hartenberg (CSV): "
+                   "theta[deg],d[mm],a[mm],alpha[deg] and type (R revolute, P prismatic)")
       ->type_name(kReads);
   command
       ->add_option("--joint", arguments->joints,
-                   "robot: a row, theta,d,a,alpha (P, before it for a prismatic joint); repeat for each")
+                   "robot: one row of Denavit and Hartenberg: theta,d,a,alpha (for a prismatic joint "
+                   "P,theta,d,a,alpha); repeat the option for each joint")
       ->allow_extra_args(false);
   command
       ->add_option("--urdf", arguments->urdf,
-                   "robot: its description (URDF); rows, names and limits of the joints come from it")
+                   "robot: description of the arm (URDF); the command reads rows, names and limits of the "
+                   "joints from this file")
       ->type_name(kReads);
-  command->add_option("--tip", arguments->tip,
-                      "the URDF's link that ends the arm (default: the only one); --tool is in its frame");
+  command->add_option(
+      "--tip", arguments->tip,
+      "last link of the arm in the URDF (default: the only last link); --tool is in the frame of this link");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "The type of the machine sets the side of each axis, printed as a line; --tool-side and\n"

@@ -38,7 +38,9 @@ void register_ballbar_path(CLI::App& vernier) {
   probe::CirclePath& path = arguments->path;
   CLI::App* command =
       vernier.add_subcommand("ballbar-path", "Write the program of a circular test for a machine or a robot");
-  command->add_option("--plane", path.plane, "angles count from its first axis to its second")
+  command
+      ->add_option("--plane", path.plane,
+                   "plane of the circle; angles count from the first axis to the second axis")
       ->capture_default_str()
       ->check(CLI::IsMember({"XY", "YZ", "ZX"}));
   command->add_option("--radius", path.radius_mm, "of the bar, mm")->capture_default_str();
@@ -46,9 +48,13 @@ void register_ballbar_path(CLI::App& vernier) {
   command->add_option("--arc", arguments->arc, "FROM,TO of the arc that is analysed, deg; default 0,360")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("--overshoot", path.overshoot_deg, "angle run before and after the arc, deg")
+  command
+      ->add_option("--overshoot", path.overshoot_deg,
+                   "angle of the circle before and after the evaluated arc, deg")
       ->capture_default_str();
-  command->add_option("--feed-in", path.feed_in_mm, "radial distance of the approach and the exit, mm")
+  command
+      ->add_option("--feed-in", path.feed_in_mm,
+                   "radial distance from the circle at which the approach begins and the exit ends, mm")
       ->capture_default_str();
   command->add_option("--pause", path.pause_s, "between the senses, s")->capture_default_str();
   command->add_option("--centre", arguments->centre, "X,Y,Z mm; default 0,0,0")->delimiter(',')->expected(3);

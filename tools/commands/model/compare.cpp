@@ -179,7 +179,7 @@ void add_field(nlohmann::ordered_json& json, const model::Machine& machine) {
   if (auto field = results::volume_json(machine, kNodes, why_not))
     json["field"] = std::move(*field);
   else
-    json["field_note"] = "No error field over the volume is drawn: " + why_not;
+    json["field_note"] = "The report has no diagram of the error over the working volume: " + why_not;
 }
 
 /// Did it help?
@@ -190,11 +190,15 @@ void run_before_after(const CompareArguments& arguments) {
     throw text::InputError("\"" + arguments.measurements.front() +
                            "\": with --before and --after there are no other measurement files");
   if (arguments.datum)
-    throw text::InputError("--datum: of MEAS; --before and --after fit the set-up of each side anyway");
-  if (!arguments.limit.empty()) throw text::InputError("--limit: of MEAS, not of --before and --after");
-  if (!arguments.by.empty()) throw text::InputError("--by: of MEAS, not of --before and --after");
+    throw text::InputError(
+        "--datum is for the files MEAS; with --before and --after the command always fits the set-up of both "
+        "measurements");
+  if (!arguments.limit.empty())
+    throw text::InputError("--limit is for the files MEAS, not for --before and --after");
+  if (!arguments.by.empty())
+    throw text::InputError("--by is for the files MEAS, not for --before and --after");
   if (!arguments.residuals.empty())
-    throw text::InputError("--residuals: of MEAS, not of --before and --after");
+    throw text::InputError("--residuals is for the files MEAS, not for --before and --after");
   const model::Machine machine = read_model(arguments.machine);
   const model::ImageCorrection images = simulate::corrections_of_images(arguments.images);
   const residual::BeforeAfter result =
@@ -238,8 +242,9 @@ void run_compare(const CompareArguments& arguments) {
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   for (const fit::OtherSetUp& one : fit::files_set_up_elsewhere(machine, m))
     fmt::print(stderr, "note: {}; {}\n", one.sentence(),
-               arguments.datum ? "fit a survey with rows of this set-up first"
-                               : "--datum fits the set-up to these rows, vernier check fits it always");
+               arguments.datum
+                   ? "fit a survey that has rows of this set-up before you compare"
+                   : "--datum fits the set-up to these rows; vernier check always fits the set-up");
   print_result(human_stream(arguments.json), json);
   results::print_domains(human_stream(arguments.json), json["domains"]);
   if (!arguments.by.empty()) print_groups(human_stream(arguments.json), json["groups"]);
@@ -259,20 +264,22 @@ void register_compare(CLI::App& vernier) {
     return command->add_option(option, list, what)->expected(1)->allow_extra_args(false)->take_all();
   };
   several("--before", arguments->before,
-          "tests whether the correction helped: measured without the correction (CSV); may be repeated")
+          "measurement without the correction (CSV): with --after the command tests whether the correction "
+          "reduced the error; may be repeated")
       ->type_name(kReads);
   several("--after", arguments->after,
-          "measured with the correction (CSV); may be repeated; MEAS is then not given")
+          "measurement with the correction (CSV), compared with --before; may be repeated; do not give MEAS")
       ->type_name(kReads);
-  several("--by", arguments->by,
-          "take the rows apart by this column (operator, coolant, tool …); may be repeated");
-  command->add_option(
-      "--limit", arguments->limit,
-      "accept or requalify: check rows (else fit rows) must stay within 2u, 25um, 0.025deg; rms=1.5u "
-      "tests the rms; exit status 2 if not met");
+  several(
+      "--by", arguments->by,
+      "compare the residuals between the groups of this column (operator, coolant, tool …); may be repeated");
+  command->add_option("--limit", arguments->limit,
+                      "limit of the residuals, to accept or requalify a machine: 2u, 25um or 0.025deg, for "
+                      "the check rows (without check rows: for the fit rows); rms=1.5u tests the rms; exit "
+                      "status 2 if a residual exceeds the limit");
   command->add_flag("--datum", arguments->datum,
-                    "fit only the set-up of the instrument (free BaseShifts) first: offsets and turns of "
-                    "the set-up are then no failure of the model");
+                    "fit the set-up of the instrument (free BaseShifts) before the comparison: the residuals "
+                    "then contain no offset and rotation of the set-up");
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
       ->type_name(kWrites);

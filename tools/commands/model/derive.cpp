@@ -46,17 +46,18 @@ void register_derive(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs (- is standard output)");
   command
       ->add_option("--length", arguments->sizes.length_mm,
-                   "scale of length errors that the file does not give, mm")
+                   "size of a length error for the bound, mm, if the machine file does not state the scale")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--angle", arguments->sizes.angle_rad,
-                   "scale of angle errors that the file does not give, rad")
+                   "size of an angle error for the bound, rad, if the machine file does not state the scale")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--number", arguments->sizes.number,
-                   "scale of other errors that the file does not give, in the unit of each")
+                   "size of another error for the bound, in the unit of the error, if the machine file does "
+                   "not state the scale")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command->callback([arguments] { run_derive(*arguments); });

@@ -23,7 +23,8 @@ struct ExcludeArguments {
 void run_exclude(const ExcludeArguments& arguments) {
   std::string text = text::read_file(arguments.measurement);
   if (!arguments.lines.empty()) {
-    if (arguments.output.empty()) throw text::InputError("-o is missing: where the measurement goes");
+    if (arguments.output.empty())
+      throw text::InputError("-o is missing: give the name of the new measurement file");
     const auto lines = workbench::parse_lines(arguments.lines);
     text = arguments.restore ? workbench::restore_rows(text, arguments.measurement, lines)
                              : workbench::exclude_rows(text, arguments.measurement, lines, arguments.reason);
@@ -71,12 +72,15 @@ void register_exclude(CLI::App& vernier) {
   command->add_option("MEAS", arguments->measurement, "measurement file (CSV)")
       ->type_name(kReads)
       ->required();
-  command->add_option("-o,--output", arguments->output, "the new measurement file (may be the same)")
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "name of the new measurement file (may be the name of the input file)")
       ->type_name(kWrites);
-  command->add_option("--lines", arguments->lines,
-                      "lines of the rows: 12,15-20; none: list what is excluded");
+  command->add_option(
+      "--lines", arguments->lines,
+      "lines of the rows to exclude: 12,15-20; without this option the command lists the excluded rows");
   command->add_option("--reason", arguments->reason, "reason, stored with each row")->capture_default_str();
-  command->add_flag("--restore", arguments->restore, "include the rows on these lines again");
+  command->add_flag("--restore", arguments->restore, "include again the excluded rows on these lines");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "An excluded row stays in its place as a comment with its reason, so every other row keeps its line\n"
@@ -88,7 +92,10 @@ void register_set(CLI::App& vernier) {
   auto arguments = std::make_shared<SetArguments>();
   CLI::App* command = vernier.add_subcommand("set", "Set parameters of a machine by hand");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
-  command->add_option("VALUES", arguments->values, "NAME=NUMBER, names as in the result of fit")->required();
+  command
+      ->add_option("VALUES", arguments->values,
+                   "new value of a parameter: NAME=NUMBER, with the name as in the result of fit")
+      ->required();
   command->add_option("-o,--output", arguments->output, "the new machine file")
       ->type_name(kWrites)
       ->required();

@@ -99,7 +99,8 @@ void register_effects(CLI::App& vernier) {
   command->add_option("--effects", arguments->files, "files with effects of your own; may be repeated")
       ->type_name(kReads);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
-  command->footer("Own effects are written in a text file, no recompilation: see tools/docs/effects.md.");
+  command->footer(
+      "Write your own effects into a text file (no recompilation is necessary): see tools/docs/effects.md.");
   command->callback([arguments] { run_effects(*arguments); });
 }
 

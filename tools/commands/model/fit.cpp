@@ -221,17 +221,19 @@ void register_fit(CLI::App& vernier) {
                    "deviations of the residual)")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option(
-      "--stage", arguments->stages,
-      "patterns (comma between them) of the parameters freed in a stage before all are; may be repeated");
+  command->add_option("--stage", arguments->stages,
+                      "stage of the fit before the fit of all parameters: patterns of the parameters that "
+                      "this stage fits, separated by commas; may be repeated for further stages");
   command->add_option(
       "--free", arguments->free,
       "patterns of free parameters in addition to those of the file: statics, table.X.rY, BaseShift, "
       "scalefactor.X; may be repeated");
-  command->add_option("--hold", arguments->hold,
-                      "patterns of fixed parameters, after --free; may be repeated");
+  command->add_option(
+      "--hold", arguments->hold,
+      "patterns of parameters that the fit does not change (applied after --free); may be repeated");
   command->add_option("--prior", arguments->priors,
-                      "NAME=STD: hold parameters near nominal as if measured there; may be repeated");
+                      "NAME=STD: prior for parameters: their nominal value counts as a reading with the "
+                      "standard uncertainty STD; may be repeated");
   command->add_option("--solver", arguments->solver, "normal-equations, or ceres as a cross-check")
       ->check(CLI::IsMember({"normal-equations", "ceres"}))
       ->capture_default_str();

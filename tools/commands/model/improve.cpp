@@ -276,7 +276,8 @@ void register_improve(CLI::App& vernier) {
       ->type_name(kReads);
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
-  command->add_flag("--yes", arguments->yes, "add every effect that is found, without asking");
+  command->add_flag("--yes", arguments->yes,
+                    "add every effect that diagnose names, without a question to the user");
   command->footer(
       "Only effects of a verdict missing-effect are added. Each step writes its fitted machine file; the "
       "last line\n"

@@ -30,8 +30,8 @@ struct MapArguments {
 constexpr double kMostlyOpen = 0.7;
 
 constexpr const char* kNotMeasured =
-    "no lengths, diagonals, circles or squares are simulated: they need one to three linear axes with min "
-    "and max";
+    "the command simulates no lengths, diagonals, circles or squares, because the machine does not have one "
+    "to three linear axes with min and max";
 
 bool can_be_measured(const model::Machine& machine) {
   const std::vector<std::size_t> axes = kinematics::linear_axes(machine);
@@ -78,7 +78,7 @@ Json line_plot(const Json& line) {
           {"y",
            {{{"name", "forward"}, {"unit", "µm"}, {"values", line["forward_um"]}},
             {{"name", "reverse"}, {"unit", "µm"}, {"values", line["reverse_um"]}}}},
-          {"caption", "Deviation along the line from its first point."}};
+          {"caption", "Deviation along the line, relative to the first point of the line."}};
 }
 
 Json line_section(const char* title, const char* prose, const char* caption, const Json& lines) {
@@ -116,8 +116,8 @@ Json shape_section(const Json& json) {
                       {"rows", lines}});
   return {{"title", "Shapes"},
           {"prose",
-           {"The largest circle (less a tenth) and square that fit about the middle of the volume, and a "
-            "cylinder."}},
+           {"The largest circle (radius reduced by a tenth) and the largest square about the middle of the "
+            "volume, and a cylinder."}},
           {"tables", tables}};
 }
 
@@ -147,8 +147,10 @@ Json page_of(const Json& json) {
                                     "Readings of a laser along the diagonals (ISO 230-6), one run "
                                     "in each approach direction.",
                                     "Body and face diagonals", json["diagonals"]));
-    sections.push_back(line_section("Axes", "The same along each axis through the middle of the volume.",
-                                    "Single axes", json["lengths"]));
+    sections.push_back(line_section(
+        "Axes",
+        "Readings along each axis through the middle of the volume, one run in each approach direction.",
+        "Single axes", json["lengths"]));
     sections.push_back(shape_section(json));
   }
   return {{"title", "Volumetric map"},
@@ -169,7 +171,7 @@ void run_map(const MapArguments& arguments) {
   }
   if (axes.empty())
     throw text::InputError({machine.file, 0}, "",
-                           "the machine has no linear axis: name the axes, --over J1,J2,J3");
+                           "the machine has no linear axis: name the axes to show, --over J1,J2,J3");
   Json json = {{"machine", machine.name}, {"files", {arguments.machine}}, {"notes", Json::array()}};
   json["field"] = results::field_json(machine, map::error_field(machine, at, axes, arguments.grid));
   const bool measured = can_be_measured(machine);
@@ -213,7 +215,7 @@ void run_map(const MapArguments& arguments) {
 void register_map(CLI::App& vernier) {
   auto arguments = std::make_shared<MapArguments>();
   CLI::App* command = vernier.add_subcommand(
-      "map", "Show the error field over the working volume and how well it was measured");
+      "map", "Show the error over the working volume and the uncertainty of this error");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
       ->type_name(kWrites);
@@ -222,8 +224,11 @@ void register_map(CLI::App& vernier) {
   command->add_option("--grid", arguments->grid, "nodes along each axis")
       ->check(CLI::Range(2, 40))
       ->capture_default_str();
-  command->add_option("--inputs,--at", arguments->at, "inputs, motion and axes that stay: \"T=25,B=30\"");
-  command->add_option("--over", arguments->over, "axes to sweep, one to three; default: the linear ones")
+  command->add_option("--inputs,--at", arguments->at,
+                      "constant values of inputs, motion and the other axes: \"T=25,B=30\"");
+  command
+      ->add_option("--over", arguments->over,
+                   "axes over whose ranges the error is shown, one to three; default: the linear axes")
       ->delimiter(',');
   command
       ->add_option("--lines", arguments->lines,

@@ -189,7 +189,9 @@ void run_first_plan(const PlanArguments& arguments) {
 
 void run_plan(const PlanArguments& arguments) {
   if (arguments.check && !(arguments.measurements.empty() && arguments.separate.empty()))
-    throw text::InputError({}, "--check", "--check needs only the fitted machine, no measurements");
+    throw text::InputError(
+        {}, "--check",
+        "a plan with --check is made from the fitted machine file alone: give no measurement files");
   if (arguments.check) return run_check_plan(arguments);
   if (!arguments.positioning.axis.empty()) {
     if (!arguments.measurements.empty() || !arguments.separate.empty())
@@ -199,7 +201,9 @@ void run_plan(const PlanArguments& arguments) {
   }
   if (!arguments.artefact.empty()) {
     if (!arguments.measurements.empty() || !arguments.separate.empty())
-      throw text::InputError({}, "--artefact", "--artefact needs only the machine file, no measurements");
+      throw text::InputError(
+          {}, "--artefact",
+          "a plan with --artefact is made from the machine file alone: give no measurement files");
     return run_touch_plan(arguments);
   }
   const bool aimed = !arguments.part.path.empty() || !arguments.region.empty() || !arguments.tool.empty();
@@ -253,46 +257,52 @@ void register_plan(CLI::App& vernier) {
       "Plan the next measurement: a first survey, poses for accuracy, poses that distinguish two effects, or "
       "the test of one axis");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
-  command->add_option("MEAS", arguments->measurements, "measurement files (CSV); none: the first plan")
+  command
+      ->add_option("MEAS", arguments->measurements,
+                   "measurement files (CSV); without measurement files the command plans the first survey")
       ->type_name(kReads);
   // One value each time: what follows it may be a measurement file.
   command
       ->add_option("--separate", arguments->separate,
-                   "A,B: effect ids or `add` strings; or twice, once for each")
+                   "the two effects to distinguish, A,B: ids of effects or `add` strings; or give the option "
+                   "twice, once for each effect")
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
-  command->add_option("-o,--output", arguments->output, "the rows, readings to be filled in (CSV)")
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "output file (CSV): the planned rows, with empty cells for the readings")
       ->type_name(kWrites);
   command->add_option("--gcode", arguments->gcode, "the rows as G-code")->type_name(kWrites);
   command
       ->add_option("--points", arguments->points,
-                   "exactly so many points (default: as few as needed; accuracy: 200 at most)")
+                   "number of points of the plan (default: as few as necessary; for accuracy at most 200)")
       ->check(CLI::Range(1, 500));
   command
       ->add_option("--confidence", arguments->confidence,
-                   "probability that the measurement shows the true effect")
+                   "required probability that the measurement selects the true effect")
       ->check(CLI::Range(0.5001, 0.9999))
       ->capture_default_str();
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated")
       ->type_name(kReads);
   command
-      ->add_option("--accuracy", arguments->accuracy_um,
-                   "U95 to reach, um: of the tool point over the volume, or over --part and --region; "
-                   "--check: largest change of the tool that may go unseen")
+      ->add_option(
+          "--accuracy", arguments->accuracy_um,
+          "U95 of the tool point that the plan must reach, um, over the working volume or over --part and "
+          "--region; with --check: largest change of the tool point that may stay undetected")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--reading", arguments->reading_um,
-                   "u of a coordinate that will be read, um (default 5; with MEAS: as it was there)")
+                   "standard uncertainty of a planned reading of one coordinate, um (default 5; with MEAS: "
+                   "the u of its readings)")
       ->check(CLI::PositiveNumber);
   command
-      ->add_option(
-          "--expected", arguments->expected_um,
-          "first plan: what a parameter may move the tool by, um (default 100); --check: change of the "
-          "tool from which one wants to know, um (default 20)")
+      ->add_option("--expected", arguments->expected_um,
+                   "first plan: expected displacement of the tool point by one parameter, um (default 100); "
+                   "--check: smallest change of the tool point that the check must detect, um (default 20)")
       ->check(CLI::PositiveNumber);
   command->add_flag("--check", arguments->check,
-                    "the few poses of a `vernier check` of a fitted machine (default: 10 points)");
+                    "plan a short measurement for `vernier check` of a fitted machine (default: 10 points)");
   command->add_option("--artefact", arguments->artefact,
                       "touches of this <artefact> of the machine file (default: 40 at most), and what no "
                       "touch of it determines");
@@ -321,33 +331,32 @@ void register_plan(CLI::App& vernier) {
       ->needs(positioning);
   command
       ->add_option("--part", arguments->part.path,
-                   "accuracy for the features of this part (CSV, or a part program)")
+                   "plan for the accuracy at the features of this part (CSV, or a part program)")
       ->type_name(kReads);
   command->add_option(
       "--place", arguments->part.place,
       "zero of the part in workpiece coordinates: \"X,Y,Z\", \"X,Y,Z,TURN\" or \"X,Y,Z,rX,rY,rZ\"");
-  command->add_option("--zero", arguments->part.zero, "machine position of a part program's zero");
-  command->add_option(
-      "--at", arguments->part.at,
-      "inputs, and positions of axes that the part does not need; --positioning: positions of the other "
-      "axes (default: mid-range)");
+  command->add_option("--zero", arguments->part.zero, "machine position of the zero of a part program");
+  command->add_option("--at", arguments->part.at,
+                      "values of inputs, and positions of the axes that the part does not state; with "
+                      "--positioning: positions of the other axes (default: mid-range)");
   command->add_option("--region", arguments->region,
-                      "accuracy for this part of the volume: \"X=100:200,Y=0:50\"");
+                      "plan for the accuracy in this part of the working volume: \"X=100:200,Y=0:50\"");
   command->add_option(
       "--tool", arguments->tool,
       "accuracy for this tool alone: one of <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command
-      ->add_option(
-          "--feed", arguments->feed_mm_min,
-          "speed from pose to pose, mm/min (deg/min), to estimate the duration and in the program of "
-          "--positioning")
+      ->add_option("--feed", arguments->feed_mm_min,
+                   "speed from pose to pose, mm/min (deg/min); the command estimates the duration of the "
+                   "plan with this "
+                   "value, and writes it to the program of --positioning")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command
-      ->add_option(
-          "--dwell", arguments->dwell_s,
-          "time to settle and read one pose, s, to estimate the duration; --positioning: dwell of the "
-          "program, 0: it stops at each target")
+      ->add_option("--dwell", arguments->dwell_s,
+                   "time for settling and reading at one pose, s; the command estimates the duration of the "
+                   "plan with this value. With --positioning: dwell of the program; 0: the program stops at "
+                   "each target")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);

@@ -125,8 +125,9 @@ void print_accuracy(std::FILE* out, const plan::AccuracyAim& aim, const plan::Ac
 
 void run_accuracy_plan(const PlanArguments& arguments) {
   if (!(arguments.accuracy_um > 0) && arguments.points == 0)
-    throw text::InputError({}, "--accuracy",
-                           "the U95 to reach (or --points), or --separate A,B: two effects to distinguish");
+    throw text::InputError(
+        {}, "--accuracy",
+        "U95 that the plan must reach (or --points), or --separate A,B: two effects to distinguish");
   if (!arguments.part.path.empty() && !arguments.region.empty())
     throw text::InputError({}, "--region", "either a part or a region");
   const model::Machine machine = read_model(arguments.machine);

@@ -36,7 +36,7 @@ kinematics::InverseOptions options_of(const SolveArguments& arguments, const mod
     options.match = names.at(arguments.match);
   if (options.match != kinematics::Match::kPosition && !with_rotation)
     throw text::InputError({}, arguments.target,
-                           "a direction or a pose needs the rotation too: x,y,z,rx,ry,rz");
+                           "a target with direction or pose needs a rotation too: x,y,z,rx,ry,rz");
   for (const std::string& name : arguments.axes) {
     const auto axis = machine.find_axis(name);
     if (!axis) throw text::InputError({machine.file, 0}, name, "the machine has no axis of this name");
@@ -96,7 +96,8 @@ std::string failure_text(const model::Machine& machine, const kinematics::Invers
       fmt::format("residual {:.3g} mm, {:.3g} deg after {} iterations, condition {:.3g}", proof.residual_mm,
                   proof.residual_deg, proof.iterations, proof.condition);
   if (proof.fault == kinematics::InverseFault::kSingular)
-    return "no solution: the pose is singular, the axes cannot move in every direction (" + residual + ")";
+    return "no solution: the pose is singular, the axes cannot move the tool in every direction (" +
+           residual + ")";
   if (proof.fault == kinematics::InverseFault::kBeyondRange)
     return "no solution: axis " + machine.axes[proof.axis].name + " would have to leave its range (" +
            residual + ")";
@@ -135,20 +136,22 @@ void register_solve(CLI::App& vernier) {
       vernier.add_subcommand("solve", "Compute the axis positions of a tool pose (inverse solution)");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command
-      ->add_option(
-          "--target", arguments->target,
-          "tool point x,y,z (mm), and for a pose its rotation vector rx,ry,rz (deg), workpiece coordinates")
+      ->add_option("--target", arguments->target,
+                   "target in workpiece coordinates: tool point x,y,z (mm); for a pose also the rotation "
+                   "vector rx,ry,rz (deg) of the tool")
       ->required();
   command->add_option("--start", arguments->start, "first guess, motion and inputs: \"X=100,B=20,T=25\"");
   command->add_option("--axes", arguments->axes, "axes that may move; default: all")->delimiter(',');
   command
       ->add_option("--match", arguments->match,
-                   "target to reach; auto: position if no rotation is given, else pose")
+                   "kind of target; auto: position if no rotation is given, pose otherwise")
       ->check(CLI::IsMember({"auto", "position", "direction", "pose"}))
       ->capture_default_str();
   command->add_flag("--nominal", arguments->nominal,
-                    "solve for the nominal chain; default: for the machine with its errors");
-  command->add_option("--restarts", arguments->restarts, "further starts, spread over the axis ranges")
+                    "solve for the nominal machine; default: solve for the machine with its errors");
+  command
+      ->add_option("--restarts", arguments->restarts,
+                   "number of additional start positions, distributed over the axis ranges")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
   command->add_option("--json", arguments->json, "result for programs; - for standard output");

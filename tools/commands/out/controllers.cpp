@@ -127,16 +127,18 @@ void add_controller(CLI::App* parent, const char* name, const char* what, Contro
   arguments->common.tolerance_um = 1;
   CLI::App* command = add_export(parent, name, what, "directory",
                                  std::shared_ptr<ExchangeArguments>(arguments, &arguments->common));
-  command->add_option("--step", arguments->step_mm, "distance of the points, mm; default: by --tolerance")
+  command
+      ->add_option("--step", arguments->step_mm,
+                   "distance between two points of a table, mm; default: the largest distance that "
+                   "--tolerance permits")
       ->check(CLI::PositiveNumber);
   command->add_option("--tolerance", arguments->common.tolerance_um, "largest error between two points, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command
-      ->add_option(
-          "--reference", arguments->reference,
-          "machine positions at which the corrections are zero (reference points), mm; default: 0, or "
-          "the end of the range nearest to 0")
+      ->add_option("--reference", arguments->reference,
+                   "machine positions at which the corrections are zero (reference points), mm; default: 0, "
+                   "or the end of the axis range that is nearest to 0")
       ->type_name("X,Y,Z");
   if (controller != Controller::kHeidenhain)
     command

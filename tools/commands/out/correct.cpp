@@ -56,11 +56,12 @@ text::Assurance assurance_of(const CorrectArguments& arguments, const offline::C
   assurance.at_most("not-converged", static_cast<double>(summary.not_converged), 0,
                     fmt::format("Positions of {} that cannot be corrected.", summary.positions));
   if (path_um)
-    assurance.at_most(
-        "off-the-path", *path_um, arguments.deviation_um,
-        "Largest distance of the blocks from the corrected path, um, between all places looked at.");
+    assurance.at_most("off-the-path", *path_um, arguments.deviation_um,
+                      "Largest distance between the written blocks and the corrected path, um, over all "
+                      "evaluated positions.");
   assurance.not_covered(
-      "Errors that depend on what is not logged (time, inputs) are evaluated at the values of --at.");
+      "Errors that depend on quantities that the file does not contain (time, inputs) are evaluated at the "
+      "values of --at.");
   return assurance;
 }
 
@@ -91,10 +92,11 @@ void run_correct(const CorrectArguments& arguments) {
     result = offline::corrected_positions(text, arguments.path, at, corrector, place);
   } else {
     if (arguments.back)
-      throw text::InputError({arguments.path, 0}, "--back", "needs a CSV of positions, not a part program");
+      throw text::InputError({arguments.path, 0}, "--back",
+                             "this option is only for a CSV of positions, not for a part program");
     if (!arguments.place.empty())
       throw text::InputError({arguments.path, 0}, "--place",
-                             "needs a list of targets; for a program use --zero");
+                             "this option is only for a list of targets; for a part program use --zero");
     offline::PartProgramOptions program;
     program.deviation_mm = 1e-3 * arguments.deviation_um;
     program.arcs = !arguments.chords;
@@ -153,8 +155,9 @@ void register_correct(CLI::App& vernier) {
   command->add_option("-o,--output", arguments->output, "the same, corrected")
       ->type_name(kWrites)
       ->required();
-  command->add_option("--at", arguments->at,
-                      "inputs, and positions of the axes before a program begins: \"T=25,X=0,Z=100\"");
+  command->add_option(
+      "--at", arguments->at,
+      "values of the inputs, and positions of the axes before the program begins: \"T=25,X=0,Z=100\"");
   command->add_option("--zero", arguments->zero,
                       "machine position of the program's zero, tool length included: \"X=120,Y=80,Z=-40\"");
   command->add_option("--place", arguments->place,
@@ -164,14 +167,14 @@ void register_correct(CLI::App& vernier) {
                       "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command
       ->add_option("--deviation", arguments->deviation_um,
-                   "largest distance of a block from the path that is corrected at every moment, um")
+                   "largest permitted distance between a block and the path with a continuous correction, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag(
       "--back", arguments->back,
       "reverse: converts commanded positions to those of an ideal machine at the same tool point");
   command->add_flag("--chords", arguments->chords,
-                    "write arcs as straight blocks, for a control that reads no G2 and G3");
+                    "write arcs as straight blocks, for a control that does not execute G2 and G3");
   command->add_flag("--rotary", arguments->with_rotary,
                     "correct with all axes, tool point and tool direction; default: as in the machine file");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");

@@ -180,20 +180,22 @@ void register_export(CLI::App& vernier) {
   auto screw = std::make_shared<ExchangeArguments>();
   CLI::App* linuxcnc = add_export(
       parent, "linuxcnc", "LinuxCNC: screw compensation (COMP_FILE), and a configuration of its component",
-      "directory for one file an axis and the configuration; with --axis the file", screw);
+      "output directory, with one file for each axis and the configuration; with --axis: name of the file",
+      screw);
   linuxcnc->add_flag("--component", screw->component,
-                     "the configuration of the component `vernier` alone, which expresses every machine "
-                     "(tools/docs/linuxcnc.md)");
+                     "write only the configuration of the component `vernier`; this component can correct "
+                     "every machine (tools/docs/linuxcnc.md)");
   linuxcnc->add_option("--axis", screw->axis, "this axis only");
-  linuxcnc->add_option("--tolerance", screw->tolerance_um, "largest error between two lines of the table, um")
+  linuxcnc
+      ->add_option("--tolerance", screw->tolerance_um,
+                   "largest permitted error of the interpolation between two lines of the table, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   add_type(linuxcnc, *screw);
   linuxcnc->callback([screw] { export_screw(*screw); });
   auto plain = std::make_shared<ExchangeArguments>();
-  add_export(parent, "axis-csv", "One CSV file an axis, with units", "directory", plain)->callback([plain] {
-    export_tables(*plain, false);
-  });
+  add_export(parent, "axis-csv", "One CSV file for each axis, with units", "directory", plain)
+      ->callback([plain] { export_tables(*plain, false); });
   auto isg = std::make_shared<ExchangeArguments>();
   add_export(parent, "isg-csv", "Component errors for ISG and Beckhoff volumetric compensation (ISG_CSV)",
              "file", isg)
@@ -210,8 +212,9 @@ void register_import_tables(CLI::App& vernier) {
   auto screw = std::make_shared<ExchangeArguments>();
   CLI::App* linuxcnc = add_import(parent, "linuxcnc", "LinuxCNC screw compensation (COMP_FILE)", screw);
   linuxcnc->add_option("--axis", screw->axis, "whose file it is")->required();
-  linuxcnc->add_option("--reversal", screw->reversal,
-                       "static that receives half the reversal (of a term k*dir)");
+  linuxcnc->add_option(
+      "--reversal", screw->reversal,
+      "constant (static) k of a term k*dir: import-tables sets this constant to half of the reversal");
   add_type(linuxcnc, *screw);
   add_import(parent, "axis-csv", "CSV of one axis, with units", std::make_shared<ExchangeArguments>());
   add_import(parent, "isg-csv", "Component errors of ISG and Beckhoff volumetric compensation (ISG_CSV)",

@@ -24,11 +24,12 @@ text::Assurance assurance_of(const model::Machine& machine, const ExchangeArgume
                              const std::vector<AxisLines>& axes) {
   text::Assurance assurance(text::AssuranceKind::kExport);
   results::add_findings(assurance, machine);
-  assurance.require("safe-to-run", true, "Every rule of the sheet \"safe to run?\" is met or accepted.");
+  assurance.require("safe-to-run", true,
+                    "Every rule of the safety sheet (\"safe to run?\") is met or accepted by the user.");
   double left_um = 0;
   for (const exchange::LeftOut& one : left_out) left_um = std::max(left_um, one.um);
   assurance.at_most("left-out", left_um, exchange::kNothing_um,
-                    "Largest error that the format cannot hold, um.");
+                    "Largest error of the machine that the format cannot express, um.");
   for (const AxisLines& one : axes)
     assurance.at_most(
         "between-lines-" + one.axis, one.worst_um, arguments.tolerance_um,
@@ -114,9 +115,9 @@ CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const
                     "write what the format can represent, and list what it cannot");
   command->add_option("--at", arguments->at,
                       "values of the other axes and inputs: \"Y=0,T=25\"; default: middle of the ranges");
-  command->add_option(
-      "--accept", arguments->accept,
-      "a rule of the sheet \"safe to run?\" to override (tools/docs/safety.md); may be repeated");
+  command->add_option("--accept", arguments->accept,
+                      "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
+                      "override; may be repeated");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   return command;
 }

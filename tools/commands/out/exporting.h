@@ -25,14 +25,15 @@ struct ExchangeArguments {
   bool leave_out = false, component = false;
 };
 
-/// How well the lines of one axis hold its errors.
+/// Error of the interpolation between the lines of the table of one axis.
 struct AxisLines {
   std::string axis;
   std::size_t lines = 0, probed = 0;
   double worst_um = 0;
 };
 
-/// Throws LimitNotMet if the sheet "safe to run?" fails: the written files run on a machine as an image does.
+/// Throws LimitNotMet if the safety sheet ("safe to run?") fails, because the written files correct a machine
+/// in the same way as a correction image.
 void require_safe(const model::Machine& machine, const ExchangeArguments& arguments);
 
 /// Returns the fixed state: the middle of the ranges, overridden by the values of the user.

@@ -45,7 +45,8 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   const model::Machine machine = read_model(common.machine);
   const exchange::PresentSetting present = present_of(arguments);
   if (firmware == Firmware::kGrbl && !present.steps)
-    throw text::InputError("grbl holds steps per mm only: state the present ones with --steps X,Y,Z");
+    throw text::InputError(
+        "grbl can store only steps per mm: give the present steps per mm with --steps X,Y,Z");
   const exchange::ThreeAxes axes = exchange::three_axes(machine);
   const model::States at = state_of(machine, common);
   require_safe(machine, common);
@@ -67,7 +68,7 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
   command->add_option("--steps", arguments->steps, steps)->type_name("X,Y,Z");
   command
       ->add_option("--tolerance", arguments->common.tolerance_um,
-                   "largest error of the heights between two points of the mesh, um")
+                   "largest error of the interpolated height between the points of the mesh, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->footer(
@@ -81,14 +82,15 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
 
 void add_printer_exports(CLI::App* parent) {
   constexpr const char* kSteps =
-      "present steps per mm of X, Y and Z; without them the scale is not corrected";
-  add_printer(parent, "klipper", "Klipper: skew_correction, bed_mesh and rotation_distance",
-              "present rotation_distance of X, Y and Z, mm per turn; without them the scale is not corrected",
-              Firmware::kKlipper);
+      "present steps per mm of X, Y and Z; without this option the scale is not corrected";
+  add_printer(
+      parent, "klipper", "Klipper: skew_correction, bed_mesh and rotation_distance",
+      "present rotation_distance of X, Y and Z, mm per turn; without this option the scale is not corrected",
+      Firmware::kKlipper);
   add_printer(parent, "rrf", "RepRapFirmware: M556, height map and M92", kSteps, Firmware::kRepRap);
   add_printer(parent, "marlin", "Marlin: M852, M421 and M92", kSteps, Firmware::kMarlin);
-  add_printer(parent, "grbl", "grbl: steps per mm ($100 to $102), all that it holds", kSteps,
-              Firmware::kGrbl);
+  add_printer(parent, "grbl", "grbl: steps per mm ($100 to $102), the only correction that grbl can store",
+              kSteps, Firmware::kGrbl);
 }
 
 }  // namespace vernier::commands::exchange_cli

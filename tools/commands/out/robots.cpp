@@ -18,7 +18,7 @@ void export_urdf(const ExchangeArguments& arguments) {
   const Json files = write_folder(arguments, {{"robot.urdf", file.text}});
   std::vector<exchange::LeftOut> left;
   if (file.worst_um > exchange::kNothing_um)
-    left.push_back({"errors that change with the joints, in the tool point", file.worst_um});
+    left.push_back({"effect on the tool point of errors that depend on the joint angles", file.worst_um});
   fmt::print(human_stream(arguments.json),
              "difference from the machine file at {} poses: tool point up to {:.3g} um, tool direction up to "
              "{:.3g} urad\n",

@@ -93,16 +93,18 @@ void register_board(CLI::App& vernier) {
       ->required();
   command
       ->add_option("--key", arguments->key,
-                   "secret key of `vernier keys` (or VERNIER_KEY), where the board has keys")
+                   "secret key of `vernier keys` (or VERNIER_KEY); required if the board has keys")
       ->type_name(kReads);
   add_board_claim(*command, arguments->claim);
   command->add_option("--axis", arguments->axis, "axis of a weight");
-  command->add_option("--weight", arguments->weight, "share of its correction that is applied")
+  command
+      ->add_option("--weight", arguments->weight,
+                   "share of the axis' correction that the board applies, 0 to 1")
       ->check(CLI::Range(0.0, 1.0));
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->footer(
-      "Exit status: 0 done, 1 bad input or no board, 2 the board refuses, or is another board (nothing was "
-      "sent).");
+      "Exit status: 0 done, 1 bad input or no board, 2 the board refused the request, or another board "
+      "answered (nothing was sent).");
   command->callback([arguments] { run(*arguments); });
 }
 

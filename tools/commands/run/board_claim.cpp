@@ -9,10 +9,10 @@ namespace vernier::commands {
 
 void add_board_claim(CLI::App& command, ClaimWords& words) {
   command.add_option("--board", words.board,
-                     "the name that the board must have; nothing is sent to a board of another name");
+                     "expected name of the board; the command sends nothing to a board with another name");
   command.add_option("--board-key", words.board_key,
-                     "the board's own key (64 hexadecimal digits, or its file identity.pub); the board must "
-                     "prove that it has this key before anything is sent");
+                     "public key of the board (64 hexadecimal digits, or the file identity.pub); the command "
+                     "sends nothing until the board proves that it has this key");
 }
 
 upload::BoardClaim claim_of(const ClaimWords& words) {
@@ -39,7 +39,7 @@ void vouch_for_board(text::Assurance& assurance, const ClaimWords& words, const 
   if (!words.board_key.empty())
     assurance.require("board-key", true, "the board proved that it has the expected key");
   else
-    assurance.not_covered("whether the board has the key that is expected: no --board-key was given");
+    assurance.not_covered("The key of the board was not checked, because --board-key was not given");
 }
 
 }  // namespace vernier::commands

@@ -8,7 +8,7 @@
 
 namespace vernier::commands {
 
-/// The words of `--board` and `--board-key`; empty: not given.
+/// The values of `--board` and `--board-key`; empty if the option was not given.
 struct ClaimWords {
   std::string board, board_key;
 };

@@ -201,7 +201,8 @@ void run_compile(const Arguments& arguments) {
 void register_compile(CLI::App& vernier) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* const command = vernier.add_subcommand(
-      "compile", "Compile a machine file to a fixed-point image and C++ with a proved error bound");
+      "compile",
+      "Compile a machine file to a correction image (fixed point) and C++ with a proved error bound");
   command->add_option("machine", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command
       ->add_option("-o,--output", arguments->directory,
@@ -209,15 +210,16 @@ void register_compile(CLI::App& vernier) {
       ->type_name(kWritesFolder)
       ->required();
   command->add_option("--json", arguments->json, "result for programs (- is standard output)");
-  command->add_option("--budget", arguments->budget,
-                      "largest proved bound allowed on an axis (nm, um, mm; a plain number is um); exceeded: "
-                      "exit status 2, nothing written");
-  command->add_flag(
-      "--certificate", arguments->certificate,
-      "write bound.g too: the program as a script that Gappa (gappa DIR/bound.g) proves without Vernier");
   command->add_option(
-      "--accept", arguments->accept,
-      "a rule of the sheet \"safe to run?\" to override, recorded in the image; may be repeated");
+      "--budget", arguments->budget,
+      "largest permitted error bound of an axis (nm, um, mm; a number without a unit is in um); if a proved "
+      "bound is larger, the command writes nothing and ends with exit status 2");
+  command->add_flag("--certificate", arguments->certificate,
+                    "also write bound.g, a script of the compiled program: Gappa (gappa DIR/bound.g) proves "
+                    "the error bound independently of Vernier");
+  command->add_option("--accept", arguments->accept,
+                      "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
+                      "override; the image records the name; may be repeated");
   command->footer(
       "The sheet tests the correction over <volume> (else the axes' ranges) and with the <tools> of the "
       "file.\n"

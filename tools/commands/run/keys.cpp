@@ -50,8 +50,9 @@ void run(const Arguments& arguments) {
 
 void register_keys(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command =
-      vernier.add_subcommand("keys", "Make the key pair by which a board accepts images");
+  CLI::App* const command = vernier.add_subcommand("keys",
+                                                   "Make a key pair: the secret key signs correction images, "
+                                                   "and a board with the public key accepts these images");
   command
       ->add_option("-o,--output", arguments->directory, "directory for vernier.key (secret) and vernier.pub")
       ->type_name(kWritesFolder)

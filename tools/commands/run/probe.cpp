@@ -26,12 +26,13 @@ void add_table(CLI::App& command, TableArguments& arguments) {
   command.add_option("file", arguments.file, "CSV of touches")->type_name(kReads)->required();
   command
       .add_option("--column", arguments.columns,
-                  "meaning of a column: \"mean_up_um=upper[um]\"; again for each")
+                  "meaning of a column: \"mean_up_um=upper[um]\"; repeat the option for each column")
       ->allow_extra_args(false);
   command.add_option("--where", arguments.where, "only rows with this: \"group=A\"")->allow_extra_args(false);
   command
       .add_option("--outliers", arguments.outlier_level,
-                  "probability that a good set loses a touch; 0: no touch is excluded")
+                  "probability that the outlier test excludes a touch of a set without outliers; 0: no touch "
+                  "is excluded")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
   command.add_option("--json", arguments.json, "result for programs; - is standard output");
@@ -228,20 +229,24 @@ void register_probe_cal(CLI::App& vernier) {
       "probe-cal", "Calibrate a touch probe on a known artefact: delay, pretravel, effective tip radius");
   add_table(*command, *arguments);
   command
-      ->add_option("--artefact", arguments->artefact, "block (both faces), ring (inside), sphere (outside)")
+      ->add_option("--artefact", arguments->artefact,
+                   "artefact: block (touched on both faces), ring (inside), sphere (outside)")
       ->default_val("block")
       ->check(CLI::IsMember({"block", "ring", "sphere"}));
   command->add_option("--size", arguments->setup.size_mm, "mm; block: length; ring, sphere: diameter")
       ->required();
   command->add_option("--ball-radius", arguments->ball_radius, "nominal radius of the stylus ball, mm");
-  command->add_option(
-      "--group", arguments->group,
-      "column by which touches are compared, such as the probe's angle: each group by itself");
+  command->add_option("--group", arguments->group,
+                      "column with the groups of the touches, such as the angle of the probe: the command "
+                      "evaluates each group separately and compares the groups");
   command->add_option("--clearance", arguments->clearance,
-                      "approach distance of the touches, mm: touches before constant speed are reported");
-  command->add_option("--overtravel", arguments->overtravel, "end of the approach beyond the surface, mm");
+                      "approach distance of the touches, mm; the command reports touches at which the speed "
+                      "was not yet constant");
+  command->add_option("--overtravel", arguments->overtravel,
+                      "distance of the programmed end of the approach beyond the surface, mm");
   add_conditions(*command, arguments->setup.conditions);
-  command->add_option("-o", arguments->output, "delay as lines of a board file")->type_name(kWrites);
+  command->add_option("-o", arguments->output, "output file: the delay as lines of a board file")
+      ->type_name(kWrites);
   command->footer(
       "Columns: feed[mm/min]; block: upper, lower; ring, sphere: x, y, z, and a[mm/s^2] where an approach\n"
       "was not at constant feed; u. Exit status: 0 done, 1 bad input, 2 -o asked for a delay that the "
@@ -260,18 +265,27 @@ void register_probe_path(CLI::App& vernier) {
   command->add_option("--dialect", arguments->dialect, "turning (NISTIR 6415), linuxcnc, fanuc, aerobasic")
       ->required()
       ->check(CLI::IsMember({"turning", "linuxcnc", "fanuc", "aerobasic"}));
-  command->add_option("--size", arguments->size, "mm: diameter of the sphere, length of the block")
+  command
+      ->add_option("--size", arguments->size,
+                   "size of the artefact, mm: diameter of the sphere, length of the block")
       ->required();
-  command->add_option("--clearance", path.clearance, "mm from the surface to where an approach begins")
+  command
+      ->add_option("--clearance", path.clearance, "distance from the surface at which an approach begins, mm")
       ->required();
-  command->add_option("--overtravel", path.overtravel, "mm beyond the surface")->capture_default_str();
+  command
+      ->add_option("--overtravel", path.overtravel,
+                   "distance of the programmed end of an approach beyond the surface, mm")
+      ->capture_default_str();
   command->add_option("--ball-radius", path.ball_radius, "of the stylus, mm")->capture_default_str();
   command->add_option("--from", path.from_deg, "first angle, deg")->capture_default_str();
   command->add_option("--to", path.to_deg, "last angle, deg")->capture_default_str();
   command->add_option("--step", path.step_deg, "deg")->capture_default_str();
-  command->add_option("--elevation", path.elevations_deg, "circles above the equator, deg; 90 is the pole")
+  command
+      ->add_option(
+          "--elevation", path.elevations_deg,
+          "elevations of further circles of touches on the sphere, deg above the equator; 90 is the pole")
       ->delimiter(',');
-  command->add_option("--feeds", path.feeds, "feed per minute, in the unit of the program")
+  command->add_option("--feeds", path.feeds, "feeds of the approaches, in the unit of the program per minute")
       ->delimiter(',')
       ->required();
   command->add_option("--repeats", path.repeats, "number of touches on each face of the block")
@@ -284,10 +298,15 @@ void register_probe_path(CLI::App& vernier) {
   command->add_option("--name", path.name, "of the program")->capture_default_str();
   command->add_option("--title", path.title, "")->capture_default_str();
   command
-      ->add_option("--centre", path.centre_offset, "turning: from zero to the sphere's axis, program units")
+      ->add_option("--centre", path.centre_offset,
+                   "dialect turning: distance from the program's zero to the axis of the spindle, on which "
+                   "the sphere is, in the unit of the program")
       ->capture_default_str();
-  command->add_option("--dwell", path.dwell, "turning: after a touch")->capture_default_str();
-  command->add_option("--comment", path.comments, "a comment line at the top of the program; again for each")
+  command->add_option("--dwell", path.dwell, "dialect turning: dwell after a touch, as the value of G04")
+      ->capture_default_str();
+  command
+      ->add_option("--comment", path.comments,
+                   "comment line at the top of the program; repeat the option for each line")
       ->allow_extra_args(false);
   command->add_option("-o", arguments->output, "program")->type_name(kWrites)->required();
   command->footer(
@@ -306,20 +325,24 @@ void register_feature(CLI::App& vernier) {
       ->check(CLI::IsMember({"plane", "line", "circle", "sphere", "cylinder", "block"}));
   add_table(*command, *arguments);
   command->add_option("--ball-radius", arguments->setup.ball_radius_mm,
-                      "effective radius of the stylus ball, mm (probe-cal)");
+                      "effective radius of the stylus ball, mm (a result of probe-cal)");
   command->add_flag("--inside", arguments->setup.inside,
                     "the feature was touched from inside (for rows without normals)");
   command->add_option("--size", arguments->size, "block: X,Y in mm")->delimiter(',')->expected(2);
-  command->add_option("--expansion", arguments->expansion,
-                      "expansion of the workpiece, um/(m K): results are sizes at 20 degC");
+  command->add_option(
+      "--expansion", arguments->expansion,
+      "thermal expansion coefficient of the workpiece, um/(m K); the results are then sizes at 20 degC");
   command->add_option("--temperature", arguments->temperature,
                       "temperature of all rows, degC, if the file has no column T");
-  command->add_option("--expansion-std", arguments->expansion_std, "its standard uncertainty, um/(m K)")
+  command
+      ->add_option("--expansion-std", arguments->expansion_std,
+                   "standard uncertainty of the expansion coefficient, um/(m K)")
       ->capture_default_str();
   command->add_option("--temperature-std", arguments->temperature_std, "K")->capture_default_str();
   command
       ->add_option("-o", arguments->output,
-                   "the touches as a measurement file: d along nx ny nz from the feature")
+                   "output file: the touches as a measurement file, with the distance d of each touch from "
+                   "the feature along nx ny nz")
       ->type_name(kWrites);
   command->footer("Columns: x, y, z; nx, ny, nz (outward normals; a block: of the face); T[degC]; u.");
   command->callback([arguments, command] { run_feature(*arguments, *command); });

@@ -95,8 +95,10 @@ void run(const Arguments& arguments) {
 
 void register_record(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command = vernier.add_subcommand(
-      "record", "Record positions, directions, inputs and corrections of a running board as CSV for fit");
+  CLI::App* const command =
+      vernier.add_subcommand("record",
+                             "Record positions, directions, inputs and corrections of a running board as a "
+                             "measurement file (CSV) without readings");
   command->add_option("--to", arguments->url, "board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE")
       ->required();
   command->add_option("-o", arguments->output, "CSV file")->type_name(kWrites)->required();

@@ -95,11 +95,13 @@ void register_replay(CLI::App& vernier) {
       ->required();
   command
       ->add_option("--dac", arguments->dac,
-                   "analogue chain of 8 or 16 bit in between, beside one image unit; may be repeated")
+                   "also replay with an analogue output of 8 or 16 bit (without this option only with a "
+                   "resolution of one unit of the image); may be repeated")
       ->check(CLI::IsMember({8u, 16u}));
   command
-      ->add_option("--before", arguments->before,
-                   "a simpler machine file, for comparison with the image's in the report")
+      ->add_option(
+          "--before", arguments->before,
+          "simpler machine file: the report compares its correction with the correction of the image")
       ->type_name(kReads);
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")

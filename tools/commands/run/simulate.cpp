@@ -63,12 +63,15 @@ void register_simulate(CLI::App& vernier) {
       ->required();
   command
       ->add_option("--dac", arguments->dac,
-                   "analogue chain of 8 or 16 bit in between; default: one image unit")
+                   "bits of the analogue output of the correction, 8 or 16; default: a digital output with a "
+                   "resolution of one unit of the image")
       ->check(CLI::IsMember({8u, 16u}));
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("-o,--output", arguments->output, "every tick: corrections and errors (CSV)")
       ->type_name(kWrites);
-  command->add_option("--noise-um", arguments->loop.noise_um, "noise of the position readings, one sigma")
+  command
+      ->add_option("--noise-um", arguments->loop.noise_um,
+                   "standard deviation of the noise of the position readings")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--delay-ticks", arguments->loop.delay_ticks, "age of the readings in ticks")
       ->check(CLI::Range(0, 1000));

@@ -128,15 +128,16 @@ void run(const Arguments& arguments) {
 
 void register_touches(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command = vernier.add_subcommand(
-      "touches",
-      "Read the touches of a board's probe as CSV: axis positions at the contact, compensated, also in "
-      "workpiece coordinates");
+  CLI::App* const command =
+      vernier.add_subcommand("touches",
+                             "Read the touches of a board's probe as CSV: axis positions at the contact, "
+                             "corrected, in machine and workpiece coordinates");
   command->add_option("--to", arguments->url, "board: tcp://HOST[:1502], rtu://DEVICE, can://INTERFACE")
       ->required();
   command
       ->add_option("--key", arguments->key,
-                   "secret key of `vernier keys` (or VERNIER_KEY), to set the workpiece of a board with keys")
+                   "secret key of `vernier keys` (or VERNIER_KEY); required to set the workpiece position on "
+                   "a board that has keys")
       ->type_name(kReads);
   command->add_option("-o", arguments->output, "CSV file")->type_name(kWrites);
   command->add_option("--first", arguments->first, "number of the first touch")->capture_default_str();
@@ -153,10 +154,11 @@ void register_touches(CLI::App& vernier) {
     });
   };
   frame("--origin-x", arguments->x,
-        "send the position of the workpiece to the board: machine coordinates, mm");
+        "send the position of the workpiece to the board, in machine coordinates, mm");
   frame("--origin-y", arguments->y, "the same");
   frame("--origin-z", arguments->z, "the same");
-  frame("--angle", arguments->angle, "turn about Z from the machine's X to the workpiece's X, deg");
+  frame("--angle", arguments->angle,
+        "angle about Z from the X direction of the machine to the X direction of the workpiece, deg");
   command->footer(
       "Touches are numbered from power-on. The result names touches that the board no longer has.\n"
       "Exit status: 0 done, 1 bad input or no board.");

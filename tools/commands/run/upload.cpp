@@ -74,8 +74,8 @@ std::uint64_t time_of_signing(const Arguments& arguments, const SlotsReply& slot
   if (now > slots.newest_issued) return now;
   if (!arguments.force)
     throw text::LimitNotMet(
-        "this computer's clock is behind the newest image that the board has tried: set it, or sign right "
-        "after that image with --force");
+        "the clock of this computer is earlier than the signing time of the newest correction image that the "
+        "board has run: set the clock, or sign with a time immediately after that image (--force)");
   return slots.newest_issued + 1;
 }
 
@@ -93,7 +93,8 @@ std::uint64_t send(const Arguments& arguments, upload::Client& client) {
   const auto key = upload::given_key(arguments.key);
   if (!key)
     throw text::InputError(
-        "--key is missing: the secret key that signs the image (`vernier keys` makes one)");
+        "--key is missing: give the file of the secret key with which the command signs the correction image "
+        "(`vernier keys` makes a key)");
   const SlotsReply slots = client.slots();
   const auto upload = upload::make_upload(image, *key, time_of_signing(arguments, slots),
                                           security_of(arguments, slots), client.info().board);
@@ -138,7 +139,7 @@ text::Assurance vouch(const Arguments& arguments, upload::Client& client, const 
                     : all_axes   ? ""
                                  : ", an axis below its full weight",
                     100 * state.weight));
-  assurance.not_covered("whether the machine is more accurate: no measurement was made with the image");
+  assurance.not_covered("The accuracy of the machine with this image was not measured");
   return assurance;
 }
 
@@ -179,7 +180,8 @@ void run(const Arguments& arguments) {
     const SlotsReply slots = client.slots();
     if (slots.trial != kNoSlot) done.kept = slots.trial_fingerprint;
     if (done.sent && done.kept != done.sent)
-      throw text::LimitNotMet("the image on trial is not the image that was sent: no image was confirmed");
+      throw text::LimitNotMet(
+          "the correction image on trial differs from the image that was sent, so no image was confirmed");
     client.confirm();
   }
   if (arguments.revert) client.revert(), done.given_up = true;
@@ -196,8 +198,9 @@ std::vector<std::uint8_t> safe_image(const std::string& directory) {
 
 void register_upload(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command = vernier.add_subcommand(
-      "upload", "Sign a compiled image, send it to a board and try it; confirm or revert it");
+  CLI::App* const command = vernier.add_subcommand("upload",
+                                                   "Sign a correction image, send the image to a board and "
+                                                   "run the image on trial; confirm or revert the image");
   command->add_option("DIR", arguments->directory, "directory that `vernier compile` wrote")
       ->type_name(kReadsFolder);
   command
@@ -208,22 +211,23 @@ void register_upload(CLI::App& vernier) {
       ->required();
   command->add_option("--key", arguments->key, "secret key of `vernier keys` (or VERNIER_KEY)")
       ->type_name(kReads);
-  command->add_flag("--confirm", arguments->confirm,
-                    "confirm the image on trial; with DIR: immediately after the upload");
+  command->add_flag(
+      "--confirm", arguments->confirm,
+      "confirm the correction image on trial; with DIR: confirm the new image immediately after the upload");
   command->add_flag("--revert", arguments->revert, "revert the image on trial");
   command->add_flag("--force", arguments->force,
-                    "if the clock of this computer is behind the newest image of the board: sign with a time "
-                    "right after that image");
+                    "sign with a time immediately after the newest image of the board, if the clock of this "
+                    "computer is earlier than that image");
   add_board_claim(*command, arguments->claim);
   command
       ->add_option("--security", arguments->security,
-                   "raise the board's security counter: images below it are never taken again")
+                   "new value of the board's security counter: the board never again accepts a correction "
+                   "image with a lower value")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{UINT32_MAX}));
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->footer(
-      "Exit status: 0 done, 1 bad input or no board, 2 the board refuses (and reports the reason), is "
-      "another board "
-      "(nothing was sent), or did not execute the request.");
+      "Exit status: 0 done, 1 bad input or no board, 2 the board refused the request (the message has the "
+      "reason), another board answered (nothing was sent), or the board did not execute the request.");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -83,8 +83,8 @@ void add_board(CLI::App* command, const std::shared_ptr<Arguments>& arguments) {
 
 void register_status(CLI::App& vernier) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command =
-      vernier.add_subcommand("status", "Print the present state of a board: mode, axes, counters, image");
+  CLI::App* const command = vernier.add_subcommand(
+      "status", "Print the present state of a board: mode, axes, counters, correction image");
   add_board(command, arguments);
   command->add_option("--json", arguments->json, "result for programs; - is standard output");
   command->callback([arguments] { status(*arguments); });
@@ -100,7 +100,9 @@ void register_watch(CLI::App& vernier) {
       ->capture_default_str();
   command->add_option("--seconds", arguments->seconds, "stop after so long (0: never)")
       ->check(CLI::Range(0.0, 1e9));
-  command->add_option("--json", arguments->json, "- : one JSON object a line on standard output")
+  command
+      ->add_option("--json", arguments->json,
+                   "output for programs; - writes one JSON object per line to standard output")
       ->check(CLI::IsMember({"-"}));
   command->callback([arguments] { watch(*arguments); });
 }

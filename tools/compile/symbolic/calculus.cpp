@@ -53,7 +53,7 @@ double combined(NodeKind kind, double a, double b) {
     case NodeKind::kLess:
       return a < b;
     default:
-      throw std::domain_error("a table or a lag has no value of its own");
+      throw std::domain_error("the value of a table or a lag cannot be computed from a single sample");
   }
 }
 
@@ -95,7 +95,7 @@ NodeId Derivative::make(NodeId id) {
     case NodeKind::kLess:
       return g_.constant(0);
     default:
-      throw std::domain_error("a direction of motion with a step");
+      throw std::domain_error("a direction of motion that changes in a step");
   }
 }
 
@@ -129,7 +129,7 @@ Eigen::ArrayXd Samples::evaluate(NodeId id) {
       break;
     default:
       if (n.kind == NodeKind::kTable || n.kind == NodeKind::kLag)
-        throw std::domain_error("a table or a lag has no value of its own");
+        throw std::domain_error("the value of a table or a lag cannot be computed from a single sample");
       values = of(n.args[0]).binaryExpr(of(n.args.back()),
                                         [&](double a, double b) { return combined(n.kind, a, b); });
   }

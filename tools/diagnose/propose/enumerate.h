@@ -34,8 +34,8 @@ std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
 std::vector<char> outshone_places(const Evidence& evidence);
 
 /// Returns the degrees of freedom that the observations can distinguish. Among degrees of freedom with the
-/// same influence on all observations (all but 1e-7 of the direction), the first is used. Rows of the file
-/// precede an added row. `angles_apart`: returns the first angle and the first length.
+/// same influence on all observations (all but 1e-7 of the direction), the first is used. Rows of the machine
+/// file have priority over an added row. `angles_apart`: returns the first angle and the first length.
 std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
 
 }  // namespace vernier::diagnose

@@ -16,7 +16,7 @@
 namespace vernier::diagnose {
 
 /// All data of a fitted machine and its rows that a search needs: the influence of each degree of freedom on
-/// each observation, the residual, and the part that the free parameters of the model can still absorb.
+/// each observation, the residual, and the columns of the free parameters of the model.
 class Evidence {
  public:
   /// `fitted`: the machine at its best fit. Every logged column becomes an input.
@@ -43,7 +43,7 @@ class Evidence {
   const Eigen::VectorXd& weights() const { return weight_; }
   /// (measured - model) / u of the fit observations, without the part that the model can absorb.
   const Eigen::VectorXd& residual() const { return residual_; }
-  /// Returns orthonormal columns that span what the free parameters can absorb.
+  /// Returns orthonormal columns that span the changes of the readings by the free parameters.
   const Eigen::MatrixXd& absorbed() const { return absorbed_; }
   bool noise_known() const { return noise_known_; }
   double chi_square() const { return residual_.squaredNorm(); }
@@ -72,7 +72,8 @@ class Evidence {
   /// readings of a stay share (NoiseModel::pose), also if u states this error.
   bool poses_are_visits() const;
   /// From this call on, the noise model `noise` gives the correlation of the readings' errors (generalised
-  /// least squares). assume() whitens the residual, the columns and the part that the model absorbs.
+  /// least squares). assume() whitens the residual, the columns and the columns of the model's free
+  /// parameters.
   void assume(const fit::NoiseModel& noise);
   const fit::NoiseModel& noise() const { return noise_; }
   /// Increases each time that the whitening changes.
@@ -101,8 +102,8 @@ class Evidence {
     bool even = true;  // the steps are multiples of one step, or nearly so
   };
   Range range_of(std::size_t axis) const;
-  /// Returns the positions at which an axis was read, increasing. Positions within `apart` of each other
-  /// count once. sense +1 or -1: of the rows with that approach direction, 0: of all.
+  /// Returns the positions at which an axis was read, increasing. Positions with a distance of at most
+  /// `apart` count once. sense: +1 or -1 for the rows with this approach direction, 0 for all rows.
   std::vector<double> places_read(std::size_t axis, int sense, double apart) const;
   /// Returns the approach direction of a row: as recorded, else from the rows before. The result is 0 if the
   /// approach direction is unknown.

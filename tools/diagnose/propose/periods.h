@@ -66,7 +66,8 @@ ProjectedWaves projected_waves(const Evidence& evidence, const WaveOfAxis& wave,
                                Eigen::Index count);
 
 /// True if exact gains (wave_gains) at `count` frequencies are affordable. A long record uses a periodogram
-/// instead: there, waves are nearly orthogonal to the part that the model absorbs.
+/// instead: in a long record, cyclic errors are nearly orthogonal to the columns of the model's free
+/// parameters.
 bool is_affordable(const Evidence& evidence, Eigen::Index count, const Eigen::MatrixXd& beside);
 
 /// Returns the most promising short periods for each of several candidates of one axis, refined:

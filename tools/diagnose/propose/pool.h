@@ -61,8 +61,8 @@ class Pool {
   /// Returns the effective number of readings that support an item: squared sum over the sum of squares of
   /// its columns' squares.
   double witnesses(std::size_t item) const;
-  /// True if two items have the same effect (or cause in the catalogue), driving axis and inputs. Two such
-  /// items are the same cause.
+  /// True if two items have the same effect (or cause in the catalogue), driving axis and inputs. Two items
+  /// with equal effect on the readings count as the same cause.
   bool same_cause(std::size_t a, std::size_t b) const;
   /// True if two items span the same columns (all but a thousandth of their squares).
   bool same_columns(std::size_t a, std::size_t b) const;

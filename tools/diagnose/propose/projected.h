@@ -37,7 +37,8 @@ class ProjectedColumns {
   const ProjectedWaves* waves(std::size_t candidate) const;
   /// True if there is room for as many numbers.
   bool has_room(Eigen::Index numbers) const { return numbers <= room_; }
-  /// Keeps all points of a candidate if there is room. Threads may keep different candidates at one time.
+  /// Keeps all points of a candidate if there is room. Different threads may call keep() at the same time for
+  /// different candidates.
   void keep(std::size_t candidate, std::vector<ProjectedPoint> points);
   /// Keeps the waves of a candidate, for which there is room (has_room).
   const ProjectedWaves& keep(std::size_t candidate, ProjectedWaves waves);

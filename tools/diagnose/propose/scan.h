@@ -21,8 +21,9 @@ struct Scored {
   Eigen::Index unknowns = 0;    // coefficients and scanned values
 };
 
-/// Scores of all candidates against a residual. `beside`: orthonormal columns (in the complement of what the
-/// model absorbs) of effects already accepted. The parts of candidates along these columns do not count.
+/// Scores of all candidates against a residual. `beside`: orthonormal columns of the effects already
+/// accepted, in the orthogonal complement of the model's free parameters. The parts of candidates along these
+/// columns do not count.
 class Scanner {
  public:
   Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates);
@@ -40,9 +41,9 @@ class Scanner {
   /// Moves the scanned values between the grid's neighbours to the largest gain.
   void refine(Scored& scored, const Eigen::MatrixXd& beside) const;
 
-  /// Returns the other periods of a candidate with one period that fit as well as its own, within chance. The
-  /// positions of the axis do not distinguish these periods. Longest first, down to 1/1000 of the range;
-  /// empty for other candidates.
+  /// For a candidate with one period, returns the other periods that fit as well as the period of the
+  /// candidate, within chance. The positions of the axis do not distinguish these periods. Longest first,
+  /// down to 1/1000 of the range; empty for other candidates.
   std::vector<double> aliases(const Scored& scored, const Eigen::MatrixXd& beside) const;
 
   /// Returns the independent columns of a scored candidate after projection. Columns that the model or
@@ -53,23 +54,25 @@ class Scanner {
 
  private:
   class Part;
-  /// Difference of chi^2 within which two periods fit alike, beside a wave that leaves a chi^2 of
-  /// `left`. If that exceeds the noise, it is the scale.
+  /// Difference of chi^2 within which two periods fit equally well, if the remaining chi^2 with the cyclic
+  /// error is `left`. If that exceeds the noise, it is the scale.
   double alike_within(double left) const;
   /// Best of a candidate's periods, by the full decrease of the residual.
   Scored best_period(std::size_t candidate, const std::vector<double>& periods, const Eigen::MatrixXd& beside,
                      const Eigen::VectorXd& residual) const;
   /// Returns the residual beside the columns `beside`, which candidates must explain.
   Eigen::VectorXd residual_beside(const Eigen::MatrixXd& beside) const;
-  /// Returns the gain of a scored candidate at other scanned values; 0 if the candidate is not visible in the
-  /// data there.
+  /// Returns the gain of a scored candidate at other scanned values; 0 if the readings do not depend on the
+  /// candidate at these values.
   double gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
                  const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
-  /// Returns frequencies at which a wave may fit as well as one at `own`, up to `most`: by the
-  /// positions' own window, and, if affordable, all peaks of its exact gain near `mine`.
+  /// Returns frequencies at which a cyclic error may fit as well as one at `own`, up to `most`: from the
+  /// spectral window of the positions, and, if the computing time permits, all peaks of the exact gain near
+  /// `mine`.
   std::vector<double> possible_aliases(const Scored& scored, double own, double most, double mine,
                                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
-  /// Sets gain, share and unknowns of a candidate at a point; false if the candidate is not visible there.
+  /// Sets gain, share and unknowns of a candidate at a point of scanned values; false if the readings do not
+  /// depend on the candidate at this point.
   bool score(const ProjectedPoint& point, const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual,
              Scored& scored) const;
   /// Returns the columns of a candidate at scanned values.

@@ -16,8 +16,8 @@ struct SelectionEntry {
   std::size_t cause = 0;    // at most one entry of each cause is selected
 };
 
-/// Selects the groups of columns that explain a residual. Needs only columns and residual, both after
-/// projection on the complement of what the model can absorb.
+/// Selects the groups of columns that explain a residual. Input: columns and residual, both after projection
+/// on the orthogonal complement of the model's free parameters.
 struct SelectionProblem {
   Eigen::MatrixXd gram;     // columns^T columns
   Eigen::VectorXd moment;   // columns^T residual

@@ -6,11 +6,11 @@
 
 namespace vernier::diagnose {
 
-// All numbers of a diagnosis that were chosen and could have been chosen otherwise. One struct per
-// subject, each number with its unit, meaning and source. "Experiment" without a name is the sweep
-// of tools/docs/thresholds.md: halved and doubled over surveys of known truth. Purely numerical
-// constants (rounds until convergence, sections of a golden search, columns in a batch) are
-// defined where they are used.
+// All thresholds of a diagnosis: numbers that were chosen and could have another value. One struct per
+// subject, each number with its unit, meaning and source. "Experiment" without a name is the sweep of
+// tools/docs/thresholds.md: halved and doubled over surveys of known truth. Purely numerical constants
+// (rounds until convergence, sections of a golden search, columns in a batch) are defined where they are
+// used.
 
 /// Assumptions about the data before any candidate is tested.
 struct EvidenceThresholds {
@@ -109,7 +109,7 @@ struct CandidateThresholds {
   /// A location is excluded if another location has the same influence, this factor stronger: a tilt of 6
   /// degrees.
   double outshone = 10;
-  /// Share of the range of a fit by which a scanned unknown may leave the range of its search.
+  /// Share of the search range by which the fit may move a scanned unknown beyond this range.
   double driven_out = 2;
 
   template <class Visit>
@@ -151,16 +151,16 @@ struct FinePeriodThresholds {
   /// frequencies keeps nine tenths of its height.
   double per_range = 3;
   /// Limits of the search for short periods: periods over the range, and periods for each measured position.
-  /// The first limit is a ball screw of 1 mm pitch on a metre. The second limit: fewer positions per period
-  /// do not show the cyclic error. With twelve positions the best of a thousand periods explains 80 % of an
-  /// unrelated pattern, and other periods explain as much. A cyclic error that was found with so few
-  /// positions is reported with its aliases (Scanner::aliases).
+  /// The limit of the periods over the range (1000) is a ball screw of 1 mm lead on 1 m. The limit of the
+  /// periods per position: fewer positions per period do not show the cyclic error. With twelve positions the
+  /// best of a thousand periods explains 80 % of an unrelated pattern, and other periods explain as much. A
+  /// cyclic error that was found with so few positions is reported with its aliases (Scanner::aliases).
   double most_periods = 1000, per_position = 80;
   /// Number of peaks of a location that are scored in full, in addition to the slowest of those that fit
   /// nearly as well.
   std::size_t peaks = 3;
   /// Power of the window of the positions, as a share of its largest, above which periods are aliases of each
-  /// other. First value: for candidates; second value: for the decision.
+  /// other. The first value is for candidates, the second value is for the decision.
   double alias_near = 0.8, alias_same = 0.9999;
   /// Power of the window of the positions, as a share of its largest, above which two periods are compared in
   /// full: do the readings distinguish them?
@@ -191,15 +191,16 @@ struct FinePeriodThresholds {
 
 /// Thresholds for a column to count, and the penalty of a candidate.
 struct PoolThresholds {
-  /// Share of a column's length outside the model's reach. Below the first value the column is not visible in
-  /// the data; below the second, a column of a piecewise linear basis repeats the other columns. A thousandth
-  /// of an effect of 100 um is the noise of a laser.
+  /// Share of a column's length that remains after projection on the orthogonal complement of the model's
+  /// free parameters. Below the first value the column is not visible in the data; below the second, a column
+  /// of a piecewise linear basis repeats the other columns. A thousandth of an effect of 100 um is the noise
+  /// of a laser.
   double least_own = 1e-3, least_independent = 1e-3;
-  /// Share of a column's square beside the columns of a set. Below this value the column is a copy of the
-  /// set.
+  /// Share of a column's square that remains after projection on the orthogonal complement of the columns of
+  /// a set. Below this value the column is a copy of the set.
   double least_pivot = 1e-5;
-  /// Preference for the form nearest to the axis among forms that fit alike: a step of the BIC far
-  /// below any evidence.
+  /// Preference for the form nearest to the axis among forms that fit equally well: a difference of the BIC
+  /// far below any evidence.
   double step_of_place = 0.05;
   /// Penalty of a form that the catalogue calls rare: twice the logarithm of its relative
   /// frequency, a twentieth.
@@ -212,16 +213,17 @@ struct PoolThresholds {
   /// Change of the BIC above which a candidate is refined before it enters the pool. A candidate below this
   /// value never becomes significant.
   double refined_above = -20;
-  /// Share of chi^2 per degree of freedom that counts as noise during the ranking: an effect causes the other
-  /// half.
+  /// Share of chi^2 per degree of freedom that counts as noise during the ranking; the other half is
+  /// attributed to an effect.
   double noise_share = 0.5;
   /// Two periods of one location are different candidates if they differ by more than 1 part in this number.
   double periods_per_e = 8;
-  /// First value: share of an item's squares that a span may lack and still contains the item. Second value:
-  /// the share for two equal items.
+  /// First value: share of an item's squares that a span may lack and still contains the item. The second
+  /// value is the share for two items that count as equal.
   double held_share = 0.02, same_share = 1e-3;
-  /// Without u, where any remaining structure counts as noise: the simpler form is the cause if it explains
-  /// more than this share of what the richer form explains. The rest then has another cause.
+  /// For rows without a standard uncertainty u, where any remaining structure counts as noise: the simpler
+  /// form is the cause if its decrease of chi^2 is more than this share of the decrease by the richer form.
+  /// In this case the remaining residual has another cause.
   double simple_share = 0.9;
 
   template <class Visit>
@@ -259,8 +261,9 @@ struct AcceptanceThresholds {
   /// drift of the instrument (von Neumann 1941: 1 for random rows). Experiment: temperatures in a survey of
   /// random rows are at 0.01 to 0.1, multiplied by an axis position at 0.3 to 1.
   double slow_share = 0.15;
-  /// Share of the decrease on the fit rows that an effect must reach on held-out runs. An effect of the noise
-  /// explains nothing on held-out runs; a true effect explains nearly all.
+  /// Share of the decrease on the fit rows that an effect must reach on held-out runs. An effect that was
+  /// fitted to noise does not reduce chi^2 of held-out runs; a true effect reduces chi^2 by nearly the same
+  /// amount as on the fit rows.
   double held_out_share = 0.2;
   /// In this share of the held-out runs the contribution of an effect must keep its direction, by this cosine
   /// (60 degrees).
@@ -318,7 +321,7 @@ struct AcceptanceThresholds {
   }
 };
 
-/// Evidence that held-out rows must give for a step, and for the whole result.
+/// Minimum of the evidence from held-out rows, for a step and for the whole result.
 struct ProofThresholds {
   /// Logarithm of 20: an e-value of 20 is wrong for at most one in twenty absent steps, whatever was tested
   /// before (Ville's inequality).
@@ -360,10 +363,11 @@ struct VerdictThresholds {
   /// chi^2 per degree of freedom above which a too small uncertainty is excluded as the cause: a stated
   /// uncertainty is not three times too small.
   double implausible_uncertainty = 9;
-  /// Without u: share of chi^2 that an accepted stepwise model must explain for a named cause.
+  /// For rows without a standard uncertainty u: share of chi^2 that an accepted stepwise model must explain
+  /// for a named cause.
   double mostly_explained = 0.5;
-  /// Without u: factor by which chi^2 must increase without the named effect. The effect is then larger than
-  /// the residual beside it.
+  /// For rows without a standard uncertainty u: factor by which chi^2 must increase if the named effect is
+  /// removed. The effect is then larger than the residual beside it.
   double larger_than_rest = 2;
   /// Number of degrees of freedom above which noise larger than the stated value is accepted. Experiment:
   /// outside the catalogue, 160 rows of one reading do not show structure, 400 do.
@@ -406,12 +410,13 @@ struct VerdictThresholds {
 /// Thresholds for the test whether an accepted effect has the shape that its name states.
 struct ShapeThresholds {
   /// Natural logarithm of the significance level for a doubt about a curve, and about a change along the
-  /// axes. Every term is tested, and chance should cause no doubt. The levels are 1e-3 and 1e-4.
+  /// axes. The level is strict because every term is tested, so that chance rarely causes a doubt. The levels
+  /// are 1e-3 and 1e-4.
   double curve_chance = -6.9, change_chance = -9.2;
   /// Half-waves of a smooth curve, at most and at least: an eighth of the range is the shortest
   /// that a table of 17 stations corrects.
   std::size_t most_half_waves = 8, fewest_half_waves = 3;
-  /// Largest share of what all half-waves explain that may come from shorter half-waves.
+  /// Largest permitted share of the shorter half-waves in the decrease of chi^2 by all half-waves.
   double fast_share = 0.15;
   /// Number of coefficients above which a function of an axis is a curve.
   double curve = 3;
@@ -424,8 +429,9 @@ struct ShapeThresholds {
   double own = 1e-3;
   /// Number of positions along the axis at which a jump is tried.
   std::size_t places_of_jump = 64;
-  /// Test for pieces of one function: largest numbers of functions that count as separate causes. In order:
-  /// of one axis; of position, if rows have one reading; beside a curve.
+  /// Test for pieces of one function: largest numbers of functions that count as separate causes. The values
+  /// in order: for an effect of one axis; for an effect of the position, if rows have one reading; for an
+  /// effect beside a curve.
   std::size_t most_of_one_axis = 2, most_of_one_reading = 3, most_beside_a_curve = 2;
   /// Number of periods in the range above which a cyclic error is a separate cause (a worm, its gear) and not
   /// a piece, and largest number of such cyclic errors.

@@ -15,7 +15,7 @@ namespace vernier::exchange {
 /// FANUC (30i and others with Q1 in their parameter files).
 enum class Controller : std::uint8_t { kSiemens, kHeidenhain, kFanuc };
 
-/// What the user states about a controller.
+/// Data of the user about a controller.
 struct ControllerSetting {
   std::array<int, 3> number{1, 2, 3};  // machine axis of X, Y and Z: AX1, A1
   double unit_um = 1;                  // FANUC: detection unit

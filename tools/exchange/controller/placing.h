@@ -7,7 +7,7 @@
 
 namespace vernier::exchange {
 
-/// What a controller holds, and its limits.
+/// Kinds of tables that a controller supports, and their limits.
 struct ControllerRules {
   std::size_t most_own = 2, most_cross = 0;  // points of a table; most_cross 0: no tables of other axes
   bool own_reverse = false;                  // own tables have values of their own in the negative direction
@@ -17,7 +17,7 @@ struct ControllerRules {
   double position_step_mm = 1e-6;  // resolution of the positions
 };
 
-/// What the user states about the tables.
+/// Data of the user about the tables.
 struct ControllerWishes {
   double tolerance_um = 1;            // error between the points at which the number of points is enough
   double step_mm = 0;                 // distance of the points; 0: chosen by the tolerance
@@ -27,9 +27,9 @@ struct ControllerWishes {
 /// Returns the tables that hold the corrections of a machine as sums of functions of one axis: the mean of
 /// the corrections over positions of the other axes. Values and positions are rounded as the files have
 /// them. Without step_mm, the number of points grows until the error between them is within the tolerance or
-/// the controller's limit is reached. In the second case the number with the smallest error is taken. Tables
-/// of other axes below a quarter of the tolerance are left out.
-/// `at` (count 1): inputs and motion. Throws InputError: step_mm needs more points than the controller keeps.
+/// the controller's limit is reached. In the second case the function uses the number of points with the
+/// smallest error. Tables of other axes below a quarter of the tolerance are left out. `at` (count 1): inputs
+/// and motion. Throws InputError: step_mm needs more points than the controller keeps.
 ControllerTables controller_tables(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerRules& rules, const model::States& at,
                                    const ControllerWishes& wishes);

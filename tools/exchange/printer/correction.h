@@ -20,8 +20,8 @@ struct HeightMesh {
   double at(double x, double y) const;
 };
 
-/// The correction that the firmware of a printer holds, in the order in which it acts on a command: skew,
-/// then heights, then the steps per mm.
+/// The correction that the firmware of a printer supports, in the order in which the firmware applies it to a
+/// command: skew, then heights, then the steps per mm.
 struct PrinterCorrection {
   /// Added: x += xy*y + xz*z, y += yz*z. Tangents of the angles.
   double xy = 0, xz = 0, yz = 0;

@@ -13,13 +13,13 @@ namespace vernier::exchange {
 /// A firmware of printers and small machines.
 enum class Firmware : std::uint8_t { kKlipper, kRepRap, kMarlin, kGrbl };
 
-/// What the user states about the present configuration.
+/// Data of the user about the present configuration.
 struct PresentSetting {
   /// X, Y, Z: steps per mm (M92, $100), or for Klipper mm per turn (rotation_distance).
   std::optional<std::array<double, 3>> steps;
 };
 
-/// Returns the parts of a correction that a firmware holds.
+/// Returns the parts of a correction that a firmware supports.
 PrinterFeatures features_of(Firmware firmware, const PresentSetting& present);
 
 /// Returns the files of a firmware, and the correction with the rounding of these files. Sources, all in

@@ -20,9 +20,9 @@ struct Move {
 /// Tests whether readings from a row on belong to another tool point or another set-up than the readings
 /// before. find_move is used if the residual of a fit exceeds its noise. At each of several rows, the nine
 /// shifts and rotations of tool point and set-up are fitted beside the model (linearised at `fitted`). scale:
-/// of the model's parameters, which hold them near `centre`. The move is accepted if it explains most of the
-/// excess residual and chance does not explain that. nominal: residual of the nominal machine after its
-/// set-up. Returns nullopt if no row is accepted.
+/// prior standard deviations of the model's parameters about `centre`. The move is accepted if it explains
+/// most of the excess residual and chance does not explain that. nominal: residual of the nominal machine
+/// after its set-up. Returns nullopt if no row is accepted.
 std::optional<Move> find_move(const model::Machine& fitted, const model::Measurement& rows,
                               const model::ParameterSet& parameters, const Eigen::VectorXd& centre,
                               const Eigen::VectorXd& scale, const Eigen::VectorXd& nominal);

@@ -18,7 +18,7 @@ namespace vernier::fit {
 /// that the readings do not determine have the uncertainty of their scale.
 class Reach {
  public:
-  /// Constructs the Reach of a machine. For a machine without a fit, known() is false.
+  /// Constructs the Reach of a machine. known() returns false for a machine that was not fitted.
   explicit Reach(const model::Machine& machine);
 
   bool known() const { return known_; }

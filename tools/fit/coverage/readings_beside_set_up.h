@@ -13,7 +13,7 @@ namespace vernier::fit {
 /// of each instrument absorbs is projected out. Two explanations of the readings are compared in this form.
 class ReadingsBesideSetUp {
  public:
-  /// residual: measured - model of each reading; variance: of a weighted reading.
+  /// residual: measured - model of each reading; variance: variance of a weighted reading.
   ReadingsBesideSetUp(const model::Machine& fitted, const model::Measurement& rows,
                       const Eigen::VectorXd& residual, double variance);
 

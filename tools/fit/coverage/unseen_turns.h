@@ -18,10 +18,11 @@ namespace vernier::fit {
 std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measurement& rows,
                                const model::ParameterSet& parameters, double reach_mm);
 
-/// Standard deviation of a rotation that is held: 0.02 um at a metre, far below any reading.
+/// Standard deviation of a rotation that is fixed: 0.02 um at a distance of 1 m, far below the uncertainty of
+/// any reading.
 inline constexpr double kHeldTurn_deg = 1e-6;
 
-/// Holds these parameters at their values in `at`, as if the values were known to a millionth of a degree.
+/// Fixes these parameters at their values in `at`, with a standard uncertainty of a millionth of a degree.
 void hold_at(FitProblem& problem, const std::vector<bool>& held, const Eigen::VectorXd& at);
 
 }  // namespace vernier::fit

@@ -26,7 +26,8 @@ class FitProblem {
   void clear_priors() { prior_centre_.resize(0); }
   /// Makes the readings blind along a direction: the size of everything, if no reading has a length. Without
   /// it, their noise would shrink the machine. direction(point) returns the direction v; dual: w, both in the
-  /// parameters' own units. The readings then see (I - v w^T / (w^T v)) of every change.
+  /// parameters' own units. The readings then depend only on (I - v w^T / (w^T v)) times the change of the
+  /// parameters.
   void hold_size(std::function<Eigen::VectorXd(const Eigen::VectorXd&)> direction, Eigen::VectorXd dual);
 
   /// Returns the sum of squared weighted residuals and priors; infinity if the model is undefined at the
@@ -44,8 +45,8 @@ class FitProblem {
   /// Jacobian of `predicted`.
   Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, model::SparseRows* jacobian) const;
 
-  /// Returns the part of the normal equations that known values of things give (radius, place with an
-  /// uncertainty); 0 x 0: there are none.
+  /// Returns the contribution of known values of touched objects (radius, position with an uncertainty) to
+  /// the normal equations; 0 x 0 if there are no known values.
   Eigen::MatrixXd known_normal(const Eigen::VectorXd& point) const;
 
   const Eigen::SparseMatrix<double>& prior_precision() const { return prior_precision_; }

@@ -29,9 +29,10 @@ RoleStatistics role_statistics(const model::Measurement& m, const Eigen::VectorX
 /// does not.
 std::vector<double> row_conditions(const model::Measurement& m, std::size_t row);
 
-/// Returns the noise of the measurement, um: rms of u over the fit rows' lengths. Without u the noise comes
-/// from repeats: rows with the same axes, corrections, motion, inputs and candidates in any run (pooled
-/// standard deviation, at least 5 degrees of freedom). Without u and without repeats the result is nullopt.
+/// Returns the noise of the measurement, um: rms of u over the fit rows' lengths. If the rows have no
+/// standard uncertainty u, the noise is estimated from repeats: rows with the same axes, corrections, motion,
+/// inputs and candidates in any run (pooled standard deviation, at least 5 degrees of freedom). If the rows
+/// have neither a standard uncertainty u nor repeats, the result is nullopt.
 std::optional<double> noise_um(const model::Measurement& m);
 /// The same for the rotations, urad.
 std::optional<double> noise_urad(const model::Measurement& m);

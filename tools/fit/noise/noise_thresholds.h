@@ -45,8 +45,8 @@ struct NoiseThresholds {
   /// Penalty for the row of a step, in units of the logarithm of the number of readings. The height of a step
   /// counts 1 in addition, in each kind of reading. Experiment: surveys with low noise.
   double price_of_place = 2;
-  /// Without u: share of the residual below which the independent noise is negligible. A residual with less
-  /// independent noise is smooth and not noise.
+  /// For rows without a standard uncertainty u: share of the residual below which the independent noise is
+  /// negligible. A residual with less independent noise is smooth and not noise.
   double least_own_part = 0.02;
   /// Number of readings beyond the parameters below which noise counts as independent. With fewer
   /// readings the uncertainty of a variance exceeds a quarter (sqrt(2/30)).
@@ -54,13 +54,14 @@ struct NoiseThresholds {
   /// Minimum number of rows on either side of a step of the instrument. With fewer rows a step cannot be
   /// distinguished from their noise.
   std::size_t rows_beside_step = 10;
-  /// Share of a step's rows that the model must not be able to absorb.
+  /// Share of the effect of a step on its rows that must remain after projection on the complement of the
+  /// free parameters.
   double own_of_step = 0.02;
   /// Limit of a reading in robust standard deviations. A single outlier is not a property of the
   /// noise.
   double held = 4;
-  /// Readings that scatter by less than this share of u are much better than stated. Then u counts
-  /// as independent noise.
+  /// Readings that scatter by less than this share of u are much better than stated. In this case u is the
+  /// standard deviation of the independent noise.
   double near_u = 0.7;
   /// Readings that scatter by less than this share of u have negligible noise: they come from a simulation.
   double far_below_u = 0.01;

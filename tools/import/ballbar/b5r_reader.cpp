@@ -129,7 +129,8 @@ class B5rReader {
     if (!is_linear(file.axis_a))
       fail(plane.child("A_AXIS_NAME"), file.axis_a, "an axis of the plane must be X, Y or Z");
     if (!is_linear(file.axis_b) || file.axis_b == file.axis_a) {
-      fail(plane.child("B_AXIS_NAME"), file.axis_b, "an axis of a plane is X, Y or Z, and not the other one");
+      fail(plane.child("B_AXIS_NAME"), file.axis_b,
+           "the two axes of the plane must be different axes of X, Y and Z");
     }
     file.nominal_length_mm = positive(need(bar, "NOMINAL_LENGTH"));
     file.radius_mm = positive(need(bar, "TEST_RADIUS"));
@@ -137,9 +138,10 @@ class B5rReader {
     const double arc_deg = number(need(bar, "END_ANGLE")) - number(need(bar, "START_ANGLE"));
     if (!(arc_deg > 0) || arc_deg > 360)
       fail(bar.child("END_ANGLE"), text::trimmed(bar.child("END_ANGLE").text().get()),
-           "must be 0 to 360 deg beyond START_ANGLE");
+           "the angle must be 0 to 360 deg beyond START_ANGLE");
     if (arc_deg < 360)
-      file.notes.push_back("partial arc: START..END is taken to span START_ANGLE..END_ANGLE");
+      file.notes.push_back(
+          "partial arc: the import assumes that the samples START..END are the arc START_ANGLE..END_ANGLE");
   }
 
   BallbarRun read_run(const pugi::xml_node& bar, const pugi::xml_node& node) const {

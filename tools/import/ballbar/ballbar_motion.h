@@ -19,7 +19,7 @@ struct CirclePoint {
   double since_mm[2] = {0, 0};  // travel of the axis since its last reversal
 };
 
-/// Returns the actual feed of a run, from the samples that the run took for its arc: mm/min.
+/// Returns the actual feed of a run from the number of samples on its arc, mm/min.
 double actual_feed_mm_min(const BallbarFile& file, const BallbarRun& run);
 
 /// Returns the commanded motion at sample `index` of a run; beyond start..end the angle continues at the same

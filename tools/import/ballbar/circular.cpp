@@ -21,7 +21,7 @@ struct FittedCircle {
 FittedCircle fit_circle(const CircularPass& pass) {
   const auto count = static_cast<Eigen::Index>(pass.angle_deg.size());
   if (pass.deviation_mm.size() != pass.angle_deg.size())
-    throw std::invalid_argument("circle: angles and deviations differ in number");
+    throw std::invalid_argument("circle: the number of angles differs from the number of deviations");
   if (count < 3) throw std::invalid_argument("circle: a pass needs at least three samples");
   const Eigen::ArrayXd angle =
       Eigen::Map<const Eigen::ArrayXd>(pass.angle_deg.data(), count) * maths::kRadPerDeg;

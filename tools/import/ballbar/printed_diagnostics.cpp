@@ -13,7 +13,8 @@ namespace {
 
 using Values = std::map<std::string, double>;
 
-constexpr const char* kOnlyPrinted = "the definition is not published and was not found";
+constexpr const char* kOnlyPrinted =
+    "the definition of this result is not published, and recomputing did not find it";
 
 std::optional<double> printed(const BallbarAnalysis& analysis, const std::string& name) {
   for (const auto& feature : analysis.features)
@@ -143,11 +144,13 @@ void say_what_is_not_known(RecomputedResults& results) {
     results.why[std::string("AF_CYCLIC_PHASE_") + sense] = "from where a phase counts" + not_found;
   for (const char* end : {"A_POS", "A_NEG", "B_POS", "B_NEG"})
     results.why[std::string("AF_REVERSAL_SPIKES_") + end] =
-        "one number of the spikes of both directions" + not_found;
+        "one value for the reversal spikes of both directions" + not_found;
   for (const char* axis : {"A", "B"})
-    results.why[std::string("AF_CYCLIC_PITCH_") + axis] = "a setting of the software, taken over here";
+    results.why[std::string("AF_CYCLIC_PITCH_") + axis] =
+        "a setting of the ball bar's software; the value of the file is used";
   results.why["AF_POSITIONAL_TOLERANCE"] = kOnlyPrinted;
-  results.why["RMS"] = "how readings are brought to the curve's grid" + not_found;
+  results.why["RMS"] =
+      "the software's interpolation of the readings to the grid of the curve is not known" + not_found;
 }
 
 }  // namespace

@@ -27,9 +27,9 @@ std::optional<double> mean_feed_mm_min(const CircularResult& circle);
 /// (tests/data/ballbar/README.md).
 std::vector<DiagnosticsSample> model_curve(const BallbarFile& file);
 
-/// Computes the diagnostics that a file prints. The linear diagnostics and cyclic errors come from the model
-/// curve of the file. Values at the ends, shares and ranks follow from these; roundness and the other results
-/// come from the readings.
+/// Computes again the diagnostics that the ball bar's software wrote into the file. The linear diagnostics
+/// and cyclic errors come from the model curve of the file. Values at the ends, shares and ranks follow from
+/// these; roundness and the other results come from the readings.
 RecomputedResults recompute_diagnostics(const BallbarFile& file, const BallbarAnalysis& analysis,
                                         const CircularResult& circle);
 

@@ -81,7 +81,7 @@ void compare(const std::string& place, const std::vector<BallbarFeature>& featur
     if (const auto why = computed.why.find(feature.name); why != computed.why.end()) {
       result.why = why->second;
     } else if (!result.computed) {
-      result.why = "not known here, or the file lacks its input data";
+      result.why = "this result is not known to the program, or the file does not contain its input data";
     }
     results.push_back(result);
   }

@@ -29,9 +29,9 @@ struct RepeatingError {
   const RepeatingStep& best() const { return steps[chosen]; }
 };
 
-/// Fits models of the repeating error to run `run` of a file, over its samples start..end. Samples that
-/// `on_circle` (per run, per sample; empty: all are) leaves out count nowhere. The angle is that of the clock
-/// of the run, else that of the file.
+/// Fits models of the repeating error to run `run` of a file, over its samples start..end. `on_circle` states
+/// for each run and sample whether the sample is used (empty: all samples are used). The angle is that of the
+/// clock of the run, else that of the file.
 RepeatingError repeating_error(const BallbarFile& file, std::size_t run,
                                const std::vector<std::vector<char>>& on_circle = {});
 

@@ -136,7 +136,7 @@ std::optional<Found> examine(const BallbarRun& run, RunRepair& repair) {
   repair.turn_after = repair.turn_before;
   const Eigen::MatrixXd series = readings_um(run);
   if (static_cast<double>(series.rows()) < 1.5 * repair.turn_before) {
-    repair.why_not = "less than one and a half turns: no part repeats";
+    repair.why_not = "the record has less than one and a half turns, so no part of it repeats";
     return std::nullopt;
   }
   const Eigen::VectorXd implied = Eigen::VectorXd::Constant(series.rows(), repair.turn_before);

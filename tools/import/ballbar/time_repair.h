@@ -46,12 +46,13 @@ struct TimeRepair {
   std::vector<RunRepair> runs;
 };
 
-/// Finds from the record how many samples a turn takes and where samples are missing, and gives each sample
-/// its angle and time. Method: the second pass over the circle repeats the first pass. If the lag between the
-/// passes jumps, one pass lacks samples or the other waited; the function assumes missing samples. The angle
-/// of the file's START is kept in the run with the smallest residual between its turns. In the other runs the
-/// angle is turned until the repeating error agrees with that run. A run of less than one and a half turns,
-/// or a run that does not repeat, is not changed; its RunRepair contains the reason.
+/// Estimates from the record the number of samples per turn and the missing samples, and computes angle and
+/// time of each sample. Method: the second pass over the circle repeats the first pass. If the lag between
+/// the passes jumps, samples of one pass are missing, or the other pass had a pause; the function assumes
+/// missing samples. The angle of the file's START is kept in the run with the smallest residual between its
+/// turns. The angles of the other runs are shifted until the repeating error agrees with that of this run. A
+/// run of less than one and a half turns, or a run that does not repeat, is not changed; its RunRepair
+/// contains the reason.
 TimeRepair repair_time_base(const BallbarFile& file);
 
 }  // namespace vernier::importer

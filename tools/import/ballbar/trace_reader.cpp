@@ -35,8 +35,8 @@ class TraceReader {
     file.radius_mm = setup_.radius_mm;
     file.programmed_feed_mm_min = setup_.feed_mm_min;
     file.notes = {
-        "a trace file holds neither plane, radius, feed nor start angle: they are as given on the command "
-        "line",
+        "a trace file contains no plane, radius, feed and start angle: the command uses the values of the "
+        "command line",
         "Direction 0 is taken as " + std::string(setup_.direction_of_zero > 0 ? "CCW" : "CW")};
     const auto runs = document.find("Runs");
     if (runs == document.end()) fail("", "no Runs in it");
@@ -73,7 +73,7 @@ class TraceReader {
     const auto readings = node.find("Readings");
     if (readings == node.end()) fail(pointer, "a run needs its Readings");
     if (!readings->is_array() || readings->size() < 3)
-      fail(pointer + "/Readings", "must be a list of three readings or more");
+      fail(pointer + "/Readings", "the value must be a list of at least three readings");
     BallbarRun run;
     run.direction = *direction == 0 ? setup_.direction_of_zero : -setup_.direction_of_zero;
     run.label = run.direction > 0 ? "CCW" : "CW";

@@ -69,7 +69,8 @@ void set_option(ColumnMap& map, const std::string& key, const std::string& value
     map.format.skip = *text::parse_count(value);
   else
     throw text::InputError(
-        place, key, "unknown statement; known are column, set, separator, decimal, header, comment, skip");
+        place, key,
+        "unknown statement; known statements are column, set, separator, decimal, header, comment, skip");
 }
 
 /// A number in the form of measurement files, or `nullopt`.
@@ -93,7 +94,7 @@ std::size_t source_index(const DelimitedFile& file, const MappedColumn& column) 
                            "the header has no column of this name");
   if (std::count(file.header.begin(), file.header.end(), column.source) > 1)
     throw text::InputError({file.file, file.header_line}, column.source,
-                           "several columns have that name: give its number");
+                           "several columns have this name: give the number of the column");
   return static_cast<std::size_t>(found - file.header.begin());
 }
 

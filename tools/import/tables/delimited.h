@@ -32,8 +32,8 @@ DelimitedFile parse_delimited(const std::string& text, const std::string& file,
 
 /// Returns the names of separators: comma, semicolon, tab, space, auto.
 std::vector<std::string> separator_words();
-/// Converts the name of a separator to its character. place: of the name, if the name is not an argument.
-/// Throws InputError.
+/// Converts the name of a separator to its character. place: file and line of the name, for the error
+/// message; empty if the name is an argument. Throws InputError.
 char separator_of(const std::string& name, const text::Place& place = {});
 
 }  // namespace vernier::importer

@@ -169,13 +169,13 @@ std::string axis_of(const LaserText& read, const std::string& said, const std::s
   const std::string place_word = own == read.said.end() ? "Axis" : own->second;
   const text::Place place = own == read.said.end() ? text::Place{file, 0} : read.axis_at;
   if (found.empty())
-    throw text::InputError(place, place_word, "the measured axis is missing; give it with --axis X");
+    throw text::InputError(place, place_word,
+                           "the file does not state the measured axis; give the axis with --axis X");
   if (found.size() == 1 && found[0] >= 'a' && found[0] <= 'z') found[0] = static_cast<char>(found[0] - 32);
   if (found != "X" && found != "Y" && found != "Z")
-    throw text::InputError(
-        said.empty() ? place : text::Place{}, found,
-        "positioning along X, Y or Z is read; of an axis that turns these files do not say "
-        "the unit of the deviations");
+    throw text::InputError(said.empty() ? place : text::Place{}, found,
+                           "only positioning along X, Y or Z can be imported; for a rotary axis these files "
+                           "do not state the unit of the deviations");
   return found;
 }
 
@@ -198,8 +198,9 @@ LaserFile read_laser_file(const std::string& text, const std::string& file, cons
     return found == read.said.end() ? std::string() : found->second;
   };
   if (const std::string owner = said("owner"); !owner.empty() && text::in_small_letters(owner) != "linear")
-    throw text::InputError({file, 0}, owner,
-                           "not of the linear measurement: the file does not give its unit");
+    throw text::InputError(
+        {file, 0}, owner,
+        "this value is not of the linear measurement: the file does not state the unit of the value");
   LaserFile result{axis_of(read, axis, file),
                    said("filetype"),
                    said("machine"),
@@ -214,8 +215,8 @@ LaserFile read_laser_file(const std::string& text, const std::string& file, cons
   if (senses == RunSenses::kAsListed && both && !back && read.runs.size() > 1)
     throw text::InputError(
         {file, read.runs.begin()->second.front().line}, "Run Target Data",
-        "both directions by the flags, and no run is listed backward: give --senses alternate (odd "
-        "runs forward, even back) or --senses forward");
+        "the flags of the file state both approach directions, but no run has decreasing targets: give "
+        "--senses alternate (odd runs forward, even runs back) or --senses forward");
   const std::string small = text::in_small_letters(result.axis);
   std::vector<ImportTable::Column> columns = {
       {result.axis, "mm", {}},

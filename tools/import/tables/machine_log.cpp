@@ -63,7 +63,8 @@ Eigen::Matrix3Xd points_of(const ImportTable& tracker) {
   Index k = 0;
   for (const char* name : format::columns::kPoint) {
     if (tracker.find(name) == nullptr)
-      throw text::InputError({tracker.file, 0}, name, "not mapped: --log pairs points of x, y and z");
+      throw text::InputError({tracker.file, 0}, name,
+                             "this column is not mapped: --log requires x, y and z of each point");
     const std::vector<double> values = tracker.numbers(name);
     points.row(k++) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), points.cols());
   }
@@ -95,7 +96,7 @@ ImportTable paired_table(const ImportTable& tracker, const Log& log, const Pairi
     const format::CsvColumn& column = log.csv().columns[k];
     if (column.name != format::columns::kTime && tracker.find(column.name) != nullptr)
       throw text::InputError({log.csv().file, log.csv().header_line}, column.name,
-                             "the log and the tracker's table both have this column");
+                             "both the log and the table of the tracker have this column");
     ImportTable::Column made{column.name, column.unit, {}};
     for (const std::size_t i : kept) made.cells.push_back(log.of(dwells[*pairing.dwell[i]], k));
     table.columns.push_back(std::move(made));
@@ -128,7 +129,7 @@ LoggedTable with_log(const ImportTable& tracker, const std::string& text, const 
       find_dwells(time, axes, Eigen::VectorXd::Constant(axes.cols(), options.still), options.dwell_s);
   if (input.dwells.empty())
     throw text::InputError({log_file, 0}, "",
-                           "the machine is never at rest for that time: change --dwell or --still");
+                           "the log contains no dwell of this length: change --dwell or --still");
   input.stand = stands(machine, axes, input.dwells);
   input.point = points_of(tracker);
   input.distance_tolerance_mm = options.tolerance_mm;
@@ -141,7 +142,8 @@ LoggedTable with_log(const ImportTable& tracker, const std::string& text, const 
     if (!result.pairing.dwell[i]) result.unmatched_line.push_back(tracker.line[i]);
   if (result.unmatched_line.size() == tracker.line.size())
     throw text::InputError({tracker.file, 0}, "",
-                           "no point fits the log: another machine, another day, or --tolerance");
+                           "no point agrees with a dwell of the log: check that machine and day are the "
+                           "same, or give a larger --tolerance");
   result.dwells = input.dwells;
   result.table = paired_table(tracker, log, result.pairing, input.dwells);
   return result;

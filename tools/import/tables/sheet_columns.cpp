@@ -399,13 +399,14 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     if (deviation && !axes.contains(column.name) && alone_measured.contains(column.name))
       column.to_target = true;
     else if (deviation && (column.name.empty() || !axes.contains(column.name)))
-      leave(column, "a deviation of which axis? Give it: --deviation \"X=" + table.headings[k].text + "\"");
+      leave(column, "the axis of this deviation is not known: state the axis, --deviation \"X=" +
+                        table.headings[k].text + "\"");
     else if (deviation && measured.contains(text::in_small_letters(column.name)))
       leave(column, "the measured position is there as " + text::in_small_letters(column.name));
     else if (column.name == kSensePrefix && moved.size() == 1)
       column.name = format::axis_column(format::AxisQuantity::kSense, *moved.begin());
     else if (column.name == kSensePrefix)
-      leave(column, "the approach direction of which axis? Give it: --column \"dirX=" +
+      leave(column, "the axis of this approach direction is not known: state the axis, --column \"dirX=" +
                         table.headings[k].text + "\"");
     else if (column.name == columns::kTime && content == Holds::kDates)
       leave(column, "dates or times of day, no seconds");
@@ -523,8 +524,7 @@ std::string angle_of(const std::string& axis, const text::Place& place) {
   if (auto angle = format::angle_about(axis)) return *angle;
   throw text::InputError(
       place, axis,
-      "a deviation in degrees: about which direction is it? Give it: --column \"rz[deg]=HEADING\" "
-      "with what was measured");
+      "this column is a deviation in degrees: state its direction, for example --column \"rz[deg]=HEADING\"");
 }
 
 /// Assignments that read a table in which nothing was recognised as measured, with its own headings.
@@ -673,9 +673,8 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
         wishes.unit = *sheet::unit_meant(value);
       else
         throw text::InputError(place, name,
-                               "not understood; known are column, deviation, leave, set, separator, decimal, "
-                               "skip, table, sheet, "
-                               "comment, unit");
+                               "unknown statement; known statements are column, deviation, leave, set, "
+                               "separator, decimal, skip, table, sheet, comment, unit");
     }
   }
 }
@@ -849,9 +848,9 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   }
   for (const MappedColumn& constant : wishes.constants) {
     if (result.find(constant.name) != nullptr)
-      throw text::InputError(
-          heading, constant.name,
-          "the table has this column: --set would give it a second time (--leave its heading)");
+      throw text::InputError(heading, constant.name,
+                             "the table already has this column: omit --set, or exclude the column of the "
+                             "table (--leave HEADING)");
     result.columns.push_back(
         {constant.name, constant.unit,
          std::vector<std::string>(result.line.size(), constant_cell(constant, sheet.decimal_comma))});

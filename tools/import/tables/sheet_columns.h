@@ -36,13 +36,13 @@ struct SheetWishes {
   std::vector<std::string> axes;  // of the machine, if it is known; else X Y Z A B C U V W J1 …
 };
 
-/// Adds an assignment "x[mm]=X ist". "X ist=x[mm]" is also accepted, as in the other imports: `table` shows
-/// which side is a heading. Throws InputError.
+/// Adds an assignment "x[mm]=X ist". "X ist=x[mm]" is also accepted, as in the other imports: the headings of
+/// `table` determine which side is the heading. Throws InputError.
 void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words);
 /// Adds an assignment "X[um]=Abweichung": the measured value is the position of the axis plus this deviation.
 void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place = {});
 
-/// A profile: how a table is read, once and for all. A statement a line, # remarks:
+/// A profile: the stored settings for reading tables of one form. A statement a line, # remarks:
 ///   separator = semicolon    decimal = comma    skip = 2    sheet = Tabelle1    unit = mm
 ///   column X ist = x[mm]     deviation Abw. = X[um]     leave Bemerkung     set run = a
 /// Throws InputError with file, line and word.

@@ -33,7 +33,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
 
 /// "UTF-8, columns separated by semicolon, decimal comma".
 std::string how_read(const sheet::Sheet& sheet);
-/// Describes what a column becomes: "x[mm]", "position of X + this, [um]", "left out".
+/// Returns the description of the use of a column: "x[mm]", "position of X + this, [um]", "left out".
 std::string becomes(const SheetColumn& column);
 /// [{heading, use: column
 /// deviation

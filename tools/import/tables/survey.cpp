@@ -134,7 +134,7 @@ void finish_tracker(ImportTable& table) {
                                      [&](const char* name) { return table.find(name) != nullptr; });
   if (by_angles + by_quaternion + by_vector > 1)
     throw text::InputError({table.file, 0}, by_quaternion ? "qw" : "rX",
-                           "the orientation is mapped in two ways");
+                           "the orientation is mapped twice, in two forms: map one form");
   std::vector<Eigen::VectorXd> vectors;
   if (by_angles) {
     for (const Eigen::VectorXd& row : rows(table, angles, format::Dimension::kAngle))

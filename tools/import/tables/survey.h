@@ -7,14 +7,14 @@
 
 namespace vernier::importer {
 
-/// Converts a tracker's table to a measurement. Positions x y z are kept. The orientation becomes the
-/// rotation vector rx ry rz in deg. Input: fixed order angles rX rY rZ (Rx*Ry*Rz, as a sixdof transform), or
-/// a quaternion qw qx qy qz. Throws InputError: an orientation with a missing or repeated part, a quaternion
-/// whose length is not 1 within 1e-3, no measured column.
+/// Converts a tracker's table to a measurement. Positions x y z are imported unchanged. The orientation
+/// becomes the rotation vector rx ry rz in deg. Input: fixed order angles rX rY rZ (Rx*Ry*Rz, as a sixdof
+/// transform), or a quaternion qw qx qy qz. Throws InputError: an orientation with a missing or repeated
+/// part, a quaternion whose length is not 1 within 1e-3, no measured column.
 void finish_tracker(ImportTable& table);
 
-/// Converts a table of touches to a measurement. A column d is kept; otherwise d = n * (m - p) with the
-/// recorded point mx my mz. nx ny nz (scaled to length 1, within 1e-3) and the nominal point px py pz are
+/// Converts a table of touches to a measurement. A column d is imported as d; otherwise d = n * (m - p) with
+/// the recorded point mx my mz. nx ny nz (scaled to length 1, within 1e-3) and the nominal point px py pz are
 /// required. All points are in workpiece coordinates. `radius_mm`: radius of the stylus ball, if the recorded
 /// point is the centre of the ball and the nominal point is on the surface. The nominal point then moves out
 /// along the normal. Throws InputError.

@@ -154,7 +154,7 @@ void number_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
     if (!numbered) one.run = std::to_string(++count[one.sense]);
     if (!seen.emplace(one.run, one.sense).second)
       throw text::InputError({sheet.file, sheet.line[table.heading_row]}, table.headings[one.column].text,
-                             "this run occurs twice in this direction");
+                             "the table contains this run twice in the same approach direction");
   }
 }
 
@@ -265,8 +265,8 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   for (const RunColumn& one : runs)
     if (directed && one.sense == 0)
       throw text::InputError({sheet.file, sheet.line[table.heading_row]}, table.headings[one.column].text,
-                             "the other runs have an approach direction in their heading, this one has none: "
-                             "write + or - behind its number");
+                             "the heading of this run has no approach direction, but the headings of the "
+                             "other runs have one: write + or - behind the number of the run");
   const sheet::Heading readings = heading_of_readings(sheet, table, runs, others);
   std::vector<sheet::Heading> headings;
   for (const std::size_t k : others) headings.push_back(table.headings[k]);

@@ -233,9 +233,10 @@ ValueAndSlopes Evaluator::lag(const ValueAndSlopes& input, const ValueAndSlopes&
     if (before < states_.count && tau.value[i] > 0) {
       const double dt = states_.time[at] - states_.time[from];
       if (dt < 0)
-        throw text::InputError(
-            "lag needs rows in time order: t falls from " + std::to_string(states_.time[from]) + " to " +
-            std::to_string(states_.time[at]) + " s in run \"" + states_.names(states_.clock)[clock] + "\"");
+        throw text::InputError("a term with lag requires rows in time order: t decreases from " +
+                               std::to_string(states_.time[from]) + " to " +
+                               std::to_string(states_.time[at]) + " s in run \"" +
+                               states_.names(states_.clock)[clock] + "\"");
       step = lag_step(dt / tau.value[i]);
       h_by_tau = -dt / (tau.value[i] * tau.value[i]);
     }

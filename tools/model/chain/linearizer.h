@@ -15,7 +15,7 @@
 namespace vernier::model {
 
 /// Adjacent parameters with common weights: the free columns of a table (one weight for each station that
-/// takes part at a row), statics, or the components of a BaseShift (weight 1).
+/// contributes at a row), statics, or the components of a BaseShift (weight 1).
 struct ParameterGroup {
   Eigen::Index slot = 0, width = 0;                           // rows of RowLinear::gradient
   std::vector<std::pair<Eigen::Index, double>> first_weight;  // parameter of the first column, weight
@@ -44,8 +44,8 @@ class Linearizer {
   void each_row(const Machine& machine, const Visit& visit) const {
     each_row(machine, visit, [](const ThingsAt&) {});
   }
-  /// The same; at the end, end(const ThingsAt&) gets the things that rows met, as this machine has them. The
-  /// derivatives of the rows are those at fixed things.
+  /// Works as the function above, and then calls end(const ThingsAt&) with the estimates of the touched
+  /// objects for this machine. The derivatives of the rows are for fixed values of the touched objects.
   template <class Visit, class End>
   void each_row(const Machine& machine, const Visit& visit, const End& end) const {
     Pass pass(*this, machine);

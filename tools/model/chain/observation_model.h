@@ -8,8 +8,8 @@
 namespace vernier::model {
 
 /// Predicts the observations of one row from the tool's pose in workpiece coordinates and the
-/// BaseShift of the row's set-up (null: identity). gravity: of the machine, unit vector. Keeps
-/// references.
+/// BaseShift of the row's set-up (null: identity). gravity: direction of gravity in the machine file, unit
+/// vector. Keeps references.
 class ObservationModel {
  public:
   ObservationModel(const Measurement& measurement, const std::array<double, 3>& gravity,
@@ -26,8 +26,8 @@ class ObservationModel {
   double predicted(const Observation& observation);
 
   /// Returns the sensitivity of the observation to a motion of the tool in the measuring frame: point .
-  /// gradient.point (mm) + rotation . gradient.rotation (rad). For a rotation, first call predicted() of an
-  /// observation of this row.
+  /// gradient.point (mm) + rotation . gradient.rotation (rad). For a rotation, call predicted() of an
+  /// observation of this row before this function.
   Twist gradient(const Observation& observation) const;
 
   /// Twists of the tool in the measuring frame by the six components of the BaseShift.
@@ -37,8 +37,8 @@ class ObservationModel {
  private:
   Eigen::Vector3d normal(Eigen::Index row) const;
   const Eigen::Vector3d& rotation_vector(std::size_t row);
-  /// Returns the measured direction and two directions across it. Without a measured direction, sight() uses
-  /// the axes of the tool.
+  /// Returns the measured direction and two directions across it. If the row has no measured direction,
+  /// sight() uses the axes of the tool.
   Eigen::Matrix3d sight(Eigen::Index row) const;
   /// Returns the tool axis (z of the tool's frame) in the measuring frame.
   Eigen::Vector3d tool_axis() const { return base_.rotation * pose_.rotation.col(2); }

@@ -17,8 +17,9 @@ using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 /// nearest to the measured vector.
 Eigen::VectorXd predict(const Machine& machine, const Measurement& measurement);
 
-/// Things (`same`, `on`) are at their best estimate for the machine. `known_cost`: weighted sum of squares of
-/// their known values about these estimates; 0 without an uncertain known value.
+/// Touched objects (`same`, `on`) have the best estimates of their unknown values for this machine.
+/// `known_cost`: weighted sum of squares of their known values about these estimates; 0 without an uncertain
+/// known value.
 struct Prediction {
   Eigen::VectorXd predicted;
   double known_cost = 0;
@@ -30,8 +31,8 @@ Prediction predict_with_things(const Machine& machine, const Measurement& measur
 struct Linearisation {
   Eigen::VectorXd predicted;
   SparseRows jacobian;
-  /// Known values of things minus their estimates, times 1/u, and their derivatives by the parameters
-  /// (of the estimates, times 1/u). Empty without an uncertain known value.
+  /// Known values of touched objects minus their estimates, times 1/u, and the derivatives of the estimates
+  /// by the parameters, times 1/u. Empty without an uncertain known value.
   Eigen::VectorXd known_residual;
   Eigen::MatrixXd known_jacobian;
 };
@@ -44,8 +45,9 @@ class Linearizer;
 Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
                         std::size_t parameters);
 
-/// A thing at its best estimate. `own`: covariance of its unknown values at a fixed machine for readings of
-/// weight 1/u; `follows`: their derivatives by the parameters.
+/// A touched object (unknown point or artefact) with the best estimates of its unknown values. `own`:
+/// covariance of the unknown values for a fixed machine and readings of weight 1/u; `follows`: derivatives of
+/// the unknown values by the parameters.
 struct EstimatedThing {
   std::size_t thing = 0, touches = 0;
   ThingShape shape;

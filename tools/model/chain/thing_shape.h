@@ -7,19 +7,20 @@
 
 namespace vernier::model {
 
-/// Place, direction and radius of a thing. `axes`: two directions across, then the direction of a line or of
-/// an axis, or the normal of a plane. Lengths in mm, in the frame of the thing.
+/// Position, direction and radius of a touched object (unknown point or artefact). `axes`: two directions
+/// across, then the direction of a line or of an axis, or the normal of a plane. Lengths in mm, in the frame
+/// of the object.
 struct ThingShape {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   double radius = 0;
 };
 
-/// At most three of a place, two of a direction, one radius.
+/// Largest number of values: three of a position, two of a direction, one radius.
 using ThingUnknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 
-/// Returns the number of unknown values of a thing, 0 to 6. Order: place (3 of a point and a sphere, 2 across
-/// a line or an axis, 1 along a normal), tilt about the two directions across (rad), radius.
+/// Returns the number of unknown values of a touched object, 0 to 6. Order: position (3 of a point and a
+/// sphere, 2 across a line or an axis, 1 along a normal), tilt about the two directions across (rad), radius.
 Eigen::Index unknowns_of(const Artefact& artefact);
 
 /// One reading of a touch.
@@ -34,10 +35,10 @@ struct TouchReading {
 TouchReading touch(const Artefact& artefact, const ThingShape& shape, const Eigen::Vector3d& point,
                    double tip, std::size_t component);
 
-/// Moves the unknown values of a thing by a step.
+/// Changes the unknown values of a touched object by a step.
 void move_thing(const Artefact& artefact, const ThingUnknowns& step, ThingShape& shape);
 
-/// Returns the directions of the unknown coordinates of the place: columns, in the order of the unknowns.
+/// Returns the directions of the unknown coordinates of the position: columns, in the order of the unknowns.
 Eigen::Matrix3Xd place_directions(const Artefact& artefact, const ThingShape& shape);
 
 /// Values that are known with an uncertainty: 1 / u^2 of each unknown value, 0 if it is not known; and the
@@ -47,8 +48,8 @@ struct KnownValues {
 };
 KnownValues known_values(const Artefact& artefact, const ThingShape& shape);
 
-/// Returns start values of a thing from the tool points that touched it (at least one, mm), the best guess
-/// first. down: direction of gravity, which selects the side of a cap.
+/// Returns start values of a touched object from the tool points at the touches (at least one, mm); the most
+/// probable start value is the first. down: direction of gravity, which selects the side of a cap.
 std::vector<ThingShape> thing_starts(const Artefact& artefact, const std::vector<Eigen::Vector3d>& points,
                                      double tip, const Eigen::Vector3d& down);
 

@@ -13,31 +13,33 @@ namespace vernier::model {
 /// Returns the weight of a reading: 1/u, 1 if u is absent. It multiplies the residual.
 double weight_of(const Measurement& measurement, const Observation& observation);
 
-/// Derivative of one reading by the unknown values of one thing.
+/// Derivative of one reading by the unknown values of one touched object.
 struct UnknownSlope {
   Eigen::Index first = 0;  // among the unknown values of the cluster
   ThingUnknowns slope;
 };
 
-/// The things of a measurement (`same`, `on`), and the readings of each. Things that a known length connects
-/// are estimated together: a cluster. Keeps a reference to the measurement.
+/// The touched objects of a measurement (`same`, `on`), and the readings of each object. Touched objects that
+/// are connected by a known length are estimated together: a cluster. Keeps a reference to the measurement.
 class Things {
  public:
   Things(const Machine& machine, const Measurement& measurement);
 
   bool empty() const { return measurement_.things.empty(); }
   std::size_t clusters() const { return clusters_.size(); }
-  /// The cluster of the reading; kNoThing: the reading is of no thing.
+  /// Index of the cluster of the reading; kNoThing: the reading is of no touched object.
   std::size_t cluster_of(const Observation& observation) const;
   Eigen::Index unknowns(std::size_t cluster) const { return clusters_[cluster].unknowns; }
   const std::vector<std::size_t>& things(std::size_t cluster) const { return clusters_[cluster].things; }
-  /// First unknown value of a thing within its cluster.
+  /// Index of the first unknown value of a touched object within its cluster.
   Eigen::Index first_of(std::size_t thing) const { return first_[thing]; }
   /// Indices of the readings of a cluster, in their order.
   const std::vector<std::size_t>& readings(std::size_t cluster) const { return clusters_[cluster].readings; }
-  /// The static that is the radius of the tip of a thing; kNoThing: none.
+  /// Index of the constant (static) with the radius of the tip that touches the object; kNoThing: no such
+  /// constant.
   std::size_t tip_of(std::size_t thing) const { return tip_[thing]; }
-  /// Weight of a reading in the estimate of its thing: check rows count only for a thing that no fit row met.
+  /// Weight of a reading in the estimate of its object: check rows count only for an object that no fit row
+  /// touched.
   double weight(std::size_t observation) const { return weight_[static_cast<Eigen::Index>(observation)]; }
   /// Number of unknown values that the fit rows determine: they cost degrees of freedom.
   std::size_t eliminated() const;
@@ -62,10 +64,11 @@ class Things {
 /// scales).
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 
-/// The things of a measurement as one machine has them: every unknown value at its best estimate.
+/// The touched objects of a measurement for one machine: every unknown value has its best estimate for this
+/// machine.
 class ThingsAt {
  public:
-  /// chain: of the machine and of the states of the measurement.
+  /// chain: the chain of the machine at the states of the measurement.
   ThingsAt(const Things& things, const Machine& machine, const ChainRows& chain);
 
   struct Reading {
@@ -74,7 +77,7 @@ class ThingsAt {
     double by_tip = 0;
     std::vector<UnknownSlope> by_unknown;
   };
-  /// Reading of a thing (`same`, `on`), or a distance between two unknown points.
+  /// Reading of a touched object (`same`, `on`), or a distance between two unknown points.
   Reading read(const Observation& observation) const;
 
   const ThingShape& shape(std::size_t thing) const { return shapes_[thing]; }
@@ -85,7 +88,7 @@ class ThingsAt {
     Eigen::VectorXd precision, off;
   };
   Known known(std::size_t cluster) const;
-  /// Sum of squares of the known values about their estimates, weighted.
+  /// Contribution of the known values to the cost: weighted sum of the squares of (known value - estimate).
   double known_cost() const;
 
  private:

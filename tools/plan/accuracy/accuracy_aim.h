@@ -20,7 +20,7 @@ struct AimRows {
   std::vector<Piece> pieces;
 };
 
-/// own: indices of the parameters that are the machine's, no set-up's.
+/// own: indices of the parameters of the machine, without the parameters of the set-ups.
 AimRows aim_rows(const Knowledge& knowledge, const AccuracyAim& aim, const std::vector<Eigen::Index>& own);
 
 /// Returns the machine with the region of the aim as its `<volume>`.

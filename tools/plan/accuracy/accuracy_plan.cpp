@@ -59,7 +59,7 @@ class AccuracyPlanner {
         own_.push_back(static_cast<Index>(i));
     if (own_.empty())
       throw text::InputError({knowledge.machine.file, 0}, knowledge.machine.name,
-                             "the machine file has no free parameter that could be measured");
+                             "no reading can determine a free parameter of the machine file");
     aim_ = aim_rows(knowledge, aim, own_);
     size_ = static_cast<Index>(knowledge.parameters.size()) + 9;
     weight_ = MatrixXd::Zero(size_, size_);
@@ -291,9 +291,9 @@ Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& m
   for (const model::Observation& o : measurement.observations)
     if (o.kind <= model::ObservationKind::kZ) knowledge.reads[static_cast<std::size_t>(o.kind)] = true;
   if (!knowledge.reads[0] && !knowledge.reads[1] && !knowledge.reads[2])
-    throw text::InputError({measurement.files.empty() ? "" : measurement.files[0], 0},
-                           format::words_of(format::columns::kPoint),
-                           "a plan for accuracy needs readings of the tool point; this file has none");
+    throw text::InputError(
+        {measurement.files.empty() ? "" : measurement.files[0], 0}, format::words_of(format::columns::kPoint),
+        "a plan for accuracy requires readings of the tool point, but this file has no such readings");
   const fit::NoiseModel& noise = fitted.noise;
   const double unit_mm = usual_reading_mm(measurement);
   const double own = std::sqrt(noise.own * noise.own + noise.pose * noise.pose + noise.drift * noise.drift);

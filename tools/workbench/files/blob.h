@@ -13,7 +13,7 @@ namespace vernier::workbench {
 /// [offset, count]}, {"u32": ...} or {"u8": ...}; the offset is from the first byte after the JSON.
 class Blob {
  public:
-  /// Adds numbers and returns their JSON placeholder; values that are not finite are kept.
+  /// Adds numbers and returns their JSON placeholder; values that are not finite stay unchanged.
   nlohmann::ordered_json f32(const std::vector<float>& values);
   nlohmann::ordered_json f32(const Eigen::ArrayXd& values);
   nlohmann::ordered_json u32(const std::vector<std::uint32_t>& values);

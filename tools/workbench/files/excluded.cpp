@@ -76,7 +76,7 @@ std::string exclude_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines, const std::string& reason) {
   if (std::any_of(reason.begin(), reason.end(),
                   [](char c) { return c == '"' || static_cast<unsigned char>(c) < 0x20; }))
-    throw text::InputError("--reason: must not contain quotes or line ends");
+    throw text::InputError("--reason: the text must not contain quotes or line ends");
   const format::CsvFile csv = format::parse_csv(text, file);
   for (const std::size_t line : lines)
     if (!std::binary_search(csv.line.begin(), csv.line.end(), line))

@@ -13,7 +13,7 @@ struct ExcludedRow {
   std::string reason, row;
 };
 
-/// The rows taken out of a measurement file's text, by line.
+/// The excluded rows of a measurement file, by line.
 std::vector<ExcludedRow> excluded_rows(const std::string& text);
 
 /// Returns the text with the rows on these lines excluded. reason: without quotes and line ends. Throws

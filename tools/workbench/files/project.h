@@ -41,7 +41,7 @@ class Project {
   /// Returns a path that may be written; the file need not exist. Throws InputError as above, and if a folder
   /// contains a link, a device or a pipe.
   std::filesystem::path writable(const std::string& name) const;
-  /// Writes a file; a reader sees the old file or the complete new file.
+  /// Writes a file; a reader gets either the old file or the complete new file.
   void save(const std::string& name, const std::string& bytes) const;
   /// Returns the files in the folder and one level below, by name; without hidden files and links, and only
   /// the first 2000.

@@ -208,7 +208,8 @@ std::string explanation_blob(const LoadedRows& rows, const std::string& add) {
   effect.choice = effects::parse_add_string(add, fitted.machine, effects::built_in_effects());
   const effects::FittedEffects with = effects::fit_with_effects(fitted, m, {effect});
   if (with.rows.observations.size() != m.observations.size())
-    throw text::InputError("this effect excludes rows whose input is empty: it cannot be shown for all rows");
+    throw text::InputError(
+        "this effect excludes rows with an empty input, so the page cannot show the effect for all rows");
   Blob blob;
   Json json = {{"label", with.effects[0].spoken}};
   add_figures(json, with.rows, with.fit.residual);

@@ -21,8 +21,8 @@ struct LoadedRows {
   model::Measurement measurement;
 };
 
-/// Reads machines with their measurements and keeps the last few, as long as their files do not change. May
-/// be called from several threads.
+/// Reads machines with their measurements, and stores the last few in memory as long as their files do not
+/// change. May be called from several threads.
 class RowCache {
  public:
   explicit RowCache(const Project& project) : project_(project) {}
@@ -51,12 +51,13 @@ std::string rows_blob(const LoadedRows& rows);
 /// Residuals and figures with some parameters changed; no file is written.
 std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, double>& values);
 
-/// Returns what an effect would explain: the change of the residual of the fitted model if the effect is
-/// added and fitted, per observation, um or urad. add: a candidate's `add` string.
+/// Returns the change of the residual of the fitted model if an effect is added and fitted, per observation,
+/// um or urad. add: a candidate's `add` string.
 std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 
 /// Returns the free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention,
-/// prior) are those of the fit that wrote the file; null without a fit, or if the value was changed since.
+/// prior) are from the fit that wrote the file; null if there was no fit, or if the value was changed after
+/// the fit.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
 }  // namespace vernier::workbench

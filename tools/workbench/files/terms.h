@@ -8,8 +8,8 @@
 namespace vernier::workbench {
 
 /// Returns every name that an expression of this machine may use, with its unit and its meaning, for
-/// completion: [{name, unit, what}]. `candidates`: columns that the machine does not know yet, which `add`
-/// declares.
+/// completion: [{name, unit, what}]. `candidates`: columns that the machine file does not use yet; `add`
+/// declares these columns.
 nlohmann::ordered_json expression_names(const model::Machine& machine);
 
 /// Tests whether `text` is a term for a degree of freedom whose unit is `unit` (mm or deg). The unknown

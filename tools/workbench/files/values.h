@@ -9,8 +9,8 @@
 
 namespace vernier::workbench {
 
-/// Returns the free parameters of a machine with all its BaseShifts: the BaseShift of each run, and the plain
-/// BaseShift.
+/// Returns the free parameters of a machine with all its BaseShifts: the BaseShift of each run or set-up, and
+/// the BaseShift without `run` and `setup`.
 model::ParameterSet all_parameters(const model::Machine& machine);
 
 /// Sets parameters by name (as in the result of fit), including hidden statics. Throws InputError

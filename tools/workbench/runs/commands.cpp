@@ -162,7 +162,7 @@ PlannedCommand CommandTable::plan(const nlohmann::json& request, const Project& 
     else if (option.at("required").get<bool>())
       refuse(option, "is missing in a request for " + name);
   }
-  if (known != request.size()) throw text::InputError("an option that the page may not give to " + name);
+  if (known != request.size()) throw text::InputError("the page must not give this option to " + name);
   return command;
 }
 

@@ -29,7 +29,7 @@ class CommandTable {
   /// checked against the project. Texts may not look like options. Throws InputError naming option and word.
   PlannedCommand plan(const nlohmann::json& request, const Project& project) const;
 
-  /// For the page: the allowed commands and options as described; "required" as `plan` wants it.
+  /// Returns the allowed commands and options for the page; "required" is as for `plan`.
   const nlohmann::ordered_json& allowed() const { return allowed_; }
 
  private:

@@ -7,13 +7,13 @@
 
 namespace vernier::workbench {
 
-/// Texts that are one message between two processes.
+/// One message between two processes: a list of texts.
 using Message = std::vector<std::string>;
 
 /// Reads the next message of a stream. Returns false in three cases: the stream ended; `patience_s` passed
 /// without a byte (0: waits for ever); more bytes came than a message can have.
 bool read_message(int stream, double patience_s, Message& message);
-/// Writes a message; false if the other end does not take it.
+/// Writes a message; false if the other process does not read the message.
 bool write_message(int stream, double patience_s, const Message& message);
 
 /// A program that answers messages one by one; its standard input and output are one stream. The program has

@@ -8,9 +8,9 @@
 
 namespace vernier::workbench {
 
-/// The steps of a project, in order. The steps are kept in `.vernier/history.json` and, without the undone
-/// steps, in the shell script `history.sh`, which repeats them. Commands to a board are comments in the
-/// script.
+/// The steps of a project, in order. The file `.vernier/history.json` contains the steps. The shell script
+/// `history.sh` contains the steps that are not undone, and repeats them. Commands to a board are comments in
+/// the script.
 class CommandHistory {
  public:
   /// Reads the history of an earlier session. Throws InputError if the history cannot be read.
@@ -18,8 +18,8 @@ class CommandHistory {
 
   /// Adds an entry. result: JSON of the command; the entry stores rms_um and check_rms_um of this JSON.
   void add(const std::string& typed, const PlannedCommand& command, const nlohmann::ordered_json& result);
-  /// undo: undoes the last entry (its files are kept, the script omits it). redo: restores the first undone
-  /// entry. Throws InputError if no such entry exists.
+  /// undo: undoes the last entry (its files stay, and the script omits the entry). redo: restores the first
+  /// undone entry. Throws InputError if no such entry exists.
   void undo();
   void redo();
   /// [{"command", "name", "at", "undone", "outputs", "rms_um", "check_rms_um"}].
