@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <optional>
-#include <regex>
 #include <stdexcept>
 
 #include "tests/support/hidden_survey_alternatives.h"
@@ -29,6 +29,21 @@ namespace {
 constexpr double kLeastRemaining = 0.12;  // below this the effect must be absurdly large to be seen
 constexpr double kTells = 20;  // chi^2 between the truth and its best alternative, issue's definition
 constexpr int kDraws = 80;
+
+bool is_of_a_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+/// The text with hidE_1 in the place of the name k1, so too k2 and k3; E counts the effects from 1.
+std::string with_coefficients_of(std::size_t effect, const std::string& text) {
+  std::string replaced;
+  for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end) {
+    end = begin + 1;
+    while (end < text.size() && is_of_a_name(text[begin]) && is_of_a_name(text[end])) ++end;
+    const std::string part = text.substr(begin, end - begin);
+    const bool coefficient = part == "k1" || part == "k2" || part == "k3";
+    replaced += coefficient ? fmt::format("hid{}_{}", effect + 1, part[1]) : part;
+  }
+  return replaced;
+}
 
 /// One attempt at a survey: everything drawn, nothing measured yet.
 class Attempt {
@@ -207,10 +222,8 @@ std::vector<TermStatic> Attempt::statics_of(std::size_t effect) const {
 }
 
 std::vector<Place> Attempt::places_of(std::size_t effect) const {
-  static const std::regex coefficient(R"(\bk([123])\b)");
   std::vector<Place> places = forms_[effect].places;
-  for (Place& place : places)
-    place.text = std::regex_replace(place.text, coefficient, fmt::format("hid{}_$1", effect + 1));
+  for (Place& place : places) place.text = with_coefficients_of(effect, place.text);
   return places;
 }
 

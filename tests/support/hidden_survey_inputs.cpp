@@ -11,8 +11,6 @@ namespace vernier::support {
 using namespace vernier::model;
 namespace {
 
-double rounded(double value, double step) { return std::round(value / step) * step; }
-
 /// Room, warm-up of every source and slow exchange, per run another weather.
 std::vector<double> temperature(const std::vector<MotionRow>& rows, const std::vector<double>& weather,
                                 double own, double lag_s, Draw& draw) {
@@ -31,7 +29,7 @@ std::vector<double> temperature(const std::vector<MotionRow>& rows, const std::v
     }
     heat += (source - heat) * (1 - std::exp(-dt / heat_tau));
     last = row.t;
-    value.push_back(rounded(state + heat, 0.01));
+    value.push_back(to_step(state + heat, 0.01));
   }
   return value;
 }
@@ -63,7 +61,7 @@ std::vector<LoggedColumn> log_inputs(const std::vector<MotionRow>& rows, const M
     if (options.one_thermal) {
       const double gain = draw.uniform(0.7, 1.3), offset = draw.uniform(-0.5, 0.5);
       for (const MotionRow& row : rows)
-        column.value.push_back(rounded(20 + offset + gain * slope * (row.t - rows.front().t), 1e-4));
+        column.value.push_back(to_step(20 + offset + gain * slope * (row.t - rows.front().t), 1e-4));
     } else {
       column.value = temperature(rows, weather, own[i], lag_s[i], draw);
     }
@@ -75,8 +73,8 @@ std::vector<LoggedColumn> log_inputs(const std::vector<MotionRow>& rows, const M
       still{"supply", "V", Sort::kDecoy, 0, {}};
   double level = 2.5;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    shake.value.push_back(rounded(0.05 * std::exp(0.8 * draw.normal()), 1e-5));
-    walk.value.push_back(rounded(level += 0.01 * draw.normal(), 1e-4));
+    shake.value.push_back(to_step(0.05 * std::exp(0.8 * draw.normal()), 1e-5));
+    walk.value.push_back(to_step(level += 0.01 * draw.normal(), 1e-4));
     still.value.push_back(24);
   }
   for (LoggedColumn* column : {&shake, &walk, &still}) columns.push_back(std::move(*column));

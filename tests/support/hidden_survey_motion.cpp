@@ -13,14 +13,12 @@ namespace vernier::support {
 using namespace vernier::model;
 namespace {
 
-double rounded(double value, double step) { return std::round(value / step) * step; }
-
 /// The machine on its way: what it must remember for sense and travel since the reversal.
 class Walker {
  public:
   Walker(const Geometry& geometry, const MotionOptions& options, Draw& draw)
       : geometry_(geometry), options_(options), draw_(draw), count_(geometry.axes.size()) {
-    for (const AxisPlace& axis : geometry.axes) at_.push_back(rounded((axis.low + axis.high) / 2, kGrid));
+    for (const AxisPlace& axis : geometry.axes) at_.push_back(to_step((axis.low + axis.high) / 2, kGrid));
     direction_.assign(count_, 0);
     since_.assign(count_, 0);
     for (int i = 0; i < options.feeds; ++i) feeds_.push_back(geometry.feed * std::pow(0.35, i));
@@ -60,7 +58,7 @@ class Walker {
   }
 
   double random_place(std::size_t i) {
-    return rounded(draw_.uniform(geometry_.axes[i].low, geometry_.axes[i].high), kGrid);
+    return to_step(draw_.uniform(geometry_.axes[i].low, geometry_.axes[i].high), kGrid);
   }
   std::vector<double> random_pose() {
     std::vector<double> pose;
@@ -78,7 +76,7 @@ class Walker {
     }
     if (options_.locked) {
       const AxisPlace& first = geometry_.axes.front();
-      pose[0] = rounded(first.low + (first.high - first.low) * part, kGrid);
+      pose[0] = to_step(first.low + (first.high - first.low) * part, kGrid);
     }
     return pose;
   }
@@ -140,7 +138,7 @@ class Walker {
       const std::size_t count = 11 + draw_.index(10);
       for (std::size_t i = 0; i < count; ++i)
         targets_.push_back(
-            rounded(axis.low + (axis.high - axis.low) *
+            to_step(axis.low + (axis.high - axis.low) *
                                    (0.02 + 0.96 * (static_cast<double>(i) + draw_.uniform(-0.3, 0.3)) /
                                                static_cast<double>(count)),
                     kGrid));
@@ -164,7 +162,7 @@ class Walker {
     } else {
       for (double& c : n) c = draw_.normal();
       const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-      for (double& c : n) c = rounded(c / length, 1e-9);
+      for (double& c : n) c = to_step(c / length, 1e-9);
     }
     const std::vector<double> touch = random_pose();
     std::vector<double> before = touch;
@@ -237,7 +235,7 @@ class Walker {
     const AxisPlace &ax = geometry_.axes[x], &ay = geometry_.axes[y];
     const double room = std::min(ax.high - ax.low, ay.high - ay.low) / 2;
     const std::vector<double> radii = {0.34 * room, 0.67 * room, 0.98 * room};
-    const double r = bar ? draw_.pick(radii) : rounded(room * draw_.uniform(0.1, 0.9), kGrid);
+    const double r = bar ? draw_.pick(radii) : to_step(room * draw_.uniform(0.1, 0.9), kGrid);
     const double cx = bar ? 0 : draw_.uniform(ax.low + r, ax.high - r);
     const double cy = bar ? 0 : draw_.uniform(ay.low + r, ay.high - r);
     const double feed = draw_.pick(feeds_), omega = draw_.sign() * feed / 60 / r;
@@ -294,10 +292,12 @@ void set_path_feed(const Geometry& geometry, std::vector<MotionRow>& rows) {
   const Eigen::Matrix3Xd way = forward(machine, ahead).position - forward(machine, behind).position;
   for (std::size_t r = 0; r < rows.size(); ++r)
     if (rows[r].feed == 0)
-      rows[r].feed = rounded(60 * way.col(static_cast<Eigen::Index>(r)).norm() / (2 * kStep), 1e-3);
+      rows[r].feed = to_step(60 * way.col(static_cast<Eigen::Index>(r)).norm() / (2 * kStep), 1e-3);
 }
 
 }  // namespace
+
+double to_step(double value, double step) { return std::round(value / step) * step; }
 
 std::string run_label(std::size_t run) { return "s" + std::to_string(run + 1); }
 
@@ -305,13 +305,13 @@ std::vector<MotionRow> move(const Geometry& geometry, const MotionOptions& optio
   std::vector<MotionRow> rows = Walker(geometry, options, draw).walk();
   for (MotionRow& row : rows) {
     for (std::size_t i = 0; i < row.q.size(); ++i) {
-      row.q[i] = rounded(row.q[i], 1e-4);
-      row.v[i] = rounded(row.v[i], 1e-5);
-      row.a[i] = rounded(row.a[i], 1e-4);
-      row.since[i] = rounded(row.since[i], 1e-4);
+      row.q[i] = to_step(row.q[i], 1e-4);
+      row.v[i] = to_step(row.v[i], 1e-5);
+      row.a[i] = to_step(row.a[i], 1e-4);
+      row.since[i] = to_step(row.since[i], 1e-4);
     }
-    row.t = rounded(row.t, 1e-3);
-    row.curvature = rounded(row.curvature, 1e-9);
+    row.t = to_step(row.t, 1e-3);
+    row.curvature = to_step(row.curvature, 1e-9);
     row.check = draw.chance(0.2);
   }
   if (options.manner == Manner::kMoving) set_path_feed(geometry, rows);

@@ -47,6 +47,9 @@ struct MotionRow {
 
 std::vector<MotionRow> move(const Geometry& geometry, const MotionOptions& options, Draw& draw);
 
+/// The multiple of the step that is nearest.
+double to_step(double value, double step);
+
 /// Label of a run.
 std::string run_label(std::size_t run);
 
