@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/map/field.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "tools/kinematics/correction.h"
+#include "tools/text/error.h"
 
 namespace vernier::map {
 namespace {
@@ -17,6 +21,39 @@ const model::Axis& ranged(const model::Machine& machine, std::size_t axis) {
     throw text::InputError({machine.file, one.line}, one.name,
                            "this axis has no min and max; give them in the machine file");
   return one;
+}
+
+/// Number of each axis of `correction` in `machine`.
+std::vector<std::size_t> same_axes(const model::Machine& machine, const model::Machine& correction) {
+  std::vector<std::size_t> numbers;
+  for (const model::Axis& axis : correction.axes) {
+    const auto found = machine.find_axis(axis.name);
+    if (!found)
+      throw text::InputError({correction.file, axis.line}, axis.name,
+                             "the machine that is corrected has no axis of this name");
+    numbers.push_back(*found);
+  }
+  return numbers;
+}
+
+/// The states of `machine` as states of another model of it: axes by number, inputs by name. Inputs that
+/// `machine` lacks are at their reference.
+model::States states_for(const model::Machine& other, const std::vector<std::size_t>& axes,
+                         const model::Machine& machine, const model::States& from) {
+  model::States states = model::make_states(from.count, other);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    states.axis[i] = from.axis[axes[i]];
+    states.direction[i] = from.direction[axes[i]];
+    states.since[i] = from.since[axes[i]];
+    states.velocity[i] = from.velocity[axes[i]];
+    states.acceleration[i] = from.acceleration[axes[i]];
+  }
+  for (std::size_t i = 0; i < other.inputs.size(); ++i)
+    for (std::size_t k = 0; k < machine.inputs.size(); ++k)
+      if (machine.inputs[k].name == other.inputs[i].name) states.input[i] = from.input[k];
+  states.feed = from.feed, states.curvature = from.curvature;
+  states.time = from.time, states.visit = from.visit, states.normal = from.normal;
+  return states;
 }
 
 }  // namespace
@@ -43,6 +80,23 @@ ErrorField error_field(const model::Machine& machine, const model::States& at,
   field.nominal = model::forward(model::nominal_machine(machine), field.states).position;
   field.deviation = model::forward(machine, field.states).position - field.nominal;
   return field;
+}
+
+Eigen::Matrix3Xd corrected_deviation(const model::Machine& machine, const ErrorField& field,
+                                     const model::Machine& correction) {
+  const std::vector<std::size_t> axes = same_axes(machine, correction);
+  kinematics::CorrectionOptions options;
+  options.with_rotary = kinematics::linear_axes(correction).empty();
+  const kinematics::CorrectionResult result =
+      kinematics::correct(correction, states_for(correction, axes, machine, field.states), options);
+  model::States states = field.states;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (!result.offset[i].isFinite().all())
+      throw text::InputError({correction.file, correction.axes[i].line}, correction.axes[i].name,
+                             "the offsets of the correction do not converge at a node of the map");
+    states.axis[axes[i]] += result.offset[i];
+  }
+  return model::forward(machine, states).position - field.nominal;
 }
 
 Bench::Bench(const model::Machine& machine, const model::States& at)

@@ -24,6 +24,13 @@ struct ErrorField {
 ErrorField error_field(const model::Machine& machine, const model::States& at,
                        const std::vector<std::size_t>& axes, std::size_t count);
 
+/// Returns the deviation that remains at the nodes of a field of `machine` if the axes get the offsets that
+/// the model `correction` gives for the same commands: 3 x nodes, mm. The linear axes are corrected; on a
+/// machine without linear axes all axes. Throws InputError if `correction` has an axis that the machine
+/// lacks, or if its offsets do not converge at a node.
+Eigen::Matrix3Xd corrected_deviation(const model::Machine& machine, const ErrorField& field,
+                                     const model::Machine& correction);
+
 /// A machine on which measurements are simulated. The nominal chain gives the command; the machine itself
 /// gives the actual position. The linear axes come from the closed inverse solution if the nominal chain has
 /// one, else from iteration.

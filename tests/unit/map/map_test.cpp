@@ -62,6 +62,29 @@ TEST(ErrorField, HasANodeForEveryCombinationFirstAxisFastest) {
   EXPECT_THROW(error_field(m, at(), {}, 3), InputError);
 }
 
+// A correction by the machine's own model leaves only what no axis moves; by another model, the difference.
+TEST(ErrorField, CorrectionLeavesWhatTheModelsDoNotShare) {
+  const Machine m = machine({.scale = 1e-4, .squareness = 2e-5, .lean = 3e-5});
+  const ErrorField field = error_field(m, at(), {0, 1, 2}, 4);
+  EXPECT_GT(field.deviation.colwise().norm().maxCoeff(), 0.05);
+  EXPECT_LT(corrected_deviation(m, field, m).colwise().norm().maxCoeff(), 1e-6);
+  // The correction knows 9e-5 of the scale: 1e-5 of 600 mm stay.
+  const Eigen::Matrix3Xd left =
+      corrected_deviation(m, field, machine({.scale = 9e-5, .squareness = 2e-5, .lean = 3e-5}));
+  EXPECT_NEAR(left.row(0).maxCoeff(), 0.006, 1e-5);
+  EXPECT_LT(left.bottomRows(2).cwiseAbs().maxCoeff(), 1e-5);
+  // A table without Z cannot take out a height.
+  Machine flat =
+      parse_machine(R"XML(<machine><variables><machineaxes><X min="0" max="600"/></machineaxes></variables>
+      <transforms><sixdof n="1" X="X" Z="1e-5*X"/></transforms></machine>)XML",
+                    "flat.xml");
+  const ErrorField line = error_field(flat, make_states(1, flat), {0}, 3);
+  EXPECT_NEAR(corrected_deviation(flat, line, flat)(2, 2), 0.006, 1e-9);
+  Machine other = machine({});
+  other.axes[2].name = "W";
+  EXPECT_THROW(corrected_deviation(m, field, other), InputError);
+}
+
 TEST(VolumeJson, IsTheFieldOverTheLinearAxes) {
   Errors errors;
   errors.scale = 1e-4;

@@ -10,6 +10,7 @@
 #include "tools/commands/report_header.h"
 #include "tools/format/columns.h"
 #include "tools/map/simulated.h"
+#include "tools/maths/factors.h"
 #include "tools/report/report.h"
 #include "tools/results/field_json.h"
 
@@ -19,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct MapArguments {
-  std::string machine, output, json, at, lines;
+  std::string machine, correction, output, json, at, lines;
   std::vector<std::string> over;
   std::size_t grid = 7;
   ReportHeader header;
@@ -121,6 +122,20 @@ Json shape_section(const Json& json) {
           {"tables", tables}};
 }
 
+/// Adds the deviation that remains with the correction of a machine file to the field.
+void add_corrected(Json& field, const model::Machine& machine, const map::ErrorField& nodes,
+                   const std::string& file) {
+  const Eigen::Matrix3Xd after = map::corrected_deviation(machine, nodes, read_model(file));
+  field["correction"] = file;
+  field["after_um"] = Json::array();
+  for (Eigen::Index i = 0; i < after.cols(); ++i)
+    field["after_um"].push_back(
+        {maths::kUmPerMm * after(0, i), maths::kUmPerMm * after(1, i), maths::kUmPerMm * after(2, i)});
+  const Eigen::VectorXd size_um = maths::kUmPerMm * after.colwise().norm();
+  field["after_max_um"] = size_um.maxCoeff();
+  field["after_rms_um"] = std::sqrt(size_um.squaredNorm() / static_cast<double>(size_um.size()));
+}
+
 Json page_of(const Json& json) {
   const Json& field = json["field"];
   const auto number = [](const char* label, const Json& value, bool strong) {
@@ -128,6 +143,10 @@ Json page_of(const Json& json) {
   };
   Json numbers = {number("largest deviation", field["max_um"], true),
                   number("rms of the field", field["rms_um"], false)};
+  if (field.contains("after_um")) {
+    numbers.push_back(number("largest deviation, corrected", field["after_max_um"], true));
+    numbers.push_back(number("rms of the field, corrected", field["after_rms_um"], false));
+  }
   Json sections = Json::array();
   const bool measured = json.contains("diagonals");
   if (measured) {
@@ -173,7 +192,9 @@ void run_map(const MapArguments& arguments) {
     throw text::InputError({machine.file, 0}, "",
                            "the machine has no linear axis: name the axes to show, --over J1,J2,J3");
   Json json = {{"machine", machine.name}, {"files", {arguments.machine}}, {"notes", Json::array()}};
-  json["field"] = results::field_json(machine, map::error_field(machine, at, axes, arguments.grid));
+  const map::ErrorField field = map::error_field(machine, at, axes, arguments.grid);
+  json["field"] = results::field_json(machine, field);
+  if (!arguments.correction.empty()) add_corrected(json["field"], machine, field, arguments.correction);
   const bool measured = can_be_measured(machine);
   if (measured)
     add_measurements(json, machine, at, arguments.lines);
@@ -188,6 +209,10 @@ void run_map(const MapArguments& arguments) {
   fmt::print(out, "largest deviation {:.4g} um, rms {:.4g} um over {} nodes\n",
              json["field"]["max_um"].get<double>(), json["field"]["rms_um"].get<double>(),
              json["field"]["point_mm"].size());
+  if (json["field"].contains("after_um"))
+    fmt::print(out, "with the correction of {}: largest deviation {:.4g} um, rms {:.4g} um\n",
+               arguments.correction, json["field"]["after_max_um"].get<double>(),
+               json["field"]["after_rms_um"].get<double>());
   if (!json["field"]["std_um"].is_null())
     fmt::print(out,
                "standard uncertainty of the model {:.4g} um on average, {:.4g} um at most (also outside the "
@@ -224,6 +249,11 @@ void register_map(CLI::App& vernier) {
   command->add_option("--grid", arguments->grid, "nodes along each axis")
       ->check(CLI::Range(2, 40))
       ->capture_default_str();
+  command
+      ->add_option("--correction", arguments->correction,
+                   "machine file whose model corrects the axes: the map shows the error without and with "
+                   "this correction")
+      ->type_name(kReads);
   command->add_option("--inputs,--at", arguments->at,
                       "constant values of inputs, motion and the other axes: \"T=25,B=30\"");
   command

@@ -89,11 +89,20 @@ function drawRing(pen, at, radius, colour) {
   pen.setLineDash([]);
 }
 
+/** A patch of the working volume in the colour of its deviation. */
+function drawPatch(pen, at, size, colour) {
+  pen.fillStyle = colour;
+  pen.beginPath();
+  pen.arc(at[0], at[1], size, 0, 2 * Math.PI);
+  pen.fill();
+}
+
 /** The vectors of a field, turned by hand: {axes, counts, point_mm[][3], deviation_um[][3], max_um}, std_um[] where a
- * fit said how well it knows them. Where that is no better than half the deviation, the arrow is grey and ringed. */
+ * fit said how well it knows them. Where that is no better than half the deviation, the arrow is grey and ringed.
+ * after_um[][3]: what a correction leaves, drawn at the same scale. */
 export function volume(field) {
   const box = frame(field.point_mm);
-  const view = { turn: -0.62, tilt: 0.42, zoom: 1, gain: 1, layer: 'all', only: 'all' };
+  const view = { turn: -0.62, tilt: 0.42, zoom: 1, gain: 1, layer: 'all', only: 'all', as: 'arrows', model: 'before' };
   const canvas = el('canvas', {
     tabindex: '0',
     role: 'img',
@@ -107,6 +116,12 @@ export function volume(field) {
     const up = Math.cos(view.tilt) * dz + Math.sin(view.tilt) * away;
     const scale = (view.zoom * 0.43 * Math.min(size.width, 1.35 * size.height)) / box.reach;
     return [size.width / 2 + scale * right, size.height / 2 - scale * up, Math.cos(view.tilt) * away - Math.sin(view.tilt) * dz];
+  };
+  /** Half of the distance between neighbours, so that the patches of a layer touch. */
+  const patchSize = () => {
+    const most = Math.max(2, ...field.counts);
+    const scale = (view.zoom * 0.43 * Math.min(size.width, 1.35 * size.height)) / box.reach;
+    return Math.max(3, (0.5 * scale * Math.max(...box.high.map((v, k) => v - box.low[k]))) / (most - 1));
   };
   const shown = () => {
     const all = field.point_mm.map((_, i) => i);
@@ -131,13 +146,18 @@ export function volume(field) {
     const nodes = shown().map((i) => ({
       from: project(field.point_mm[i]),
       point: field.point_mm[i],
-      v: keep(field.deviation_um[i]),
-      std: field.std_um?.[i] ?? 0,
+      v: keep((view.model === 'after' ? field.after_um : field.deviation_um)[i]),
+      std: view.model === 'after' ? 0 : (field.std_um?.[i] ?? 0),
     }));
+    const patch = patchSize();
     nodes.sort((a, b) => b.from[2] - a.from[2]);
     for (const { from, point, v, std } of nodes) {
       const to = project(point.map((one, k) => one + longest * v[k]));
       const known = std <= 0.5 * Math.hypot(...v);
+      if (view.as === 'colours') {
+        drawPatch(pen, from, patch, shade(field.max_um > 0 ? Math.hypot(...v) / field.max_um : 0));
+        continue;
+      }
       drawArrow(pen, from, to, known ? shade(field.max_um > 0 ? Math.hypot(...v) / field.max_um : 0) : c.soft);
       if (!known) {
         const edge = project(point.map((one, k) => one + longest * (v[k] + (k === 0 ? std : 0))));
@@ -197,6 +217,26 @@ export function volume(field) {
   const controls = el(
     'div',
     { class: 'controls' },
+    field.after_um
+      ? choice(
+          'error',
+          [
+            ['before', 'without correction'],
+            ['after', 'with correction'],
+          ],
+          'before',
+          set('model'),
+        )
+      : null,
+    choice(
+      'as',
+      [
+        ['arrows', 'arrows'],
+        ['colours', 'colours'],
+      ],
+      'arrows',
+      set('as'),
+    ),
     choice('show', layers, 'all', set('layer')),
     choice(
       'component',
