@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is precompiled, under sanitizers for rooms too, in the release build for tests: no header of the house, so that none is missing in a source unseen.
+// What is precompiled under sanitizers: no header of the house, so that none is missing in a source unseen.
 #pragma once
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 
 #include "tools/commands/command.h"
@@ -21,34 +22,65 @@ std::vector<std::string> words_of(const CLI::App& command) {
   return words;
 }
 
-/// Every place where words are asked for, by the commands before it: "", "fit", "import table".
-std::vector<std::pair<std::string, std::vector<std::string>>> places_of(const CLI::App& vernier) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> places = {{"", words_of(vernier)}};
+/// Endings of the files that a positional argument reads; "": files of any ending.
+std::string endings_of(const std::string& argument) {
+  static const std::map<std::string, std::string> kEndings = {
+      {"MACHINE", "xml"}, {"MEAS", "csv"}, {"PART", "csv ngc nc"}, {"PATH", "csv ngc nc"}};
+  const auto found = kEndings.find(argument);
+  return found == kEndings.end() ? "" : found->second;
+}
+
+/// Endings of the files that a command reads as arguments; "": of any ending.
+std::string endings_of(const CLI::App& command) {
+  std::string endings;
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_positional()) continue;
+    const std::string known = endings_of(option->get_name(true));
+    if (known.empty()) return "";
+    endings += (endings.empty() ? "" : " ") + known;
+  }
+  return endings;
+}
+
+/// A place where words are asked for, by the commands before it: "", "fit", "import table".
+struct WordPlace {
+  std::string commands, endings;
+  std::vector<std::string> words;
+};
+
+std::vector<WordPlace> places_of(const CLI::App& vernier) {
+  std::vector<WordPlace> places = {{"", "", words_of(vernier)}};
   for (const CLI::App* command : vernier.get_subcommands([](const CLI::App*) { return true; })) {
-    places.emplace_back(command->get_name(), words_of(*command));
+    places.push_back({command->get_name(), endings_of(*command), words_of(*command)});
     for (const CLI::App* kind : command->get_subcommands([](const CLI::App*) { return true; }))
-      places.emplace_back(command->get_name() + " " + kind->get_name(), words_of(*kind));
+      places.push_back({command->get_name() + " " + kind->get_name(), endings_of(*kind), words_of(*kind)});
   }
   return places;
 }
 
-/// A function that looks up the words by the commands typed so far; files are completed beside them. zsh
-/// reads it too.
+/// A function that looks up the words by the commands typed so far. Beside them it completes files: those
+/// that the command reads; behind an option files of any kind. zsh reads it too.
 std::string bash(const CLI::App& vernier) {
   std::string text =
       "# bash completion of vernier; source it, or put it into /etc/bash_completion.d\n"
-      "_vernier() {\n  local current=\"${COMP_WORDS[COMP_CWORD]}\" place=\"\" word words\n"
+      "_vernier() {\n  local current=\"${COMP_WORDS[COMP_CWORD]}\" place=\"\" word words kinds ending\n"
       "  for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n    case \"${place:+$place }$word\" in\n";
   std::string known;
-  for (const auto& [place, words] : places_of(vernier))
+  for (const auto& [place, endings, words] : places_of(vernier))
     if (!place.empty()) known += (known.empty() ? "" : "|") + std::string("'") + place + "'";
   text +=
       "      " + known + ") place=\"${place:+$place }$word\" ;;\n    esac\n  done\n  case \"$place\" in\n";
-  for (const auto& [place, words] : places_of(vernier))
-    text += "    '" + place + "') words='" + text::joined(words, " ") + "' ;;\n";
+  for (const auto& [place, endings, words] : places_of(vernier))
+    text += "    '" + place + "') words='" + text::joined(words, " ") + "' kinds='" + endings + "' ;;\n";
   return text +
          "  esac\n  COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
-         "  [[ \"$current\" == -* || -z \"$place\" ]] || COMPREPLY+=($(compgen -f -- \"$current\"))\n}\n"
+         "  [[ \"$current\" == -* || -z \"$place\" ]] && return\n"
+         "  if [[ -z \"$kinds\" || \"${COMP_WORDS[COMP_CWORD-1]}\" == -* ]]; then\n"
+         "    COMPREPLY+=($(compgen -f -- \"$current\"))\n"
+         "  else\n"
+         "    for ending in $kinds; do COMPREPLY+=($(compgen -f -X \"!*.$ending\" -- \"$current\")); done\n"
+         "    COMPREPLY+=($(compgen -d -- \"$current\"))\n"
+         "  fi\n}\n"
          "complete -o filenames -F _vernier vernier\n";
 }
 

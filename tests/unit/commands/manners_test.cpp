@@ -269,6 +269,12 @@ TEST_F(Manners, ShellCompletesCommandsKindsOptionsAndFiles) {
   EXPECT_EQ(completed("import table --dec"), "--decimal\n");
   EXPECT_EQ(completed("fit --resid"), "--residuals\n");
   EXPECT_EQ(completed("fit m."), "m.xml\n");
+  // Files that the command reads; behind an option any file.
+  EXPECT_EQ(run("touch kind.xml kind.csv kind.png kind.ngc && mkdir kind"), 0) << said_;
+  EXPECT_EQ(completed("fit ki"), "kind.xml kind.csv kind\n");
+  EXPECT_EQ(completed("lint ki"), completed("fit m.xml --json ki"));
+  EXPECT_NE(said_.find("kind.png"), std::string::npos) << said_;
+  EXPECT_EQ(completed("map ki"), "kind.xml kind\n");
   EXPECT_EQ(run("vernier completion zsh && vernier completion fish"), 0);
   EXPECT_TRUE(said("#compdef vernier") && said("-a diagnose -d")) << said_;
   EXPECT_EQ(run("vernier completion tcsh"), 1);

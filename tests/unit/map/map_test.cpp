@@ -74,10 +74,10 @@ TEST(ErrorField, CorrectionLeavesWhatTheModelsDoNotShare) {
   EXPECT_NEAR(left.row(0).maxCoeff(), 0.006, 1e-5);
   EXPECT_LT(left.bottomRows(2).cwiseAbs().maxCoeff(), 1e-5);
   // A table without Z cannot take out a height.
-  Machine flat =
-      parse_machine(R"XML(<machine><variables><machineaxes><X min="0" max="600"/></machineaxes></variables>
-      <transforms><sixdof n="1" X="X" Z="1e-5*X"/></transforms></machine>)XML",
-                    "flat.xml");
+  Machine flat = parse_machine(R"XML(<machine><variables><static><h value="1e-5" nominal="0"/></static>
+      <machineaxes><X min="0" max="600"/></machineaxes></variables>
+      <transforms><sixdof n="1" X="X" Z="h*X"/></transforms></machine>)XML",
+                               "flat.xml");
   const ErrorField line = error_field(flat, make_states(1, flat), {0}, 3);
   EXPECT_NEAR(corrected_deviation(flat, line, flat)(2, 2), 0.006, 1e-9);
   Machine other = machine({});

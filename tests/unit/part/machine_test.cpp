@@ -72,7 +72,7 @@ TEST(SetErrors, RefusesWhatItCannotUnderstand) {
   EXPECT_NE(message("EA0B=x").find("not a number"), std::string::npos);
   EXPECT_NE(message("EA0B=1mm").find("mm"), std::string::npos);
   EXPECT_NE(message("EA0B=1furlong").find("furlong"), std::string::npos);
-  EXPECT_NE(message("L0=400").find("hidden"), std::string::npos);
+  EXPECT_NE(message("L0=400").find("Hide"), std::string::npos);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(MeasuredPart, NamesFileLineAndWordOfWhatIsWrong) {
             std::string::npos);
   EXPECT_NE(message_of("sx[mm],sy[mm],sz[mm],defect[mm]\n60,20,11,0\n").find("no point of the part"),
             std::string::npos);
-  EXPECT_NE(message_of("sx[mm],sy[mm],sz[mm],defect[mm]\n1e9,0,11,0\n").find("no point of the part"),
+  EXPECT_NE(message_of("sx[mm],sy[mm],sz[mm],defect[mm]\n1e9,0,11,0\n").find("this point is not on the part"),
             std::string::npos);
   const Eigen::Vector3d p = surface_point(s_part()[0], 0.3, 0.5).position;
   for (const char* u : {"0", "-1", ""})

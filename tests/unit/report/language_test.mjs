@@ -33,7 +33,7 @@ try {
   for (const one of wanted) if (!texts.includes(one)) faults.push(`'${one}' is not on the page`);
   if (language === 'de') {
     for (const one of new Set(texts)) if (kEnglish.test(one)) faults.push(`English: ${one}`);
-    if (!texts.some((one) => /^[−-]?\d+,\d+$/.test(one))) faults.push('no number has a comma');
+    if (path.endsWith('positioning.html') && !texts.some((one) => /^[−-]?\d+,\d+$/.test(one))) faults.push('no number has a comma');
     for (const one of new Set(texts)) if (/^[−-]?\d+\.\d+$/.test(one)) faults.push(`point: ${one}`);
   }
 } finally {

@@ -66,7 +66,7 @@ void add_printer_kind(CLI::App& kind) {
       ->type_name(kReads)
       ->required();
   kind.add_option("--profile", arguments->options.profile, "name of the saved mesh; default: the only one");
-  kind.add_option("--on", arguments->options.artefact, "name of the bed's <artefact> in the machine file")
+  kind.add_option("--on", arguments->options.artefact, "name of the <artefact> of the bed")
       ->capture_default_str();
   kind.add_option(
           "--offset", arguments->offset,

@@ -49,7 +49,7 @@ std::size_t axis_named(const model::Machine& machine, const std::string& name) {
 }
 
 std::array<double, 2> range_of(const model::Machine& machine, std::size_t axis) {
-  constexpr double kTurn_deg = 360;
+  constexpr double kTurn_deg = 360;  // range of an axis with rollover
   const auto range = model::work_range(machine, axis);
   if (!range && machine.axes[axis].rollover) return {0, kTurn_deg};
   if (!range)
@@ -61,7 +61,7 @@ std::array<double, 2> range_of(const model::Machine& machine, std::size_t axis) 
 /// The ends of the axis, if the machine file has them.
 void require_in_range(const model::Machine& machine, std::size_t axis, double low, double high) {
   const model::Axis& of = machine.axes[axis];
-  constexpr double kRounding = 1e-9;
+  constexpr double kRounding = 1e-9;  // mm or deg, of sums of the request
   if (of.rollover || ((!of.min || low >= *of.min - kRounding) && (!of.max || high <= *of.max + kRounding)))
     return;
   throw text::InputError(
