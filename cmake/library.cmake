@@ -9,11 +9,8 @@ endfunction()
 # Rooms that read, write and print, and nothing that a measurement waits for: an optimiser costs more there than it saves.
 set(VERNIER_ROOMS_OF_GLUE create lint exchange evaluate report results upload workbench fleet commands python)
 # Under sanitizers an object costs half without an optimiser (measured with clang 14: diagnose 15.8 s of 39.4). Only where tests multiply
-# matrices and walk records, it earns that back; with VERNIER_TESTS=once release runs those tests.
+# matrices and walk records, it earns that back: ControllerFiles.* take 1000 s without.
 set(VERNIER_ROOMS_OF_NUMBERS maths model fit kinematics vibration timebase tolerance)
-if(VERNIER_TESTS STREQUAL "once")
-  set(VERNIER_ROOMS_OF_NUMBERS "")
-endif()
 
 # vernier_effort(target room): how hard the compiler tries, and what it has read before.
 function(vernier_effort target room)
