@@ -79,7 +79,7 @@ void add_mistakes_of_readings(const model::Measurement& rows, std::vector<Mistak
   }
   list.push_back({"the rotations are probably in radians",
                   [](model::Measurement& mended) { scale_rotations(mended, maths::kDegPerRad); }});
-  list.push_back({"the stated rotations are probably radians written in place of degrees",
+  list.push_back({"the rotations are probably in degrees, although the file states radians",
                   [](model::Measurement& mended) { scale_rotations(mended, 1 / maths::kDegPerRad); }});
 }
 
