@@ -159,9 +159,9 @@ class Compensator {
   /// Copies only existing channels and lags. Real-time safe.
   void state(EquationState& state) const noexcept;
 
-  /// Makes step() run the printed form instead of the program. The corrections are identical to the last bit
-  /// and need a sixth to a third of the instructions. equation: printed from this program.
-  /// Not real-time safe.
+  /// Makes step() call compiled C++ code (`equation`) in place of the interpreter of the program. `vernier
+  /// compile` wrote this code from the same program. The corrections are identical to the last bit, and the
+  /// code needs a sixth to a third of the instructions. Not real-time safe.
   void use_printed(PrintedEquation equation) noexcept { printed_ = equation; }
   bool printed() const noexcept { return printed_ != nullptr; }
 

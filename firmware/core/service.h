@@ -49,10 +49,11 @@ struct LinkRights {
   bool plain_commands = false;  // commands by register, which cannot be signed, though the board has keys
 };
 
-/// The board's program, in four duties that may have separate contexts. The tick. The guardian, which hands
-/// programs over, ends trials and never waits for a device. The links. The store, the duty that waits for the
-/// medium. The guardian may interrupt the links and the store at any point, the tick all three. Exchange,
-/// Programs and StoreDesk connect the four duties. The constructor takes all memory.
+/// The board's program. The program has four duties that may run in separate contexts: the tick, the
+/// guardian, the links and the store. The guardian hands programs over, ends trials and never waits for a
+/// device. The store is the only duty that waits for the medium. The guardian may interrupt the links and the
+/// store at any point, the tick all three. Exchange, Programs and StoreDesk connect the four duties. The
+/// constructor takes all memory.
 class Service : private CommandHandler {
  public:
   /// board, store: outlive the service. Not real-time safe.

@@ -49,7 +49,10 @@ std::unique_ptr<ModbusAxes> open_modbus_axes(const std::vector<PositionAxis>& ax
   settings.unit = static_cast<int>(first.whole("unit", 1, 1, 247));
   settings.sequence = static_cast<int>(first.whole("sequence", 0, kLastRegister));
   settings.period = TimeUs(1000 * first.whole("period_ms", 5, 1, 50));
-  if (axes.size() > ModbusAxesSettings::kMostAxes) first.fail("too many axes of one sequence number");
+  if (axes.size() > ModbusAxesSettings::kMostAxes)
+    first.fail("too many axes with the same setting sequence: at most " +
+               std::to_string(ModbusAxesSettings::kMostAxes) +
+               " axes may share the register of a sequence number");
   for (std::size_t k = 0; k < axes.size(); ++k) {
     const SignalSource& source = *axes[k].source;
     source.only({"address", "port", "device", "baud", "parity", "unit", "register", "sequence", "registers",
@@ -61,8 +64,9 @@ std::unique_ptr<ModbusAxes> open_modbus_axes(const std::vector<PositionAxis>& ax
     if (settings.sequence == address || settings.sequence == address + 1)
       source.fail_at("sequence", "sequence is a register of the position");
     if (missing[k].count < kPeriodsWithout * settings.period.count)
-      source.fail("missing_ticks must be at least " + std::to_string(kPeriodsWithout) +
-                  " periods (period_ms): positions come only in each period");
+      source.fail("missing_ticks must be at least " + std::to_string(kPeriodsWithout) + " periods: here " +
+                  std::to_string(kPeriodsWithout * settings.period.count / 1000) +
+                  " ms, as a number of ticks. Positions come only once in each period (period_ms)");
     settings.axes.push_back({address, position_scale(source, axes[k].rotary)});
   }
   if (settings.count() > ModbusAxesSettings::kMostRegisters)

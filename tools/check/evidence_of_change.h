@@ -38,10 +38,11 @@ struct CheckAnswer {
 /// the fit is integrated out. If nothing changes, the statistic exceeds `alarm` during the lifetime of a
 /// machine with a probability of 1 / `alarm` at most, for any number of checks (Ville 1939). Condition:
 /// normal readings of the stated uncertainty with the correlation of the fit (the noise of <fitted>;
-/// independent if <fitted> has none). A parameter that an earlier check did not test has a ratio of 1 for
-/// that check. The weights of a parameter are fixed before its first reading. A check whose readings scatter
-/// more than stated is excluded from the evidence. checks: in the order of time, of one machine, at least one
-/// check. Throws std::logic_error if a number that the decision needs is not finite.
+/// independent if <fitted> has none). If a check did not test a parameter, the likelihood ratio of this
+/// parameter is 1 for that check. The weights of a parameter are fixed before its first reading. A check
+/// whose readings scatter more than stated is excluded from the evidence. checks: in the order of time, of
+/// one machine, at least one check. Throws std::logic_error if a number that the decision needs is not
+/// finite.
 CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms);
 
 }  // namespace vernier::check

@@ -42,7 +42,9 @@ nlohmann::ordered_json parse_catalogue(std::string_view json, const std::string&
   for (const auto& [text, translation] : catalogue["texts"].items()) {
     if (!translation.is_string()) fail(text, "the translation must be a text");
     if (signs_of(text) != signs_of(translation.get<std::string>()))
-      fail(text, "the signs # and * of the translation must be those of the text, in the same order");
+      fail(text,
+           "the translation must contain the same placeholders # (a number) and * (words) as the English "
+           "text, in the same order");
   }
   return catalogue;
 }

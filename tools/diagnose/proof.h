@@ -14,9 +14,10 @@ struct Proof {
                         // against without it
   double expected = 0;  // its mean if the step is true; the opposite if the step is absent. In both cases its
                         // variance is twice that value.
-  /// Returns the required evidence of a step: 20 to 1 if 99 of 100 true steps would reach this value. The
-  /// required evidence is smaller if the step is too small on these rows for 20 to 1, but never below zero.
-  /// If these rows depend only weakly on the step, the step must not increase the error of these rows.
+  /// Returns the required evidence for the step from one model to the other. The required evidence is odds of
+  /// 20 to 1, or the odds that 99 of 100 true steps of this `expected` reach, if these odds are smaller. The
+  /// logarithm of the required evidence is at least zero. Exception: if these rows depend only weakly on the
+  /// step, the step must only not increase the error of these rows.
   double asked(const ProofThresholds& thresholds) const;
 };
 

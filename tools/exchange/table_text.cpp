@@ -84,7 +84,8 @@ std::string set_table(const std::string& text, const model::Machine& machine, co
   const model::Table* read = back.table_of(table.axis);
   if (read == nullptr || !same(*read, table))
     throw text::InputError({machine.file, 0}, machine.axes[table.axis].name,
-                           "the table cannot be put into this text: a comment may contain a table");
+                           "the table cannot be written into this machine file, probably because a comment "
+                           "contains a <table> element: remove this comment");
   return result;
 }
 

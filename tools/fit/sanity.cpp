@@ -77,9 +77,9 @@ void add_mistakes_of_readings(const model::Measurement& rows, std::vector<Mistak
                           if (o.kind == kind) o.value *= factor;
                       }});
   }
-  list.push_back({"the rotations are probably in radians",
+  list.push_back({"the rotations are stated in deg, but are probably in rad",
                   [](model::Measurement& mended) { scale_rotations(mended, maths::kDegPerRad); }});
-  list.push_back({"the rotations are probably in degrees, although the file states radians",
+  list.push_back({"the rotations are stated in rad, but are probably in deg",
                   [](model::Measurement& mended) { scale_rotations(mended, 1 / maths::kDegPerRad); }});
 }
 

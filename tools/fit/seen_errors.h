@@ -8,9 +8,9 @@
 
 namespace vernier::fit {
 
-/// Size of a machine's errors, as far as its readings show it. Sizes are for each kind (lengths or angles, of
-/// linear or rotary axes), and for each table relative to the others. All sizes are in units of the
-/// convention's scales.
+/// Typical size of a machine's errors, as far as its readings show it. Each kind of error (lengths or angles,
+/// of linear or rotary axes) has a size. Each table has a ratio: its size divided by the size of the other
+/// tables. All sizes are in units of the convention's scales.
 ///
 /// If the lengths of a table, including its squareness, are larger than those of the other tables, its angles
 /// may be larger by the same factor. A survey with one tool shows only the sum of lengths and angles. The

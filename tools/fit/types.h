@@ -166,10 +166,10 @@ struct FitResult {
   std::optional<SizeOfMachine> size;                   // if rows met things
   std::vector<StageFigures> stages;                    // as requested, then one with all parameters
   WorstReading worst, worst_check;                     // of the fit rows; of the check rows
-  /// rms of the fitted machine on check rows, divided by the rms of the nominal machine. The
-  /// fitted machine and the nominal machine both use the set-up of the fit rows. If there are enough check
-  /// rows, a second ratio uses a set-up of each machine that is fitted to the check rows. The larger ratio
-  /// is used. nullopt if there are too few check rows.
+  /// rms of the fitted machine on check rows, divided by the rms of the nominal machine. The fitted machine
+  /// and the nominal machine both use the set-up of the fit rows. If there are enough check rows, a second
+  /// ratio uses a set-up of each machine that is fitted to the check rows. check_ratio is the larger of the
+  /// first and the second ratio; nullopt if there are too few check rows.
   std::optional<double> check_ratio;
   /// Reason why the readings cannot be readings of this machine; empty if there is no such reason.
   std::string absurd;

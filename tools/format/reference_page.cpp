@@ -93,9 +93,11 @@ std::string reserved_page() {
       "## Reserved names\n\n"
       "| what | may not have the names |\n|---|---|\n| an axis | {} |\n| an input | {} |\n"
       "| any static, axis or input | {}, and the functions of expressions |\n\n"
-      "`correction` with the name of an axis behind it is reserved too. A name of the machine file is not "
-      "the name of\n"
-      "a quantity of an axis: beside an axis X no other thing has the names {}.\n",
+      "The word `correction`, directly followed by the name of an axis (`correctionX`), is reserved too. A "
+      "name "
+      "of the\n"
+      "machine file is not the name of a quantity of an axis: beside an axis X no other thing has the names "
+      "{}.\n",
       text::joined(axis, ", "), text::joined(input, ", "), text::joined(terms, ", "), [] {
         std::vector<std::string> names;
         for (const AxisColumnEntry& column : kAxisColumns)

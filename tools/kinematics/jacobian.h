@@ -15,8 +15,8 @@ namespace vernier::kinematics {
 Eigen::VectorXd pose_error(const model::Poses& poses, const model::Poses& target, std::size_t i, Match match,
                            double lever_mm);
 
-/// Returns the decrease of pose_error per mm or deg of each axis, one matrix per state. axis_jacobian uses
-/// central differences of the forward kinematics. An axis is moved in all states together.
+/// Returns the decrease of pose_error per mm or deg of each axis, one matrix per state, by central
+/// differences of the forward kinematics. An axis is moved in all states together.
 std::vector<Eigen::MatrixXd> axis_jacobian(const model::Machine& machine, const model::States& states,
                                            const std::vector<std::size_t>& axes, Match match,
                                            double lever_mm);

@@ -108,7 +108,8 @@ ExprPtr make_run(std::string label);
 ExprPtr subtract_number(ExprPtr left, double value);
 ExprPtr make_node(Op op, std::vector<ExprPtr> args);
 
-/// True if the expression is a number after folding. `value` is then set to that number.
+/// Returns true if the expression contains only numbers, and sets `value` to its value. Returns false if the
+/// expression contains a symbol; `value` is then not used.
 bool is_constant(const Expr& expr, double& value);
 
 /// Returns the function's name in expressions ("sin"), or nullptr for operators and leaves.

@@ -36,7 +36,7 @@ const RuleText& text_of(SafetyRule rule) {
       {"cancellation", "times the correction",
        "terms ten times larger than their sum are valid only where they were measured together", 10},
       {"uncertainty", "of the correction",
-       "a correction whose uncertainty exceeds half of its value may increase the error", 0.5},
+       "a correction whose standard uncertainty exceeds half of its value may increase the error", 0.5},
       {"measured-range", "of the measured range",
        "outside the measured range the last value of a table is used and terms are extrapolated", 0.25},
       {"input-range", "of the measured range", "a term in an input is valid only within its measured range",

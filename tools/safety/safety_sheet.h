@@ -45,7 +45,7 @@ struct SafetyFinding {
 struct SafetySheet {
   std::vector<SafetyFinding> findings;  // one per rule, in the order of their numbers
   /// Parameters that were added or set by hand since the fit. The uncertainty of such a parameter is the size
-  /// of its change.
+  /// of the difference between its present value and its value in the fit.
   std::vector<std::string> stale;
   /// Adds a rule's finding. Throws std::logic_error for a value that is not finite.
   void judge(SafetyRule rule, std::optional<double> value, std::string culprit,

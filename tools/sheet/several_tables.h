@@ -13,8 +13,8 @@ namespace vernier::sheet {
 /// one table.
 std::vector<std::size_t> tables_of(const Sheet& sheet);
 
-/// Keeps the rows of one table, from 1. Without a number the sheet must have one table. Throws InputError
-/// that names the lines of the tables.
+/// Keeps the rows of one table, from 1. Throws InputError if the sheet has no table of this number, or if it
+/// has several tables and `number` is nullopt. The error states the first line of each table.
 void keep_table(Sheet& sheet, std::optional<std::size_t> number);
 
 }  // namespace vernier::sheet

@@ -99,7 +99,8 @@ std::string slurm_script(const registry::Batch& batch, const std::string& folder
   const std::string place = std::filesystem::absolute(folder).lexically_normal().string();
   if (place.find_first_of("\"\\%\n") != std::string::npos)
     throw text::InputError({}, place,
-                           "the folder name of a Slurm batch must not contain \", \\, % in its name");
+                           "the path of the folder of a Slurm batch must not contain a double quote, a "
+                           "backslash, a percent sign or a line end");
   const std::size_t machines = batch.machines.size(), tasks = std::min(machines, kMostTasks);
   return fmt::format(
       "#!/bin/sh\n"
@@ -169,7 +170,8 @@ void run_task(const TaskArguments& arguments) {
     // A command may answer no before it has a result.
     if (answer.result.is_discarded() || (answer.result.is_null() && ended.exit == 0)) answer.result = nullptr;
     if (answer.result.is_null() && ended.exit == 0)
-      answer.status = 70, message = "the result of the command is not JSON";
+      answer.status = 70,
+      message = "the command of this machine ended without an error, but its output is not JSON";
   }
   registry::write_answer(arguments.folder, batch, answer, message);
   if (answer.status != 0 && answer.status != 2)

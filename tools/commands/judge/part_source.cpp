@@ -25,8 +25,9 @@ tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine
   const model::States at = kinematics::state_at(machine, source.at);
   if (is_list(source.path, text)) {
     if (!source.zero.empty())
-      throw text::InputError({}, "--zero",
-                             "this option is only for a part program; for a list of features use --place");
+      throw text::InputError(
+          {}, "--zero",
+          "PART is a list of features, but this option is only for a part program: use --place");
     for (const auto& [value, name] :
          {std::pair(source.position_mm, "--position"), std::pair(source.size_mm, "--size"),
           std::pair(source.form_mm, "--form")})

@@ -302,7 +302,10 @@ void register_probe_path(CLI::App& vernier) {
                    "dialect turning: distance from the program's zero to the axis of the spindle, on which "
                    "the sphere is, in the unit of the program")
       ->capture_default_str();
-  command->add_option("--dwell", path.dwell, "dialect turning: dwell after a touch, as the value of G04")
+  command
+      ->add_option("--dwell", path.dwell,
+                   "dialect turning: dwell after a touch; the program has this number, unchanged, in G04 X, "
+                   "and the control defines its unit")
       ->capture_default_str();
   command
       ->add_option("--comment", path.comments,

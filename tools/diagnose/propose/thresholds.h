@@ -30,8 +30,9 @@ struct EvidenceThresholds {
   /// Steps of an axis are even if they are multiples of the smallest step, to within this share of the
   /// smallest step. The value represents the positioning accuracy relative to the step of a measurement.
   double even_step = 0.05;
-  /// Response of a location, as a share of the largest of its kind, below which the response is only
-  /// rounding. Example: a point that no rotation about the location moves.
+  /// Response of the readings to a motion at a location in the chain (axis and degree of freedom), as a share
+  /// of the largest response to motions of the same kind. A response below this share is only rounding.
+  /// Example: a rotation about an axis through the read point.
   double rounding = 1e-9;
 
   template <class Visit>

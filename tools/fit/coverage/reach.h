@@ -23,7 +23,7 @@ class Reach {
 
   bool known() const { return known_; }
   /// Returns the free parameters that differ from the fit: added or set by hand later. The uncertainty of
-  /// such a parameter is the size of its change.
+  /// such a parameter is the size of the difference between its present value and its value in the fit.
   const std::vector<std::string>& stale() const { return stale_; }
 
   /// Returns the covariance (mm^2) of the deviation at each state, in workpiece coordinates, if the model is

@@ -49,8 +49,9 @@ struct NoiseModel {
 Eigen::MatrixXd step_columns(const NoiseLayout& layout, const std::vector<NoiseStep>& steps,
                              Eigen::Index readings);
 
-/// Returns a shift of the measured object at each set-up, three components each. The result is empty if there
-/// is only one set-up or no reading along a normal. Heights are 0.
+/// Returns steps of the noise model for shifts of the measured object: three steps at the first row of each
+/// set-up, one for each component of the shift. The height of each step is 0: the shift is not estimated
+/// here. The result is empty if there is only one set-up or no reading along a normal.
 std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout);
 
 /// Transforms the rows of `columns` (weighted readings) to independent rows with variance 1, by a

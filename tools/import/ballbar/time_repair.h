@@ -49,10 +49,10 @@ struct TimeRepair {
 /// Estimates from the record the number of samples per turn and the missing samples, and computes angle and
 /// time of each sample. Method: the second pass over the circle repeats the first pass. If the lag between
 /// the passes jumps, samples of one pass are missing, or the other pass had a pause; the function assumes
-/// missing samples. The angle of the file's START is kept in the run with the smallest residual between its
-/// turns. The angles of the other runs are shifted until the repeating error agrees with that of this run. A
-/// run of less than one and a half turns, or a run that does not repeat, is not changed; its RunRepair
-/// contains the reason.
+/// missing samples. The reference run is the run whose length of a turn agrees best with the file. In the
+/// reference run the sample START (index from the file) keeps its angle. The angles of each other run are
+/// shifted until its repeating error agrees with that of the reference run. A run of less than one and a half
+/// turns, or a run that does not repeat, is not changed; its RunRepair contains the reason.
 TimeRepair repair_time_base(const BallbarFile& file);
 
 }  // namespace vernier::importer

@@ -34,9 +34,10 @@ void read_column_map(ColumnMap& map, const std::string& text, const std::string&
 void add_column(ColumnMap& map, const std::string& words, const text::Place& place = {});
 void add_constant(ColumnMap& map, const std::string& words, const text::Place& place = {});
 
-/// A constant as a measurement file writes it: "0,5" is 0.5. Words of a label do not change. decimal_comma:
-/// sign of the file, decides "1,234". Throws InputError: no number for a column of numbers, or a comma that
-/// can separate thousands.
+/// Returns the cell of the measurement file for a constant that the user states ("u[um]=0,5"): a decimal
+/// comma becomes a decimal point, "0.5". Words of a label do not change. decimal_comma: true if the imported
+/// file has a decimal comma; it decides the meaning of "1,234". Throws InputError: no number for a column of
+/// numbers, or a comma that can separate thousands.
 std::string constant_cell(const MappedColumn& column, bool decimal_comma);
 
 /// A table that becomes a measurement file: columns of text, one cell for every row.

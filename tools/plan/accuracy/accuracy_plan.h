@@ -10,8 +10,9 @@
 namespace vernier::plan {
 
 /// Returns the knowledge from existing measurements: the covariance and the noise of the fit. The next
-/// readings are in the set-up of the BaseShift without `run` and `setup` if the file has such a BaseShift and
-/// it is free, else in a new set-up. Throws InputError if the measurement has no x, y or z.
+/// readings belong to the set-up of the BaseShift without `run` and `setup`, if this BaseShift exists and is
+/// a free parameter of the fit. Otherwise the next readings belong to a new set-up. Throws InputError if the
+/// measurement has no x, y or z.
 Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& measurement);
 /// Returns the knowledge from the machine file alone, with a new set-up. Throws InputError if the machine was
 /// never fitted.

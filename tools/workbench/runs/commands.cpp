@@ -77,7 +77,7 @@ std::string text_of(const Json& option, const nlohmann::json& value) {
   if (!value.is_string()) refuse(option, "must be a text");
   const auto text = value.get<std::string>();
   if (text.empty() || text.front() == '-' || text.size() > kMost)
-    refuse(option, "must not be empty, very long or start with -");
+    refuse(option, fmt::format("must have 1 to {} bytes, and must not start with -", kMost));
   if (std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
     refuse(option, "must be one line of text");
   return text;
