@@ -469,7 +469,12 @@ std::string Finder::too_large(std::size_t item) const {
   std::size_t linear = 0;
   for (const effects::CandidateUnknown& unknown : effects::linear_unknowns(candidate)) {
     const std::size_t at = linear++;
-    if (k[at] == 0 || unknown.limit <= 0) continue;
+    if (k[at] == 0) continue;
+    if (!unknown.plausible.contains(k[at]))
+      return fmt::format(
+          "size: the coefficient {} would be {:.3g} {}, outside the plausible range {:g} to {:g}",
+          unknown.name, k[at], unknown.unit, unknown.plausible.low, unknown.plausible.high);
+    if (unknown.limit <= 0) continue;
     const double size = std::abs(k[at]) * typical_size(candidate, at, item);
     const double limit = std::max(unknown.limit, thresholds_.size_share * extent_of(candidate));
     if (size > limit)
@@ -631,7 +636,8 @@ Alternatives Finder::alternatives_to(std::size_t item) const {
         continue;
       }
     }
-    if (!pool_.same_cause(item, alternative)) found.other.push_back({alternative, distance});
+    if (!pool_.same_cause(item, alternative) && too_large(alternative).empty())
+      found.other.push_back({alternative, distance});
   }
   std::sort(found.other.begin(), found.other.end(),
             [](const Alternative& a, const Alternative& b) { return a.distance < b.distance; });

@@ -45,35 +45,6 @@ Eigen::MatrixXd beyond_model(const Evidence& evidence, const Eigen::MatrixXd& co
   return columns - q * (q.transpose() * columns);
 }
 
-struct Gain {
-  double chi_square = 0;
-  double rank = 0;
-};
-
-/// Returns the part of the residual that columns explain beside what the model absorbs and
-/// `beside`, in units of the noise.
-Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside) {
-  const double least_own = evidence.thresholds().shape.own;
-  Eigen::MatrixXd own = raw;
-  const Eigen::VectorXd before = own.colwise().norm();
-  const Eigen::MatrixXd& q = evidence.absorbed();
-  const Eigen::MatrixXd others = maths::orthonormal(beside, 1e-6, nullptr);
-  for (int pass = 0; pass < 2; ++pass) {
-    own -= q * (q.transpose() * own);
-    own -= others * (others.transpose() * own);
-  }
-  for (Index j = 0; j < own.cols(); ++j)
-    if (own.col(j).norm() < least_own * before[j]) own.col(j).setZero();
-  const Eigen::MatrixXd basis = maths::orthonormal(own, least_own, nullptr);
-  const Eigen::VectorXd rest = evidence.residual() - others * (others.transpose() * evidence.residual());
-  const double explained = (basis.transpose() * rest).squaredNorm();
-  const double freedom =
-      std::max(1.0, evidence.freedom() - static_cast<double>(others.cols() + basis.cols()));
-  double variance = (rest.squaredNorm() - explained) / freedom;
-  if (evidence.noise_known()) variance = std::max(1.0, variance);
-  return {explained / std::max(variance, 1e-300), static_cast<double>(basis.cols())};
-}
-
 /// Line and half-waves over the range, as columns of the readings of a location.
 Eigen::MatrixXd half_waves(const Evidence& evidence, const effects::DofPlace& place, const Eigen::VectorXd& u,
                            int count) {
@@ -179,6 +150,28 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
 }
 
 }  // namespace
+
+Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside) {
+  const double least_own = evidence.thresholds().shape.own;
+  Eigen::MatrixXd own = raw;
+  const Eigen::VectorXd before = own.colwise().norm();
+  const Eigen::MatrixXd& q = evidence.absorbed();
+  const Eigen::MatrixXd others = maths::orthonormal(beside, 1e-6, nullptr);
+  for (int pass = 0; pass < 2; ++pass) {
+    own -= q * (q.transpose() * own);
+    own -= others * (others.transpose() * own);
+  }
+  for (Index j = 0; j < own.cols(); ++j)
+    if (own.col(j).norm() < least_own * before[j]) own.col(j).setZero();
+  const Eigen::MatrixXd basis = maths::orthonormal(own, least_own, nullptr);
+  const Eigen::VectorXd rest = evidence.residual() - others * (others.transpose() * evidence.residual());
+  const double explained = (basis.transpose() * rest).squaredNorm();
+  const double freedom =
+      std::max(1.0, evidence.freedom() - static_cast<double>(others.cols() + basis.cols()));
+  double variance = (rest.squaredNorm() - explained) / freedom;
+  if (evidence.noise_known()) variance = std::max(1.0, variance);
+  return {explained / std::max(variance, 1e-300), static_cast<double>(basis.cols())};
+}
 
 AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,
                               const Eigen::MatrixXd& beside) {

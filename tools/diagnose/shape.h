@@ -17,6 +17,16 @@ struct AxisFunction {
   bool own_table = false;  // the model has free values of its own for such functions
 };
 
+/// The part of the residual that columns explain.
+struct Gain {
+  double chi_square = 0;  // in units of the noise that remains beside them
+  double rank = 0;        // number of independent columns
+};
+
+/// Returns the part of the residual that the whitened columns `raw` explain beside the model's free
+/// parameters and the whitened columns `beside`.
+Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside);
+
 /// function_of_axis uses the readings, not the selected form. The test compares half-waves down to an eighth
 /// of the measured range with half-waves of half that length. With fewer than 17 positions the half-waves are
 /// longer: two positions for each half-wave. `beside`: columns of other effects, after projection on the

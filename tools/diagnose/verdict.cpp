@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "tools/diagnose/day.h"
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/pieces.h"
 #include "tools/diagnose/sentences.h"
@@ -190,12 +191,17 @@ class Decision {
   std::string several_causes() {
     const std::size_t others = found_.close().size();
     const bool or_set_up = set_up_explains_it_too();
-    if (others == 0 && !or_set_up) return {};
+    const bool or_day =
+        !or_set_up && daily_drift_explains(finder_.evidence(), pool_, accepted_, accepted_.front(),
+                                           found_.options.thresholds.acceptance.distance);
+    if (others == 0 && !or_set_up && !or_day) return {};
     if (or_set_up) answer_.instrument = "set-up";
+    if (or_day) answer_.instrument = "drift";
     return fmt::format(
-        "One of {} causes that explain these data alike, {} first.{}", 1 + others + (or_set_up ? 1 : 0),
-        pool_.candidate(accepted_.front()).spoken,
-        or_set_up ? " An instrument that was set up anew between the runs is another one." : "");
+        "One of {} causes that explain these data alike, {} first.{}{}",
+        1 + others + (or_set_up || or_day ? 1 : 0), pool_.candidate(accepted_.front()).spoken,
+        or_set_up ? " An instrument that was set up anew between the runs is another one." : "",
+        or_day ? " An instrument that drifts with the time of day is another one." : "");
   }
 
   std::string one_cause() {

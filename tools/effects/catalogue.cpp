@@ -187,6 +187,12 @@ class CatalogueReader {
     if (kind == "linear") {
       rule.kind = UnknownKind::kLinear;
       if (!rest.empty()) rule.limit = number();
+      if (!rest.empty()) {
+        rule.plausible.low = number();
+        rule.plausible.high = number();
+        if (!(rule.plausible.low < rule.plausible.high))
+          fail(rule.name, "the plausible range is \"LOW HIGH\" with LOW < HIGH");
+      }
     } else if (kind == "time") {
       rule.kind = UnknownKind::kTime;
     } else if (kind == "travel") {

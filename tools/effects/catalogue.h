@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -40,10 +41,17 @@ enum class UnknownKind : std::uint8_t {
   kGrid,    // scanned over the values that the catalogue names
 };
 
+/// Plausible values of a coefficient, in its unit.
+struct PlausibleRange {
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+  bool contains(double value) const { return low <= value && value <= high; }
+};
+
 struct UnknownRule {
   std::string name, unit;  // unit may hold {dof} {q} {T}
   UnknownKind kind = UnknownKind::kLinear;
   double limit = 0;          // kLinear: largest plausible size of the whole term, mm or deg; 0: none
+  PlausibleRange plausible;  // kLinear: of the unknown itself
   double low = 0, high = 0;  // kGrid
   std::size_t count = 0;     // kGrid, logarithmic
 };

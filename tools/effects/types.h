@@ -42,6 +42,7 @@ struct CandidateUnknown {
   UnknownKind kind = UnknownKind::kLinear;
   double start = 0;
   double limit = 0;  // linear: largest plausible size of the term, mm or deg; 0: none
+  PlausibleRange plausible;
 };
 
 /// An effect at a location of a machine. A Candidate can be evaluated, or written to a machine file.

@@ -38,6 +38,11 @@ std::vector<std::string> advice_for(const std::string& text, const model::Machin
     return {
         "Measure several runs without touching the instrument, and state this in a column `setup` with one "
         "label for these runs. A shift between runs of one set-up is an error of the machine."};
+  if (d.instrument == "drift")
+    return {
+        "Read a mark that does not move with the instrument for one day, and record times and temperatures. "
+        "If "
+        "these readings change too, the instrument drifts."};
   if (first.confounded_with.empty()) return {};
   return advice(first.add, first.confounded_with.front());
 }

@@ -145,6 +145,56 @@ TEST(Causes, OfTheInstrumentHaveTheirKind) {
   EXPECT_EQ(effects_of(answer), std::vector<std::string>{"instrument drift"});
 }
 
+// The temperature of a hall and an instrument that warms with the hall have the same period.
+TEST(Causes, OfAShiftWithTheHallHaveTheInstrumentThatDriftsWithTheDay) {
+  constexpr double kDay = 86400, kBetweenRows = 800;
+  const auto turn = [&](int run, int row) {
+    return 2 * std::numbers::pi * kBetweenRows * (82 * run + row) / kDay;
+  };
+  // The second hall has doors too: its temperature jumps as well, and an instrument of the day does not.
+  for (const bool doors : {false, true}) {
+    const auto warmth = [&](int run, int row) {
+      return 1.5 * std::sin(turn(run, row)) + (doors && row % 20 < 7 ? 1.2 : 0.0);
+    };
+    const Diagnosis answer = diagnosed(runs_of(
+        4, [&](double, int, int run, int row) { return 0.004 * warmth(run, row); }, ",t[s],T_x[degC]",
+        [&](int run, int row) {
+          return fmt::format(",{:.1f},{:.4f}", kBetweenRows * (82 * run + row), 20 + warmth(run, row));
+        }));
+    EXPECT_EQ(has(effects_of(answer), "instrument drift"), !doors) << answer.explanation;
+    EXPECT_TRUE(has(effects_of(answer), "thermal-offset")) << answer.explanation;
+    EXPECT_EQ(answer.verdict, doors ? Verdict::kMissingEffect : Verdict::kAmbiguous) << answer.explanation;
+  }
+}
+
+// Six runs in one day: the walk of the instrument goes on from run to run.
+TEST(Causes, OfAWalkThroughAllRunsAreTheInstrument) {
+  for (const unsigned seed : {31U, 32U, 33U}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> step(0, 0.0004);
+    double walk = 0;
+    std::string text = runs_of(
+        6, [&](double, int, int, int) { return walk += step(random); }, ",t[s],T_x[degC]",
+        [](int run, int row) {
+          const double t = 60.0 * (82 * run + row);
+          return fmt::format(",{:.1f},{:.4f}", t, 20 + 0.1 * std::sin(t / 3000));
+        });
+    EXPECT_EQ(effects_of(diagnosed(text)), std::vector<std::string>{"instrument drift"}) << "seed " << seed;
+  }
+}
+
+// Humidity of the air changes what a laser reads, in proportion to the length. Nobody recorded it, and the
+// temperature changed with it: a growth of 300 um/(m K) shrinking with warmth is of no material.
+TEST(Causes, HaveNoGrowthThatNoMaterialHas) {
+  for (const double growth : {11.5e-6, -300e-6}) {
+    const auto warmth = [](int run, int row) { return 0.7 * std::sin(0.011 * (82 * run + row)); };
+    const Diagnosis answer = diagnosed(runs_of(
+        4, [&](double x, int, int run, int row) { return growth * x * warmth(run, row); }, ",T_x[degC]",
+        [&](int run, int row) { return fmt::format(",{:.4f}", 20 + warmth(run, row)); }));
+    EXPECT_EQ(has(effects_of(answer), "thermal-scale"), growth > 0) << answer.explanation;
+  }
+}
+
 /// A search with a backlash that is clearly accepted, and its alternatives.
 class Decision : public testing::Test {
  protected:

@@ -62,6 +62,7 @@ TEST(Effects, AUsersFileAddsAndReplaces) {
   EXPECT_EQ(all.back().forms[0].place, PlaceRule::kOwn);
   EXPECT_EQ(all.back().forms[0].term, "k*{q}");
   EXPECT_EQ(all.back().unknowns[0].limit, 5);
+  EXPECT_TRUE(all.back().unknowns[0].plausible.contains(1e9));
   std::size_t found = 0;
   for (const Effect& effect : all)
     if (effect.id == "backlash") {
@@ -82,6 +83,15 @@ TEST(Effects, AUsersEntrySaysWhatIsSeldomAndWhatCauseItHas) {
   EXPECT_FALSE(one[0].rare);
   EXPECT_FALSE(one[0].forms[0].rare);
   EXPECT_TRUE(one[0].forms[1].rare);
+}
+
+TEST(Effects, AUsersEntryMayStateThePlausibleValuesOfAnUnknown) {
+  const std::vector<Effect> one = parse_effects(
+      "effect nap\ntitle A nap\nsignature s\nform plain own k*{q}\nunknown k mm linear 5 -0.5 2\n",
+      "mine.txt");
+  const PlausibleRange& range = one.at(0).unknowns.at(0).plausible;
+  EXPECT_TRUE(range.contains(-0.5) && range.contains(2));
+  EXPECT_FALSE(range.contains(-0.51) || range.contains(2.01));
 }
 
 TEST(Effects, AUsersEntryMayBeTheInstrumentsAndMayNeedTouches) {
@@ -136,6 +146,9 @@ TEST_P(DamagedEffects, NameFileLineAndWord) {
   }
 }
 
+std::string unknown_rule(const std::string& kind) {
+  return "effect nap\ntitle A nap\nsignature s\nform plain own k*{q}\nunknown k mm " + kind + "\n";
+}
 std::string with(const std::string& lines) { return kSound + lines; }
 std::string form_of(const std::string& form) {
   return "effect nap\ntitle A nap\nsignature It sleeps\n" + form + "\nunknown k mm linear 5\n";
@@ -156,6 +169,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Damage{"NoUnknownInTerm", form_of("form plain own 3*{q}"), 4, "3*{q}"},
                     Damage{"PairWithoutBar", form_of("form plain pair k*{q}"), 4, "k*{q}"},
                     Damage{"BarWithoutPair", form_of("form plain own k*{q}|k"), 4, "k*{q}|k"},
+                    Damage{"RangeTurned", unknown_rule("linear 5 2 -0.5"), 5, "k"},
+                    Damage{"HalfARange", unknown_rule("linear 5 2 x"), 5, "x"},
                     Damage{"UnknownTwice", with("unknown k mm linear\n"), 6, "k"},
                     Damage{"UnknownNotUsed", with("unknown w mm linear\n"), 1, "w"},
                     Damage{"UnknownIsReserved", with("unknown feed mm linear\n"), 6, "feed"},

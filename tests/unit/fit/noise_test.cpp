@@ -93,6 +93,21 @@ TEST(NoiseModel, WhiteningInvertsTheCovariance) {
   }
 }
 
+// An instrument drifts on between two runs. Runs whose times begin at zero anew, or with clocks of their own,
+// are not in one time.
+TEST(NoiseLayout, DriftContinuesWhereTheTimesOfTheRunsContinue) {
+  const auto clocks = [](const std::string& csv) {
+    const Measurement m = parse_measurement(csv, "runs.csv", machine());
+    return noise_layout(m, all_of(m)).series.at(0).clock;
+  };
+  const std::string head = "t[s],X[mm],x[mm],run";
+  EXPECT_EQ(clocks(head + "\n0,1,1,a\n9,2,2,a\n30,1,1,b\n39,2,2,b\n"), (std::vector<int>{0, 0, 0, 0}));
+  EXPECT_EQ(clocks(head + "\n0,1,1,a\n9,2,2,a\n0,1,1,b\n9,2,2,b\n"), (std::vector<int>{0, 0, 1, 1}));
+  EXPECT_EQ(clocks(head + "\n0,1,1,a\n9,2,2,a\n9,1,1,b\n18,2,2,b\n"), (std::vector<int>{0, 0, 1, 1}));
+  EXPECT_EQ(clocks(head + ",clock\n0,1,1,a,p\n9,2,2,a,p\n30,1,1,b,q\n39,2,2,b,q\n"),
+            (std::vector<int>{0, 0, 1, 1}));
+}
+
 TEST(NoiseModel, IsFoundAgain) {
   std::mt19937_64 random(kSeed);
   const Measurement m = survey(600, 12, 3, random);

@@ -70,6 +70,17 @@ std::vector<int> groups_along(const model::Column& axis, const LayoutThresholds&
   return group;
 }
 
+/// True if the times of the file continue from each run to the next: the same clock recorded all runs, and a
+/// drift of the instrument continues too. A column `clock` states the opposite.
+bool time_continues(const model::States& states, std::size_t rows) {
+  if (!states.clock.of.empty()) return false;
+  for (std::size_t row = 1; row < rows; ++row) {
+    const auto at = static_cast<Eigen::Index>(row);
+    if (states.run[row] != states.run[row - 1] && !(states.time[at] > states.time[at - 1])) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<int> places_of_rows(const model::Measurement& measurement, const LayoutThresholds& limits) {
@@ -108,6 +119,7 @@ NoiseLayout noise_layout(const model::Measurement& measurement, const std::vecto
     falls = falls || states.time[at] < states.time[at - 1];
   }
   layout.in_time = moves && !falls;
+  const bool one_clock = layout.in_time && time_continues(states, measurement.rows());
   std::map<int, NoiseSeries> of_kind;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const model::Observation& o = measurement.observations[observations[i]];
@@ -118,7 +130,7 @@ NoiseLayout noise_layout(const model::Measurement& measurement, const std::vecto
     series.time.push_back(layout.in_time ? states.time[static_cast<Eigen::Index>(o.row)]
                                          : static_cast<double>(o.row));
     series.setup.push_back(static_cast<int>(states.of(states.setup, o.row)));
-    series.clock.push_back(static_cast<int>(states.of(states.clock, o.row)));
+    series.clock.push_back(one_clock ? 0 : static_cast<int>(states.of(states.clock, o.row)));
     series.pose.push_back(pose[o.row]);
     if (o.kind == model::ObservationKind::kD) {
       const auto at = static_cast<Eigen::Index>(o.row);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/diagnose/day.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "tools/diagnose/shape.h"
+
+namespace vernier::diagnose {
+namespace {
+
+constexpr double kDay = 86400;  // s
+
+/// Returns columns for each kind of reading: sine and cosine of the time of day.
+std::vector<Eigen::MatrixXd> daily_shifts(const Evidence& evidence) {
+  const Eigen::MatrixXd offsets = evidence.offset_columns();
+  Eigen::ArrayXd turn(offsets.rows());
+  for (Eigen::Index i = 0; i < turn.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(evidence.rows()[static_cast<std::size_t>(i)]);
+    turn[i] = 2 * std::numbers::pi * evidence.measurement().states.time[row] / kDay;
+  }
+  std::vector<Eigen::MatrixXd> all;
+  for (Eigen::Index kind = 0; kind < offsets.cols(); ++kind) {
+    Eigen::MatrixXd columns(offsets.rows(), 2);
+    columns.col(0) = offsets.col(kind).array() * turn.sin();
+    columns.col(1) = offsets.col(kind).array() * turn.cos();
+    evidence.whiten(columns);
+    all.push_back(std::move(columns));
+  }
+  return all;
+}
+
+}  // namespace
+
+bool daily_drift_explains(const Evidence& evidence, const Pool& pool,
+                          const std::vector<std::size_t>& accepted, std::size_t item, double distance) {
+  const Evidence::Range time = evidence.time_range();
+  if (pool.candidate(item).choice.inputs.empty() || time.high <= time.low) return false;
+  std::vector<std::size_t> others;
+  for (const std::size_t other : accepted)
+    if (other != item) others.push_back(other);
+  const Eigen::MatrixXd beside = pool.columns(others);
+  const double price = std::log(static_cast<double>(evidence.residual().size()));
+  const auto lowers = [&](const Eigen::MatrixXd& columns, std::size_t scanned) {
+    const Gain gain = gain_of(evidence, columns, beside);
+    return gain.chi_square - price * (gain.rank + static_cast<double>(scanned));
+  };
+  const std::vector<double>& scanned = pool[item].scored.scanned;
+  const double named = lowers(evidence.columns(pool.candidate(item), scanned), scanned.size());
+  for (const Eigen::MatrixXd& shift : daily_shifts(evidence))
+    if (lowers(shift, 0) > named - distance) return true;
+  return false;
+}
+
+}  // namespace vernier::diagnose
