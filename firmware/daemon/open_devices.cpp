@@ -45,8 +45,46 @@ char parity(const SignalSource& source) {
   return word[0];
 }
 
+constexpr std::int64_t kOutputBaud = 19'200;  // of positions and outputs, unless stated
+
 int baud(const SignalSource& source, std::int64_t otherwise) {
-  return static_cast<int>(source.whole("baud", otherwise, 1, 10'000'000));
+  // Of serial devices in Linux. libmodbus takes 9600 in place of any other number, without a word.
+  constexpr std::int64_t kRates[] = {1200,      2400,      4800,      9600,      19'200,    38'400,
+                                     57'600,    115'200,   230'400,   460'800,   500'000,   576'000,
+                                     921'600,   1'000'000, 1'152'000, 1'500'000, 2'000'000, 2'500'000,
+                                     3'000'000, 3'500'000, 4'000'000};
+  const std::int64_t rate = source.whole("baud", otherwise, 1, 10'000'000);
+  if (std::find(std::begin(kRates), std::end(kRates), rate) == std::end(kRates))
+    source.fail_at("baud",
+                   "baud: " + std::to_string(rate) + " is no rate of a serial line, for example 19200");
+  return static_cast<int>(rate);
+}
+
+/// A setting of a serial line has no effect over TCP, and the other way round.
+void refuse_settings_of_other_line(const SignalSource& source) {
+  const bool serial = source.texts.contains("device");
+  for (const char* const name : {"baud", "parity"})
+    if (!serial && (source.numbers.contains(name) || source.texts.contains(name)))
+      source.fail_at(name, std::string(name) + " is a setting of a serial line, and this one has an address");
+  if (serial && source.numbers.contains("port"))
+    source.fail_at("port", "port is a setting of an address, and this line is a serial device");
+}
+
+constexpr int kBitsOfByte = 11;  // start, eight, parity, stop
+constexpr int kWriteBytes = 9 + 8,
+              kReadBytes = 8 + 5;  // Modbus over a serial line: request and answer beside the data
+
+/// Refuses a time in which no answer can be there.
+void require_time_on_line(const SignalSource& source, int bytes, TimeUs wait, const char* share) {
+  if (!source.texts.contains("device")) return;
+  const double needed_ms = 1e3 * kBitsOfByte * bytes / baud(source, kOutputBaud);
+  if (needed_ms * 1000 < static_cast<double>(wait.count)) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "timeout_ms: a request and its answer are on this line for %.0f ms, and must be there within "
+                "%s timeout_ms",
+                std::ceil(needed_ms), share);
+  source.fail_at("timeout_ms", text);
 }
 
 ModbusValue modbus_value(const SignalSource& source) {
@@ -153,7 +191,10 @@ OutputOpener modbus_out_of(const std::vector<OutputAxis>& axes) {
   if (settings.echo >= settings.address &&
       settings.echo < settings.address + ModbusOutputSettings::kValues + 2 * places)
     first.fail("echo is among the registers that the board writes");
-  return [open_line = modbus_line_of(first, TimeUs(settings.timeout.count / 2)),
+  const TimeUs wait = ModbusOutput::wait_for_answer(settings.timeout, first.texts.contains("device"));
+  require_time_on_line(first, kWriteBytes + 2 * (ModbusOutputSettings::kValues + 2 * places), wait,
+                       "a quarter of");
+  return [open_line = modbus_line_of(first, wait),
           settings](std::string& error) -> std::unique_ptr<OutputDevice> {
     const auto line = open_line(error);
     return line ? ModbusOutput::open(line, settings, error) : nullptr;
@@ -235,8 +276,9 @@ const std::vector<DeviceKind<OpenLinkKind>> kLinks = {
 }  // namespace
 
 ModbusLineOpener modbus_line_of(const SignalSource& source, TimeUs wait) {
+  refuse_settings_of_other_line(source);
   if (const std::string device = source.text("device", ""); !device.empty())
-    return [device, rate = baud(source, 19200), bit = parity(source), wait](std::string& error) {
+    return [device, rate = baud(source, kOutputBaud), bit = parity(source), wait](std::string& error) {
       return ModbusLine::rtu(device, rate, bit, wait, error);
     };
   return [address = modbus_address(source), port = static_cast<int>(source.whole("port", 502, 1, 65535)),

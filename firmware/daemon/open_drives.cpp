@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -17,7 +18,8 @@ namespace {
 
 // Predefined connection set of CiA 301, and the default use of PDOs in CiA 402: the third TPDO has statusword
 // and position actual value; the fourth RPDO has no default use in the position modes.
-constexpr std::uint32_t kSync = 0x80, kEmergency = 0x80, kHeartbeat = 0x700, kTpdo3 = 0x380, kRpdo4 = 0x500;
+constexpr std::uint32_t kSync = 0x80, kEmergency = 0x80, kHeartbeat = 0x700, kTpdo3 = 0x380,
+                        kFirstRpdo4 = 0x500;
 constexpr std::int64_t kLastId = 0x7ff, kLastNode = 127, kNsPerMs = 1'000'000;
 
 struct Identifiers {
@@ -25,6 +27,12 @@ struct Identifiers {
   const char* use;
 };
 constexpr Identifiers kEmergencies = {0x081, 0x0ff, "emergency messages"};
+constexpr Identifiers kTime = {0x100, 0x100, "TIME"};
+constexpr std::uint32_t kNmt = 0x000, kNodeMask = 0x7f, kStandardIds = 0x7ff;
+/// Default identifiers of the further RPDOs of CiA 402. The second and the third have a controlword.
+constexpr Identifiers kRpdo2 = {0x301, 0x37f, "RPDO 2 of the drives"};
+constexpr Identifiers kRpdo3 = {0x401, 0x47f, "RPDO 3 of the drives"};
+constexpr Identifiers kRpdo4 = {0x501, 0x57f, "RPDO 4 of the drives"};
 /// CiA 301, restricted CAN identifiers: no PDO and no SYNC may have one of them.
 constexpr Identifiers kRestricted[] = {{0x001, 0x07f, "a restricted use"}, {0x101, 0x180, "a restricted use"},
                                        {0x581, 0x5ff, "SDO answers"},      {0x601, 0x67f, "SDO requests"},
@@ -32,6 +40,7 @@ constexpr Identifiers kRestricted[] = {{0x001, 0x07f, "a restricted use"}, {0x10
                                        {0x780, 0x7ff, "a restricted use"}};
 /// The default identifiers of CiA 301 and CiA 402 that the drives or the controller send.
 constexpr Identifiers kOfOthers[] = {kEmergencies,
+                                     kTime,
                                      {0x181, 0x1ff, "TPDO 1 of the drives"},
                                      {0x281, 0x2ff, "TPDO 2 of the drives"},
                                      {0x381, 0x3ff, "TPDO 3 of the drives"},
@@ -50,6 +59,36 @@ void refuse_use(const SignalSource& source, const char* name, std::uint32_t id,
     }
 }
 
+bool is_among(const Identifiers& use, std::uint32_t id) { return id >= use.first && id <= use.last; }
+
+/// The further RPDOs of this drive may have the offset, if the drive's mapping says so; those of another
+/// drive never.
+void refuse_further_rpdos(const SignalSource& source, std::uint32_t rpdo, std::uint32_t node) {
+  for (const Identifiers& use : {kRpdo2, kRpdo3, kRpdo4}) {
+    if (!is_among(use, rpdo)) continue;
+    if ((rpdo & kNodeMask) != node)
+      source.fail_at("rpdo", std::string("rpdo: the identifier belongs to ") + use.use + ", node " +
+                                 std::to_string(rpdo & kNodeMask));
+    if (use.first != kRpdo4.first && source.text("pdo_test", "sdo") == "none")
+      source.fail_at("rpdo",
+                     std::string("rpdo: ") + use.use +
+                         " have a controlword by default, and pdo_test = \"none\" does not read what the "
+                         "drive takes from it: use pdo_test = \"sdo\", or RPDO 4");
+  }
+}
+
+void refuse_equal_identifiers(const SignalSource& source, const CanopenSettings& settings) {
+  const std::pair<const char*, std::uint32_t> all[] = {{"sync", settings.sync},
+                                                       {"the emergency message", settings.emergency},
+                                                       {"the heartbeat", settings.heartbeat},
+                                                       {"tpdo", settings.tpdo},
+                                                       {"rpdo", settings.rpdo}};
+  for (const auto* a = std::begin(all); a != std::end(all); ++a)
+    for (const auto* b = a + 1; b != std::end(all); ++b)
+      if (a->second == b->second)
+        source.fail(std::string(a->first) + " and " + b->first + " have one identifier");
+}
+
 CanopenSettings settings_of(const SignalSource& source) {
   const auto node = static_cast<std::uint32_t>(source.whole("node", 1, kLastNode));
   const auto id = [&](const char* name, std::uint32_t otherwise) {
@@ -60,18 +99,16 @@ CanopenSettings settings_of(const SignalSource& source) {
   settings.emergency = kEmergency + node;
   settings.heartbeat = kHeartbeat + node;
   settings.tpdo = id("tpdo", kTpdo3 + node);
-  settings.rpdo = id("rpdo", kRpdo4 + node);
+  settings.rpdo = id("rpdo", kFirstRpdo4 + node);
   settings.sync_timeout = InstantNs(kNsPerMs * source.whole("timeout_ms", 20, 2, 1000));
   settings.heartbeat_time = InstantNs(kNsPerMs * source.whole("heartbeat_ms", 200, 10, 10'000));
-  const std::uint32_t all[] = {settings.sync, settings.emergency, settings.heartbeat, settings.tpdo,
-                               settings.rpdo};
-  for (const std::uint32_t* a = std::begin(all); a != std::end(all); ++a)
-    if (std::find(a + 1, std::end(all), *a) != std::end(all))
-      source.fail("two frames of the drive have one identifier");
+  refuse_equal_identifiers(source, settings);
   refuse_use(source, "sync", settings.sync, kRestricted);
+  refuse_use(source, "sync", settings.sync, kOfOthers);
   refuse_use(source, "tpdo", settings.tpdo, kRestricted);
   refuse_use(source, "rpdo", settings.rpdo, kRestricted);
   refuse_use(source, "rpdo", settings.rpdo, kOfOthers);
+  refuse_further_rpdos(source, settings.rpdo, node);
   return settings;
 }
 
@@ -119,6 +156,47 @@ struct DriveUse {
   CanopenSettings settings;
 };
 
+/// A link sends any bytes: it must have no identifier on which a node of CANopen acts.
+void refuse_identifier_of_canopen(const std::vector<DriveUse>& drives, const SignalSource& link,
+                                  const char* name) {
+  const auto id = static_cast<std::uint32_t>(link.number(name, 0));
+  if (id > kStandardIds) return;
+  for (const DriveUse& drive : drives) {
+    if (drive.source->text("interface") != link.text("interface")) continue;
+    if (id == kNmt) link.fail_at(name, std::string(name) + ": 0x000 is NMT: it starts and stops the drives");
+    refuse_use(link, name, id, kRestricted);
+    const auto node = static_cast<std::uint32_t>(drive.source->whole("node", 1, kLastNode));
+    if ((id & kNodeMask) == node)
+      link.fail_at(name, std::string(name) + ": the identifier belongs to node " + std::to_string(node) +
+                             ", the drive of " + drive.source->where);
+  }
+}
+
+/// Position and offset of one drive count in one unit (0x6064 and 0x60B0), in one direction.
+void require_one_unit(const SignalSource& position, const SignalSource& output) {
+  for (const char* const name : {"interface", "node"}) {
+    const bool same = position.texts.contains(name) ? position.text(name) == output.text(name)
+                                                    : position.number(name) == output.number(name);
+    if (!same)
+      output.fail_at(name, std::string(name) + ": the position of this axis is from another drive (" +
+                               position.where +
+                               "). If this is meant, take the position from the frame of that drive with "
+                               "kind = \"can\"");
+  }
+  const double of_position = position.number("scale"), of_output = output.number("scale");
+  constexpr double kSame = 1e-9;  // relative; the same decimal number
+  // A scale that is not valid alone is refused with its own line.
+  if (of_position == 0 || of_output <= 0) return;
+  if (std::abs(std::abs(of_position) - of_output) > kSame * of_output)
+    output.fail_at("scale", "scale: the position of this drive has a count of another size (" +
+                                position.where + "); position and offset of a drive have one unit");
+  if ((of_position < 0) != is_inverted(output))
+    output.fail_at("polarity", "polarity: the position counts " +
+                                   std::string(of_position < 0 ? "against" : "with") +
+                                   " the axis (the sign of scale in " + position.where +
+                                   "), so polarity must be " + (of_position < 0 ? "inverted" : "normal"));
+}
+
 /// Refuses an identifier of another use of the bus that is one of these drives.
 void refuse_identifiers_of(const std::vector<DriveUse>& drives, const SignalSource& source, const char* name,
                            bool with_tpdo) {
@@ -141,7 +219,10 @@ void refuse_identifiers_of(const std::vector<DriveUse>& drives, const BoardFile&
   }
   for (const LinkEntry& link : board.links)
     for (const char* const name : {"receive", "transmit"})
-      if (link.source.kind == "isotp") refuse_identifiers_of(drives, link.source, name, true);
+      if (link.source.kind == "isotp") {
+        refuse_identifiers_of(drives, link.source, name, true);
+        refuse_identifier_of_canopen(drives, link.source, name);
+      }
 }
 
 }  // namespace
@@ -165,6 +246,8 @@ OutputOpener canopen_output_of(const std::vector<OutputAxis>& axes) {
   if (!(scale_um > 0 && scale_um <= 1e3))
     numbers.fail_at("scale", "scale must be above 0 and at most 1000 um of a count; see polarity");
   numbers.numbers["resolution"] = scale_um * kMmPerUm;
+  if (numbers.number("range") < scale_um * kMmPerUm)
+    numbers.fail_at("range", "range must be at least one count (scale)");
   const AnalogueScale scale = number_scale(numbers, axis.rotary);
   CanopenSettings settings = settings_of(*axis.source);
   // One more, because both ends of a change are rounded.
@@ -184,6 +267,7 @@ void require_sync_of_drives(const BoardFile& board) {
     const SignalSource& source = axis.output;
     if (source.kind != "canopen") continue;
     const CanopenSettings settings = settings_of(source);
+    if (axis.position.kind == source.kind) require_one_unit(axis.position, source);
     const std::string& interface = source.text("interface");
     const std::int64_t tick_us = board.service.upload.tick.count;
     if (source.whole("sync_us", 100, 100'000) != tick_us)

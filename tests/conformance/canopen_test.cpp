@@ -271,6 +271,27 @@ TEST(CanopenLoss, RestartOfTheDriveIsNoStep) {
   EXPECT_LE(rig.largest(), kMost);
 }
 
+// The drive is enabled again while the board still removes its correction: the offset must not come back.
+TEST(CanopenLoss, DriveThatIsEnabledDuringTheRampOutGetsNoOffset) {
+  Rig rig;
+  rig.correct();
+  rig.restart_drive();
+  rig.status = kSwitchedOn;
+  rig.run(3);
+  rig.status = kEnabled;
+  for (int i = 0; rig.written() != 0; ++i) {
+    ASSERT_LT(i, 200);
+    rig.tick();
+    EXPECT_EQ(rig.applied(), 0) << "tick " << i;
+  }
+  rig.target = 0;
+  rig.clear();
+  rig.run(120);
+  rig.target = 300;
+  rig.run(120);
+  EXPECT_EQ(rig.applied(), 300) << "after zero the correction comes in again";
+}
+
 TEST(CanopenLoss, BusOffIsDetectedAndNothingIsSentIntoIt) {
   Rig rig;
   rig.correct();
@@ -373,6 +394,8 @@ TEST(CanopenState, OffsetIsZeroUnlessOperationIsEnabledAndComesBackWithoutAStep)
     rig.correct();
     rig.status = off;
     EXPECT_EQ(rig.run(1), HalFault::kNone) << "no fault: the operator switches drives off each day";
+    EXPECT_EQ(rig.buffer(), 1000) << "one statusword may be wrong";
+    EXPECT_EQ(rig.run(1), HalFault::kNone);
     EXPECT_EQ(rig.buffer(), 0) << "no torque, no step";
     EXPECT_EQ(rig.drive.offset(), 0);
     EXPECT_FALSE(rig.drive.follows());
@@ -384,6 +407,22 @@ TEST(CanopenState, OffsetIsZeroUnlessOperationIsEnabledAndComesBackWithoutAStep)
     EXPECT_TRUE(rig.drive.follows());
     EXPECT_LE(rig.largest(), kMost);
     EXPECT_GE(rig.drive.counts().not_enabled, 300u);
+  }
+}
+
+// A wrong bit in one statusword, while the drive is in Operation enabled: the offset must not step to zero.
+TEST(CanopenState, WrongBitInOneStatuswordMakesNoStep) {
+  for (int bit = 0; bit < 16; ++bit) {
+    Rig rig;
+    rig.correct();
+    rig.status = static_cast<std::uint16_t>(kEnabled ^ 1u << bit);
+    rig.run(1);
+    rig.status = kEnabled;
+    rig.run(1);
+    EXPECT_LE(std::abs(rig.buffer() - 1000), kMost) << "bit " << bit;
+    rig.run(20);
+    EXPECT_EQ(rig.buffer(), 1000) << "bit " << bit;
+    EXPECT_EQ(rig.drive.counts().losses, 0u);
   }
 }
 
@@ -410,6 +449,7 @@ TEST(CanopenState, NoHistoryMakesAStepOrAnOffsetWithoutTorque) {
   const std::uint16_t kStates[] = {kEnabled, kEnabled,   kEnabled,      kSwitchedOn,
                                    kFault,   kQuickStop, kFaultReaction};
   std::uint64_t injected = 0, corrected = 0;
+  bool off = false, told_off = false;  // the newest statusword has no torque; it came in the tick before
   for (int i = 0; i < 20'000'000; ++i) {
     const auto one_in = [&](std::uint64_t n) { return random() % n == 0 ? (++injected, true) : false; };
     if (one_in(400)) rig.sync = !rig.sync;
@@ -433,11 +473,17 @@ TEST(CanopenState, NoHistoryMakesAStepOrAnOffsetWithoutTorque) {
     }
     if (one_in(100)) rig.target = static_cast<std::int64_t>(random() % 2001) - 1000;
     if (i % 500 == 0) rig.sync = rig.tpdo = rig.heartbeat = rig.bus = true, rig.nmt = 5, rig.clear();
-    const std::uint64_t sent = rig.drive.counts().offsets;
+    const std::uint64_t sent = rig.drive.counts().offsets, told = rig.drive.counts().positions;
+    const std::int32_t offset = rig.drive.offset();
+    const bool was_off = off;
     rig.tick();
-    if (rig.drive.counts().offsets > sent && !has_torque(rig.drive.status())) {
-      ASSERT_EQ(rig.drive.offset(), 0) << "tick " << i;
+    off = !has_torque(rig.drive.status());
+    // A second statusword without torque came, or the first one: the offset is zero, or stays.
+    if (rig.drive.counts().offsets > sent && off && rig.drive.offset() != 0) {
+      ASSERT_EQ(rig.drive.offset(), offset) << "tick " << i;
+      ASSERT_FALSE(was_off && rig.drive.counts().positions > told && told_off) << "tick " << i;
     }
+    told_off = off && rig.drive.counts().positions > told;
     corrected += rig.applied() != 0 ? 1 : 0;
     ASSERT_LE(rig.largest(), kMost) << "tick " << i;
     ASSERT_LE(std::abs(rig.applied()), 1000 + kMost);

@@ -269,7 +269,7 @@ TEST_F(Check, WrongSettingsOfRegistersAreNamed) {
   write(board(place + "echo = 50, resolution = 1e-6, range = 0.2"));
   const Said gone = run("--check");
   EXPECT_EQ(gone.status, 2) << gone.text;
-  EXPECT_NE(gone.text.find("missing  axis.X.output  modbus-out: the controller does not answer"),
+  EXPECT_NE(gone.text.find("missing  axis.X.output  modbus-out: the controller gives no valid answer"),
             std::string::npos)
       << gone.text;
 }
@@ -318,7 +318,7 @@ TEST_F(Check, TablesOfAxesAndOutputsAreRead) {
   EXPECT_EQ(said.status, 2) << said.text;
   for (const char* line :
        {"ok       axis.X.position  sim\n", "ok       axis.C.position  sim\n",
-        "missing  axis.X.output  modbus-out: the controller does not answer",
+        "missing  axis.X.output  modbus-out: the controller gives no valid answer",
         "ok       axis.C.output  iio-dac", "budget   axis.C.output: -124.51 to 125.49 mdeg"})
     EXPECT_NE(said.text.find(line), std::string::npos) << line << said.text;
   // The last block of the registers; `valid` is the register after `sequence` if it is not given.
@@ -399,7 +399,7 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
        "board.toml:18: output of X: object: '60B0' is no object"},
       {board_of(sim, output + "object = \"0x60B0:1g\"", sync), "'0x60B0:1g' is no object"},
       {board_of(sim, output + "pdo_test = \"no\"", sync), "pdo_test: 'no' is neither sdo nor none"},
-      {board_of(sim, output + "rpdo = 0x81", sync), "two frames of the drive have one identifier"},
+      {board_of(sim, output + "rpdo = 0x81", sync), "the emergency message and rpdo have one identifier"},
       {board_of(sim, output + "rpdo = 0x201", sync),
        "board.toml:18: output of X: rpdo: 0x201 belongs to RPDO 1, the controller's controlword (0x201 to "
        "0x27F)"},
@@ -410,9 +410,49 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
       {board_of(sim, output + "object = \"0x6040:00\"", sync), "'0x6040:00' is no position offset"},
       {board_of("kind = \"can\"\ninterface = \"nocan\"\nid = 0x501", output, sync),
        "board.toml:12: axis X: id: a frame of the drive of "},
-      {board_of(replaced(drive, "scale", "tpdo = 0x501\nscale"),
-                replaced(output, "node = 1", "node = 2\nrpdo = 0x501"), sync),
+      {board_of(replaced(drive, "scale", "tpdo = 0x501\nscale"), output, sync),
        "tpdo: a frame of the drive of "},
+      {board_of(drive, replaced(output, "node = 1", "node = 2"), sync),
+       "output of X: node: the position of this axis is from another drive ("},
+      {board_of(drive, replaced(output, "scale = 0.1", "scale = 1"), sync),
+       "output of X: scale: the position of this drive has a count of another size"},
+      {board_of(replaced(drive, "scale = 0.1", "scale = -0.1"), output, sync),
+       "output of X: polarity: the position counts against the axis"},
+      {board_of(drive, output + "polarity = \"inverted\"", sync),
+       "output of X: polarity: the position counts with the axis"},
+      {board_of(sim, output + "rpdo = 0x302", sync),
+       "rpdo: the identifier belongs to RPDO 2 of the drives, node 2"},
+      {board_of(sim, output + "rpdo = 0x502", sync),
+       "rpdo: the identifier belongs to RPDO 4 of the drives, node 2"},
+      {board_of(sim, output + "pdo_test = \"none\"\nrpdo = 0x401", sync),
+       "rpdo: RPDO 3 of the drives have a controlword by default, and pdo_test = \"none\""},
+      {board_of(sim, output + "rpdo = 0x100", sync), "rpdo: 0x100 belongs to TIME"},
+      {board_of(sim, output + "sync = 0x201", sync), "sync: 0x201 belongs to RPDO 1"},
+      {board_of(sim, output, sync) +
+           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x650\ntransmit = 0\n",
+       "link: receive: 0x650 belongs to SDO requests"},
+      {board_of(sim, output, sync) +
+           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x7e0\ntransmit = 0\n",
+       "link: receive: 0x7E0 belongs to a restricted use"},
+      {board_of(sim, output, sync) +
+           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x202\ntransmit = 0\n",
+       "link: transmit: 0x000 is NMT"},
+      {board_of(sim, output, sync) +
+           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x202\ntransmit = 0x201\n",
+       "link: transmit: the identifier belongs to node 1"},
+      {board_of(replaced(plc, "register", "baud = 9600\nregister"), output, sync),
+       "baud is a setting of a serial line"},
+      {board_of(replaced(plc, "address = \"127.0.0.1\"\nport = 1", "device = \"/dev/null\"\nport = 1"),
+                output, sync),
+       "port is a setting of an address"},
+      {board_of(replaced(plc, "address = \"127.0.0.1\"\nport = 1", "device = \"/dev/null\"\nbaud = 12345"),
+                output, sync),
+       "baud: 12345 is no rate of a serial line"},
+      {board_of(sim,
+                "kind = \"modbus-out\"\ndevice = \"/dev/null\"\nbaud = 1200\nregister = 100\necho = 50\n"
+                "resolution = 1e-5\nrange = 0.1\nperiod_ms = 20\ntimeout_ms = 400\n"),
+       "timeout_ms: a request and its answer are on this line for 230 ms, and must be there within a quarter "
+       "of timeout_ms"},
       {board_of(sim, output, sync) +
            "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x700\ntransmit = 0x501\n",
        "link: transmit: a frame of the drive of "},

@@ -37,7 +37,7 @@ ModbusOutputSettings settings() {
 
 std::unique_ptr<ModbusOutput> open(const Plc& plc, std::string& error,
                                    const ModbusOutputSettings& how = settings()) {
-  const TimeUs wait(how.timeout.count / 2);
+  const TimeUs wait = ModbusOutput::wait_for_answer(how.timeout, !plc.path().empty());
   auto line = plc.path().empty() ? ModbusLine::tcp("127.0.0.1", plc.port(), wait, error)
                                  : ModbusLine::rtu(plc.path(), 115200, 'N', wait, error);
   return line ? ModbusOutput::open(line, how, error) : nullptr;
@@ -252,6 +252,54 @@ TEST_F(ModbusOutputLoss, ShortOutageIsNoLossAndMakesNoStep) {
   EXPECT_EQ(plc_.blocks().back().valid & 1, 1);
   EXPECT_EQ(plc_.blocks().back().values[0], -2000);
   EXPECT_LE(largest_step(plc_.blocks()), kMostStep);
+}
+
+/// The values that a serial line usually has.
+ModbusOutputSettings serial_settings() {
+  ModbusOutputSettings made = settings();
+  made.period = TimeUs(20'000);
+  made.timeout = TimeUs(400'000);
+  return made;
+}
+
+// A serial line has no number for each request: after a lost answer it is quiet until no late answer can
+// come.
+TEST(ModbusOutputSerial, LostAnswerIsNoLoss) {
+  Plc plc{Plc::Serial{}};
+  std::string error;
+  const auto output = open(plc, error, serial_settings());
+  ASSERT_NE(output, nullptr) << error;
+  Ticks ticks(*output);
+  ticks.run(100ms, 0);
+  ticks.run(200ms, 20'000);
+  for (int lost = 0; lost < 4; ++lost) {
+    plc.lost_answers = 1;
+    ticks.run(500ms + 7ms * lost, 20'000);
+    EXPECT_EQ(plc.lost_answers, 0);
+    EXPECT_EQ(plc.blocks().back().valid & 1, 1) << "answer " << lost;
+  }
+  EXPECT_NE(output->account().find(" 0 losses"), std::string::npos) << output->account();
+}
+
+// The requests arrive: the controller must not keep a block that is valid.
+TEST(ModbusOutputSerial, ControllerThatOnlyHearsLearnsThatNothingIsValid) {
+  Plc plc{Plc::Serial{}};
+  std::string error;
+  const auto output = open(plc, error, serial_settings());
+  ASSERT_NE(output, nullptr) << error;
+  Ticks ticks(*output);
+  ticks.run(100ms, 0);
+  ticks.run(200ms, 20'000);
+  ASSERT_EQ(plc.blocks().back().valid & 1, 1);
+  plc.lost_answers = 1'000'000;
+  ticks.run(1500ms, 20'000);
+  EXPECT_EQ(plc.blocks().back().valid, 0);
+  EXPECT_EQ(plc.blocks().back().values[0], 0);
+  plc.lost_answers = 0;
+  while (ticks.written() != 0) ticks.step(0);
+  ticks.run(400ms, 0);
+  ticks.run(400ms, 20'000);
+  EXPECT_EQ(plc.blocks().back().valid & 1, 1);
 }
 
 // The outage is no loss, but the controller has lost its block: it applies nothing, so that the board begins

@@ -2,6 +2,7 @@
 #include "tests/conformance/plc.h"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -33,7 +34,8 @@ Plc::Plc() : registers_(modbus_mapping_new(0, 0, kRegisters, 0)), context_(modbu
 Plc::Plc(Serial)
     : registers_(modbus_mapping_new(0, 0, kRegisters, 0)),
       context_(modbus_new_rtu("/dev/null", 115200, 'N', 8, 1)),
-      line_(raw_terminal(path_)) {
+      line_(raw_terminal(path_)),
+      nowhere_(::open("/dev/null", O_WRONLY | O_CLOEXEC)) {
   modbus_set_socket(context_, line_);
   modbus_set_slave(context_, 1);
   thread_ = std::thread([this] { serve(); });
@@ -44,6 +46,7 @@ Plc::~Plc() {
   thread_.join();
   if (listening_ >= 0) ::close(listening_);
   if (line_ >= 0) ::close(line_);
+  if (nowhere_ >= 0) ::close(nowhere_);
   modbus_free(context_);
   modbus_mapping_free(registers_);
 }
@@ -69,6 +72,10 @@ void Plc::answer(modbus_t* context, const std::uint8_t* query, int size) {
   std::this_thread::sleep_for(std::chrono::milliseconds(late_ms));
   constexpr int kWrite = 16;
   const int function = query[modbus_get_header_length(context)];
+  if (lost_answers > 0) {
+    --lost_answers;
+    modbus_set_socket(context, nowhere_);
+  }
   modbus_reply(context, query, size, registers_);
   if (function != kWrite) return;
   const std::uint16_t* const block = registers_->tab_registers + kBlock;

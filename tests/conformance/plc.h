@@ -44,6 +44,7 @@ class Plc {
   std::atomic<bool> gone{false};     // connections are closed, and none is answered
   std::atomic<bool> forgets{false};  // while it is gone, its registers become zero: a restart
   std::atomic<int> late_ms{0};       // each answer comes so late
+  std::atomic<int> lost_answers{0};  // so many requests arrive and their answers do not
 
  private:
   void serve();
@@ -52,7 +53,7 @@ class Plc {
   modbus_mapping_t* const registers_;
   modbus_t* context_ = nullptr;
   std::string path_;
-  int listening_ = -1, port_ = 0, line_ = -1;
+  int listening_ = -1, port_ = 0, line_ = -1, nowhere_ = -1;
   mutable std::mutex guard_;
   std::vector<Block> blocks_;
   std::atomic<bool> stop_{false};

@@ -71,6 +71,8 @@ void CanopenDrive::take_status(const can_frame& frame, InstantNs now) noexcept {
   ++counts_.positions;
   tpdo_.now(now);
   status_ = static_cast<std::uint16_t>(little_endian(frame.data, 2));
+  without_torque_ =
+      has_torque(status_) ? 0 : static_cast<std::uint8_t>(std::min(without_torque_ + 1, int{kSure}));
   position_ = static_cast<std::int32_t>(little_endian(frame.data + 2, 4));
   fresh_ = answered_ = true;
 }
@@ -120,6 +122,7 @@ const char* CanopenDrive::missing(InstantNs now) const noexcept {
 void CanopenDrive::forget() noexcept {
   sync_.known = tpdo_.known = heartbeat_.known = pending_ = false;
   status_ = 0;
+  without_torque_ = kSure;
 }
 
 /// The offset that is wanted, as far as the drive may have it.
@@ -128,7 +131,7 @@ std::int64_t CanopenDrive::goal(std::int64_t wanted, bool well) noexcept {
     counts_.not_enabled += wanted != 0 ? 1 : 0;
     return 0;
   }
-  if (well) return wanted;
+  if (well && !fading_) return wanted;
   return sent_ >= 0 ? std::clamp<std::int64_t>(wanted, 0, sent_) : std::clamp<std::int64_t>(wanted, sent_, 0);
 }
 
@@ -140,9 +143,11 @@ CanopenDrive::Step CanopenDrive::step(std::int64_t wanted, InstantNs now) noexce
   if (is_stuck(now)) pending_ = false;
   if (well_ && !well) {
     ++counts_.losses;
+    fading_ = true;
     refuse_ = refuse_ || wanted != 0 || sent_ != 0;
   }
   well_ = well;
+  fading_ = fading_ && wanted != 0;
   follows_ = false;
   // A drive that takes nothing keeps its offset: with the first SYNC it goes on from there. The newest offset
   // may be one that it has not taken, and is sent once more. Without a new SYNC the newest offset stays.
@@ -158,13 +163,12 @@ CanopenDrive::Step CanopenDrive::step(std::int64_t wanted, InstantNs now) noexce
     return {};
   }
   if (pending_) return {};  // one frame waits for the bus at a time
-  const bool has_torque = enabled() || (status_ & kStateMask) == kQuickStopActive ||
-                          (status_ & kReactionMask) == kFaultReactionActive;
+  const bool in_doubt = without_torque_ > 0 && without_torque_ < kSure;
   std::int64_t next = goal(wanted, well);
-  if (has_torque)
-    next = again ? sent_
-                 : std::clamp<std::int64_t>(next, applied_ - settings_.most_per_sync,
-                                            applied_ + settings_.most_per_sync);
+  if (without_torque_ < kSure)
+    next = again || in_doubt ? sent_
+                             : std::clamp<std::int64_t>(next, applied_ - settings_.most_per_sync,
+                                                        applied_ + settings_.most_per_sync);
   follows_ = next == wanted;
   return {HalFault::kNone, true, static_cast<std::int32_t>(next)};
 }

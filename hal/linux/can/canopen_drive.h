@@ -43,8 +43,11 @@ struct CanopenCounts {
 ///   Operation enabled                    the offset follows, within most_per_sync; it stays while
 ///                                        the drive leaves out a TPDO
 ///   Quick stop, fault reaction           the offset goes to zero within most_per_sync; the drive still moves
-///   any other state                      zero: the drive has no torque
-///   after a loss                         one write is refused; then the offset only decreases
+///   any other state, in two TPDOs        zero: the drive has no torque. After the first of the two the
+///   offset
+///                                        stays: a wrong bit in one statusword makes no step
+///   after a loss                         one write is refused; then the offset only decreases, until the
+///                                        wanted offset is zero
 ///   no SYNC, TPDO or state Operational   the drive takes nothing: writes are refused, the offset stays
 class CanopenDrive {
  public:
@@ -118,17 +121,25 @@ class CanopenDrive {
   bool is_well(InstantNs now) const noexcept;
   std::int64_t goal(std::int64_t wanted, bool well) noexcept;
   void forget() noexcept;
+  bool has_torque(std::uint16_t status) const noexcept {
+    return (status & kStateMask) == kOperationEnabled || (status & kStateMask) == kQuickStopActive ||
+           (status & kReactionMask) == kFaultReactionActive;
+  }
 
+  static constexpr std::uint8_t kSure = 2;  // TPDOs without torque in succession that are no wrong bit
   CanopenSettings settings_;
   Heard sync_, heartbeat_, tpdo_, foreign_, step_;
   std::uint8_t nmt_ = kBootUp;
   std::uint16_t status_ = 0;
+  std::uint8_t without_torque_ = kSure;  // newest TPDOs in succession, at most kSure
   bool emergency_ = false, bus_off_ = false;
   bool synced_ = false;    // a SYNC has come since the last step
   bool answered_ = false;  // a TPDO has come since the last SYNC
   Doubt doubt_ = Doubt::kRepeat;
   bool well_ = false;    // at the last step
   bool refuse_ = false;  // the tick has not yet learned of a loss
+  bool fading_ =
+      false;  // since a loss the wanted offset was not zero: the board still removes its correction
   bool follows_ = true, fresh_ = false;
   std::int32_t position_ = 0;
   std::int32_t applied_ = 0;  // offset of the last SYNC

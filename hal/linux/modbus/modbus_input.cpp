@@ -41,7 +41,8 @@ std::shared_ptr<ModbusLine> ModbusLine::rtu(const std::string& device, int baud,
   modbus_t* const context = modbus_new_rtu(device.c_str(), baud, parity, 8, 1);
   if (context == nullptr) return error = device + ": " + modbus_strerror(errno), nullptr;
   std::shared_ptr<ModbusLine> line(new ModbusLine(context, true, wait));
-  if (!line->connected()) return error = device + ": " + modbus_strerror(errno), nullptr;
+  if (!line->connected())
+    return error = device + ": " + (errno == ENOTTY ? "is no serial line" : modbus_strerror(errno)), nullptr;
   return line;
 }
 
@@ -53,9 +54,11 @@ std::shared_ptr<ModbusLine> ModbusLine::tcp(const std::string& address, int port
 }
 
 bool ModbusLine::connected() noexcept {
-  if (!open_) open_ = modbus_connect(context_) == 0;
+  if (!open_ && !(open_ = modbus_connect(context_) == 0)) error_ = errno;
   return open_;
 }
+
+std::string ModbusLine::why() const { return modbus_strerror(error_); }
 
 // libmodbus compares the unit of an answer on serial lines only, so a request over TCP and the comparison are
 // made here (Modbus Messaging on TCP/IP V1.0b, 4.2). request: function and data. Null with errno of
@@ -95,6 +98,7 @@ void ModbusLine::prepare(int unit) noexcept {
 /// opened again. (So is a serial device that was removed.)
 bool ModbusLine::finish(bool done) noexcept {
   if (done) return true;
+  error_ = errno;
   const bool exception = is_exception(errno);
   if (errno == EMBBADDATA || errno == EMBBADSLAVE || errno == EMBBADCRC) ++wrong_answers_;
   after_silence_ = serial_ && !exception;

@@ -38,6 +38,8 @@ class ModbusLine {
   /// Answers so far that did not belong to their request or were damaged. For the thread that reads.
   /// Not real-time safe.
   std::uint64_t wrong_answers() const noexcept { return wrong_answers_; }
+  /// Why the last request failed, in the words of libmodbus. Not real-time safe.
+  std::string why() const;
 
  private:
   ModbusLine(_modbus* context, bool serial, TimeUs wait);
@@ -51,6 +53,7 @@ class ModbusLine {
   std::uint16_t transaction_ = 0;  // of the newest request over TCP
   std::uint8_t answer_[260] = {};  // to this request (Modbus Messaging on TCP/IP V1.0b, 4.1)
   std::uint64_t wrong_answers_ = 0;
+  int error_ = 0;  // errno of the last request that failed
   TimeUs wait_;
 };
 

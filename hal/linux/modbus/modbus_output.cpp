@@ -64,10 +64,11 @@ std::string ModbusOutput::begin() {
     return false;
   };
   std::uint16_t before = 0, after = 0;
-  if (!look(before)) return "the controller does not answer, or has no such register";
+  if (!look(before))
+    return "the controller gives no valid answer to a request for the block: " + line_->why();
   for (const auto end = Clock::now() + kLookForAnother; Clock::now() < end;) {
     std::this_thread::sleep_for(span_of(settings_.period));
-    if (!look(after)) return "the controller does not answer";
+    if (!look(after)) return "the controller gives no valid answer any more: " + line_->why();
     if (before != after) return "in use: another board writes the sequence number";
   }
   sequence_ = kept_ = before;
@@ -178,18 +179,8 @@ bool ModbusOutput::find_restart() {
   return true;
 }
 
-void ModbusOutput::exchange(bool last) {
-  const Clock::time_point began = Clock::now();
-  const bool ticks_are_on = ticks_run(began);
-  if (unanswered_ && !last && !find_restart()) {
-    {
-      const std::scoped_lock lock(guard_);
-      ++exchanges_, ++failed_;
-    }
-    return judge(false, 0, Clock::now(), ticks_are_on);
-  }
-  const std::int64_t stored = stored_ns_.load();
-  if (!repeat_ && !last) choose_values(began, ticks_are_on);
+/// Writes values and valid bits with a new sequence number. False: no answer.
+bool ModbusOutput::write_block(Clock::time_point began) {
   std::array<std::uint16_t, ModbusOutputSettings::kValues + 2 * ModbusOutputSettings::kPlaces> block{};
   int used = ModbusOutputSettings::kValues;
   block[ModbusOutputSettings::kSequence] = ++sequence_;
@@ -204,7 +195,25 @@ void ModbusOutput::exchange(bool last) {
           static_cast<std::uint16_t>(block[ModbusOutputSettings::kValid] | 1u << place);
     used = std::max(used, ModbusOutputSettings::kValues + 2 * static_cast<int>(place) + 2);
   }
-  const bool written = line_->write(settings_.unit, settings_.address, used, block.data());
+  return line_->write(settings_.unit, settings_.address, used, block.data());
+}
+
+void ModbusOutput::exchange(bool last) {
+  const Clock::time_point began = Clock::now();
+  const bool ticks_are_on = ticks_run(began);
+  if (unanswered_ && !last && !find_restart()) {
+    {
+      const std::scoped_lock lock(guard_);
+      ++exchanges_, ++failed_;
+    }
+    judge(false, 0, Clock::now(), ticks_are_on);
+    // Perhaps only the answers do not arrive: then the controller learns here that nothing is valid.
+    if (!healthy_) write_block(began);
+    return;
+  }
+  const std::int64_t stored = stored_ns_.load();
+  if (!repeat_ && !last) choose_values(began, ticks_are_on);
+  const bool written = write_block(began);
   const Clock::time_point answered_at = Clock::now();
   if (written) written_ = began, kept_ = sequence_;
   repeat_ = !written;

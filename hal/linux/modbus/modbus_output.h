@@ -44,6 +44,12 @@ struct ModbusOutputSettings {
 /// controller was restarted within the time-out and has lost the block.
 class ModbusOutput : public OutputDevice {
  public:
+  /// Longest time for an answer, as the lines of `settings` must have it. A serial line is quiet for as long
+  /// again after an answer that did not come: both together are half of the time-out, so that one lost answer
+  /// is no loss of the controller.
+  static TimeUs wait_for_answer(TimeUs timeout, bool serial) {
+    return TimeUs(timeout.count / (serial ? 4 : 2));
+  }
   /// line: used by this output only. Returns null with `error` set if the controller does not answer, does
   /// not return the sequence number, or is written by another board. Waits for the controller.
   /// Not real-time safe.
@@ -89,6 +95,7 @@ class ModbusOutput : public OutputDevice {
   ModbusOutput(std::shared_ptr<ModbusLine> line, const ModbusOutputSettings& settings);
   std::string begin();
   void run();
+  bool write_block(Clock::time_point began);
   void exchange(bool last = false);
   bool find_restart();
   void choose_values(Clock::time_point now, bool ticks_are_on);
