@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::int64_t kLow = INT32_MIN, kHigh = INT32_MAX;
 
-constexpr bool fits(const ValueRange& r) { return r.low >= kLow && r.high <= kHigh && r.low <= r.high; }
+// Every operation on ranges gives low <= high.
+constexpr bool fits(const ValueRange& r) { return r.low >= kLow && r.high <= kHigh; }
 
 ValueRange product(const ValueRange& a, const ValueRange& b) {
   const std::int64_t p[4] = {a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high};

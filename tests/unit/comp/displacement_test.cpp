@@ -64,8 +64,11 @@ TEST(Displacement, RefusesSettingsItCannotKeepItsBoundsWith) {
   Displacement filter;
   EXPECT_TRUE(filter.start({}));
   EXPECT_TRUE(filter.start({98067, 10'240'000, 100, 200'000}));
+  EXPECT_TRUE(filter.start({std::int64_t{1} << 31, std::int64_t{1} << 30, 10'000, 0}));
   for (const DisplacementScale& bad :
-       {DisplacementScale{0, 1'000'000, 500, 0}, DisplacementScale{1, 0, 500, 0},
+       {DisplacementScale{(std::int64_t{1} << 31) + 1, 1'000'000, 500, 0},
+        DisplacementScale{1, (std::int64_t{1} << 30) + 1, 10'000, 0}, DisplacementScale{1, 1'000'000, 0, 0},
+        DisplacementScale{0, 1'000'000, 500, 0}, DisplacementScale{1, 0, 500, 0},
         DisplacementScale{1, 1'000'000, 7, 0}, DisplacementScale{1, 1'000'000, 15'626, 0},
         DisplacementScale{1, 1'000'000, 500, 250'001}, DisplacementScale{1, 1'000'000, 500, -1},
         DisplacementScale{INT32_MAX, 1'000, 10, 0}})

@@ -46,6 +46,9 @@ TEST(Saturate, KeepsWhatFitsAndReportsWhatDoesNot) {
   saturated = false;
   EXPECT_EQ(saturate(INT64_MIN, saturated), INT32_MIN);
   EXPECT_TRUE(saturated);
+  saturated = true;
+  EXPECT_EQ(saturate(5, saturated), 5);
+  EXPECT_TRUE(saturated) << "never cleared";
 }
 
 TEST(Multiply, HoldsItsErrorAtTheCornersAndAtRandom) {

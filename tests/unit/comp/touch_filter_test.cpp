@@ -48,6 +48,16 @@ TEST(TouchFilter, TakesTheFirstEdgeOfABouncingContact) {
   EXPECT_EQ(filter.counts().missing, 0u);
 }
 
+TEST(TouchFilter, CountOfBouncesStopsAtItsLargest) {
+  TouchFilter filter;
+  std::vector<Edge> edges = {{0, true}};
+  for (int i = 1; i <= 600; ++i) edges.push_back({i, i % 2 == 0});
+  edges.back().made = true;
+  const std::vector<Touch> touches = touches_of(edges, filter);
+  ASSERT_EQ(touches.size(), 1u);
+  EXPECT_EQ(touches[0].bounces, UINT8_MAX);
+}
+
 TEST(TouchFilter, DropsASpikeAndCountsIt) {
   TouchFilter filter;
   EXPECT_TRUE(touches_of({{5000, true}, {5020, false}}, filter).empty());

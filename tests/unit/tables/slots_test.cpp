@@ -79,6 +79,45 @@ TEST(Slots, SenselessRecordIsNotFollowed) {
   }
 }
 
+// Each condition of a record alone, with a checksum that is right.
+TEST(Slots, RecordIsValidOnlyWithSlotsThatExist) {
+  const auto with = [](auto change) {
+    SlotRecord record = Slots{}.start_trial(5, 0).record;
+    change(record);
+    record.checksum = crc32c(reinterpret_cast<const std::uint8_t*>(&record), offsetof(SlotRecord, checksum));
+    return is_valid(record);
+  };
+  EXPECT_TRUE(with([](SlotRecord&) {}));
+  EXPECT_FALSE(with([](SlotRecord& r) { r.magic ^= 1; }));
+  EXPECT_FALSE(with([](SlotRecord& r) { r.reserved = 1; }));
+  EXPECT_FALSE(with([](SlotRecord& r) { r.reserved2 = 1; }));
+  EXPECT_FALSE(with([](SlotRecord& r) { r.confirmed = kSlotCount; }));
+  EXPECT_FALSE(with([](SlotRecord& r) { r.trial = kSlotCount; }));
+  EXPECT_TRUE(with([](SlotRecord& r) { r.confirmed = 1, r.trial = 0; }));
+  EXPECT_TRUE(with([](SlotRecord& r) { r.confirmed = 1, r.trial = kNoSlot; }));
+  EXPECT_FALSE(with([](SlotRecord& r) { r.confirmed = r.trial = 1; })) << "a trial of what is confirmed";
+  EXPECT_TRUE(with([](SlotRecord& r) { r.confirmed = r.trial = kNoSlot; }));
+}
+
+TEST(Slots, ConfirmationWithoutATrialKeepsWhatIsConfirmed) {
+  Slots slots;
+  slots.stored(slots.start_trial(5, 0));
+  slots.stored(slots.confirm());
+  const std::uint8_t confirmed = slots.confirmed();
+  slots.stored(slots.confirm());
+  EXPECT_EQ(slots.confirmed(), confirmed);
+  EXPECT_EQ(slots.issued(), 5u);
+}
+
+TEST(Slots, RecordOfAnotherVersionIsNotUpgraded) {
+  SlotRecordV1 old{kSlotMagicV1 + 1, 7, 1000, 2000, 1, 0, 0, 0};
+  old.checksum = crc32c(reinterpret_cast<const std::uint8_t*>(&old), offsetof(SlotRecordV1, checksum));
+  EXPECT_FALSE(is_valid(upgraded(old)));
+  old = {kSlotMagicV1, 7, 3000, 2000, 1, 0, 0, 0};
+  old.checksum = crc32c(reinterpret_cast<const std::uint8_t*>(&old), offsetof(SlotRecordV1, checksum));
+  EXPECT_EQ(Slots::load(upgraded(old), {}).newest_issued(), 3000u) << "the newer of the two";
+}
+
 TEST(Slots, FloorsRiseWithWhatIsTriedAndNeverFall) {
   Places places;
   Slots slots = places.load();

@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which conditions of `comp` and `tables` do their own tests decide alone (MC/DC)?
+
+Needs clang-19 and llvm-19 (Debian packages). Builds the tests of both rooms with the coverage of clang, runs them,
+and prints a table: branches and conditions of each file, and how many the tests leave. Exit status 1 if a condition
+is left that is not in LEFT. tables/image_view.cpp and tables/codes.cpp are not here: their tests need the compiler.
+    mcdc.py [--build DIR]
+"""
+import argparse, json, os, sys, tempfile
+from programs import ROOT, compile_all, run, sources, tests
+
+COVERAGE = ["-O1", "-fprofile-instr-generate", "-fcoverage-mapping", "-fcoverage-mcdc"]
+# File: conditions that no test decides alone, and why.
+LEFT = {
+    # nanometres.shift > 94: the smallest LSB at the highest rate gives less. It guards the shift of step().
+    "comp/vibration/displacement.cpp": 1,
+}
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--build", default=os.path.join(tempfile.gettempdir(), "vernier_mcdc"))
+    build = parser.parse_args().build
+    objects = compile_all("clang++-19", sources(), os.path.join(build, "rooms"), COVERAGE)
+    objects += compile_all("clang++-19", tests(), os.path.join(build, "tests"), COVERAGE)
+    program, raw, data = (os.path.join(build, name) for name in ("tests.bin", "raw", "data"))
+    run(["clang++-19", "-fprofile-instr-generate", *objects, "-lgtest", "-lgtest_main", "-o", program])
+    run([program], env={**os.environ, "LLVM_PROFILE_FILE": raw})
+    run(["llvm-profdata-19", "merge", raw, "-o", data])
+    report = json.loads(
+        run(["llvm-cov-19", "export", "-summary-only", program, "-instr-profile", data, *(os.path.join(ROOT, r) for r in ("comp", "tables"))]))
+    left = 0
+    print(f"{'file':36} {'branches':>8} {'left':>5} {'conditions':>11} {'left':>5}")
+    for one in sorted(report["data"][0]["files"], key=lambda f: f["filename"]):
+        name = os.path.relpath(one["filename"], ROOT)
+        branches, conditions = one["summary"]["branches"], one["summary"]["mcdc"]
+        if branches["count"] == 0:
+            continue
+        missing = conditions["count"] - conditions["covered"]
+        left += max(0, missing - LEFT.get(name, 0))
+        print(f"{name:36} {branches['count']:8} {branches['notcovered']:5} {conditions['count']:11} {missing:5}")
+    total = report["data"][0]["totals"]
+    print(f"{'all':36} {total['branches']['count']:8} {total['branches']['notcovered']:5} "
+          f"{total['mcdc']['count']:11} {total['mcdc']['count'] - total['mcdc']['covered']:5}")
+    sys.exit(1 if left else 0)
+
+
+main()
