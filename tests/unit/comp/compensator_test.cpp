@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
 #include <vector>
 
 #include "comp/verify.h"
@@ -109,6 +110,13 @@ CycleOutput after_channel(const Channel& channel, const CycleInput& input, const
   ValueRange ranges[4] = {};
   EXPECT_EQ(verify_program(p, ranges), ProgramFault::kNone);
   return Compensator(p).step(input);
+}
+
+TEST(Compensator, ComesBackIntoARangeThatDoesNotBeginAtZero) {
+  const Output output{0, 1, 0, 1, 1000, 1000};
+  const Channel channel{ChannelKind::kPosition, 0, 0, 0, 1, -100, 155, 256};
+  for (const auto& [position, expected] : {std::pair(-101, 155), std::pair(156, -100), std::pair(1000, -24)})
+    EXPECT_EQ(after_channel(channel, at(position), output).correction[0].counts, -expected) << position;
 }
 
 TEST(Compensator, EachChannelHasItsOwnQuantity) {

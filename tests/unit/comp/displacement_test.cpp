@@ -65,6 +65,7 @@ TEST(Displacement, RefusesSettingsItCannotKeepItsBoundsWith) {
   EXPECT_TRUE(filter.start({}));
   EXPECT_TRUE(filter.start({98067, 10'240'000, 100, 200'000}));
   EXPECT_TRUE(filter.start({std::int64_t{1} << 31, std::int64_t{1} << 30, 10'000, 0}));
+  EXPECT_TRUE(filter.start({1, 1'000'000, 15'625, 0}));
   for (const DisplacementScale& bad :
        {DisplacementScale{(std::int64_t{1} << 31) + 1, 1'000'000, 500, 0},
         DisplacementScale{1, (std::int64_t{1} << 30) + 1, 10'000, 0}, DisplacementScale{1, 1'000'000, 0, 0},

@@ -131,6 +131,9 @@ TEST(RunEquation, SineAndCosineAreTwoResults) {
   EXPECT_EQ(quarter[0], sine_cosine(1u << 30).sine);
   EXPECT_NEAR(quarter[0], 1 << 30, 2);
   EXPECT_NEAR(quarter[1], 0, 2);
+  run.constants = {1 << 29, 0, 0, 0};  // an eighth
+  EXPECT_NEAR(run.of({OpCode::kSineCosine, 30, 0, 0, 0, 1 << 30, 0})[0], 759250125, 2);
+  EXPECT_NEAR(run.of({OpCode::kSineCosine, 30, 0, 0, 0, 1 << 30, 0})[1], 759250125, 2);
   run.constants = {-(1 << 30), 0, 0, 0};
   EXPECT_NEAR(run.of({OpCode::kSineCosine, 30, 0, 0, 0, 1 << 30, 0})[0], -(1 << 30), 2);
 }

@@ -353,6 +353,8 @@ TEST(VerifyProgram, TablesAndPeriodsAreSoundAtEachLimit) {
   EXPECT_EQ(after([](Sample& s) { s.tables[0].columns = kMaxRegisters + 1; }), kTable);
   EXPECT_EQ(after([](Sample& s) { s.tables[1].degree = 1; }), kTable) << "records of another length";
   EXPECT_EQ(after([](Sample& s) { s.linear[0] = INT32_MAX - 255; }), kTable) << "its end is beyond int32";
+  EXPECT_EQ(after([](Sample& s) { s.linear[0] = INT32_MAX - 512, s.linear[8] = INT32_MAX - 256; }), kNone);
+  EXPECT_EQ(after([](Sample& s) { s.linear[0] = INT32_MAX - 511, s.linear[8] = INT32_MAX - 255; }), kTable);
   EXPECT_EQ(after([](Sample& s) { s.linear[2] = 0; }), kTable) << "the far end is never reached";
   EXPECT_EQ(after([](Sample& s) {
               // A length of 3: reach - one must be below the length and below 2^shift.

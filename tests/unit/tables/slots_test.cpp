@@ -99,6 +99,16 @@ TEST(Slots, RecordIsValidOnlyWithSlotsThatExist) {
   EXPECT_TRUE(with([](SlotRecord& r) { r.confirmed = r.trial = kNoSlot; }));
 }
 
+TEST(Slots, NextChangeOverwritesTheOlderRecord) {
+  Places places;
+  Slots slots = places.load();
+  for (int i = 0; i < 5; ++i) {
+    const SlotChange change = i % 2 == 0 ? slots.start_trial(5, 0) : slots.revert();
+    places.put(change), slots.stored(change);
+    EXPECT_EQ(places.load().revert().place, 1 - change.place) << i;
+  }
+}
+
 TEST(Slots, ConfirmationWithoutATrialKeepsWhatIsConfirmed) {
   Slots slots;
   slots.stored(slots.start_trial(5, 0));
