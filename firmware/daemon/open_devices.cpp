@@ -70,9 +70,8 @@ void refuse_settings_of_other_line(const SignalSource& source) {
     source.fail_at("port", "port is a setting of an address, and this line is a serial device");
 }
 
-constexpr int kBitsOfByte = 11;  // start, eight, parity, stop
-constexpr int kWriteBytes = 9 + 8,
-              kReadBytes = 8 + 5;  // Modbus over a serial line: request and answer beside the data
+constexpr int kBitsOfByte = 11;     // start, eight, parity, stop
+constexpr int kWriteBytes = 9 + 8;  // of a request to write and its answer, beside the data
 
 /// Refuses a time in which no answer can be there.
 void require_time_on_line(const SignalSource& source, int bytes, TimeUs wait, const char* share) {

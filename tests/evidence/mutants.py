@@ -19,6 +19,8 @@ EQUIVALENT = [
     ("record.issued > record.trial_issued ?", (">", ">="), "the two are equal then"),
     ("e.constants.size > kMaxRegisters ||", (">", ">="), "the sum of all is refused in the next line"),
     ("lags_before_[i] = lags_[i]", ("<", "<="), "one state more is copied, which nothing reads; 16 lags are all"),
+    ("nanometres.shift > 94", (">", ">="), "no setting reaches it"),
+    ("s.b >= e.lag_count", (">=", ">"), "a state that is not counted is refused at the end as well"),
     ("a.low > 0 ? a.low", ("<", "<="), "zero is its own opposite"),
     ("const std::int64_t p[4]", ("4", "5"), "a fifth place that nothing reads"),
 ]

@@ -104,6 +104,7 @@ TEST(RunShares, AreTheContributionsOfTheTick) {
   compensator.state(state);
   std::int32_t registers[kMaxRegisters];
   Correction corrections[2];
+  EXPECT_EQ(state.starting, 1u);
   ASSERT_TRUE(run_shares(s.share_program(), program, state, registers, corrections));
   EXPECT_EQ(corrections[0].counts, -606);
   EXPECT_EQ(corrections[1].counts, -51);  // 50.5, rounded up, with the other sign

@@ -373,6 +373,7 @@ TEST(VerifyProgram, TablesAndPeriodsAreSoundAtEachLimit) {
       << "the second piece is found 44 counts late: its end is right, its start is not";
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].reciprocal = 0; }), kWrap);
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].shift = kMaxShift + 1; }), kWrap);
+  EXPECT_EQ(after([](Sample& s) { s.wraps[0] = {INT32_MIN, INT32_MAX, INT32_MAX, kMaxShift + 1}; }), kWrap);
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].first = INT32_MAX - 1023; }), kNone);
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].first = INT32_MAX - 1022; }), kWrap);
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].reciprocal = (1 << 30) + 256; }), kNone)
