@@ -418,7 +418,7 @@ const Effect& custom_effect() {
     form.label = "term";
     form.term = "k";
     read_term(form);
-    e.unknowns.push_back({"k", "", UnknownKind::kLinear, 0, 0, 0, 0});
+    e.unknowns.emplace_back().name = "k";
     return e;
   }();
   return effect;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "tools/effects/candidate.h"
 #include "tools/effects/catalogue.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
@@ -92,6 +93,13 @@ TEST(Effects, AUsersEntryMayStateThePlausibleValuesOfAnUnknown) {
   const PlausibleRange& range = one.at(0).unknowns.at(0).plausible;
   EXPECT_TRUE(range.contains(-0.5) && range.contains(2));
   EXPECT_FALSE(range.contains(-0.51) || range.contains(2.01));
+}
+
+TEST(Effects, TermsOfASearchMayHaveAnyCoefficient) {
+  const UnknownRule& k = custom_effect().unknowns.at(0);
+  EXPECT_EQ(k.name, "k");
+  EXPECT_EQ(k.limit, 0);
+  EXPECT_TRUE(k.plausible.contains(-1e9) && k.plausible.contains(1e9));
 }
 
 TEST(Effects, AUsersEntryMayBeTheInstrumentsAndMayNeedTouches) {
