@@ -148,10 +148,10 @@ void refuse_shared_lines(const BoardFile& board) {
     lines.push_back({&source, name, sharing});
   };
   for (const AxisEntry& axis : board.axes)
-    if (axis.output.kind == "modbus-out" && axis.output.texts.contains("device"))
+    if (axis.output.kind == "modbus-out" && is_serial(axis.output))
       add(axis.output, modbus_block(axis.output));
   for (const AxisEntry& axis : board.axes)
-    if (axis.position.kind == "modbus" && axis.position.texts.contains("device"))
+    if (axis.position.kind == "modbus" && is_serial(axis.position))
       add(axis.position, "positions " + std::to_string(axis.position.whole("sequence", 0, 65535)));
   for (const InputEntry& input : board.inputs)
     if (input.source.kind == "modbus-rtu") add(input.source, "sensors");
@@ -189,7 +189,7 @@ std::string serial_line(const SignalSource& source) {
 }
 
 std::string modbus_peer(const SignalSource& source) {
-  const bool serial = source.texts.contains("device"), tcp = source.texts.contains("address");
+  const bool serial = is_serial(source), tcp = source.texts.contains("address");
   if (serial && tcp) source.fail("give device or address, not both");
   return serial ? serial_line(source) : tcp_peer(source);
 }

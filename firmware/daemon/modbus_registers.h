@@ -14,6 +14,9 @@ const std::string& modbus_address(const SignalSource& source);
 /// addresses of the board. Throws BoardError. Not real-time safe.
 std::string listening_address(const SignalSource& source);
 
+/// True if the device is on a serial line (`device`), not at an address. Not real-time safe.
+inline bool is_serial(const SignalSource& source) { return source.texts.contains("device"); }
+
 /// Returns the path of the serial line `device`, the same for a link to it (/dev/serial/by-id). Throws
 /// BoardError. Not real-time safe.
 std::string serial_line(const SignalSource& source);

@@ -62,7 +62,7 @@ int baud(const SignalSource& source, std::int64_t otherwise) {
 
 /// A setting of a serial line has no effect over TCP, and the other way round.
 void refuse_settings_of_other_line(const SignalSource& source) {
-  const bool serial = source.texts.contains("device");
+  const bool serial = is_serial(source);
   for (const char* const name : {"baud", "parity"})
     if (!serial && (source.numbers.contains(name) || source.texts.contains(name)))
       source.fail_at(name, std::string(name) + " is a setting of a serial line, and this one has an address");
@@ -75,7 +75,7 @@ constexpr int kWriteBytes = 9 + 8;  // of a request to write and its answer, bes
 
 /// Refuses a time in which no answer can be there.
 void require_time_on_line(const SignalSource& source, int bytes, TimeUs wait, const char* share) {
-  if (!source.texts.contains("device")) return;
+  if (!is_serial(source)) return;
   const double needed_ms = 1e3 * kBitsOfByte * bytes / baud(source, kOutputBaud);
   if (needed_ms * 1000 < static_cast<double>(wait.count)) return;
   char text[200];
@@ -190,7 +190,7 @@ OutputOpener modbus_out_of(const std::vector<OutputAxis>& axes) {
   if (settings.echo >= settings.address &&
       settings.echo < settings.address + ModbusOutputSettings::kValues + 2 * places)
     first.fail("echo is among the registers that the board writes");
-  const TimeUs wait = ModbusOutput::wait_for_answer(settings.timeout, first.texts.contains("device"));
+  const TimeUs wait = ModbusOutput::wait_for_answer(settings.timeout, is_serial(first));
   require_time_on_line(first, kWriteBytes + 2 * (ModbusOutputSettings::kValues + 2 * places), wait,
                        "a quarter of");
   return [open_line = modbus_line_of(first, wait),

@@ -18,8 +18,7 @@ namespace {
 
 // Predefined connection set of CiA 301, and the default use of PDOs in CiA 402: the third TPDO has statusword
 // and position actual value; the fourth RPDO has no default use in the position modes.
-constexpr std::uint32_t kSync = 0x80, kEmergency = 0x80, kHeartbeat = 0x700, kTpdo3 = 0x380,
-                        kFirstRpdo4 = 0x500;
+constexpr std::uint32_t kSync = 0x80, kEmergency = 0x80, kHeartbeat = 0x700, kTpdo3 = 0x380;
 constexpr std::int64_t kLastId = 0x7ff, kLastNode = 127, kNsPerMs = 1'000'000;
 
 struct Identifiers {
@@ -47,19 +46,19 @@ constexpr Identifiers kOfOthers[] = {kEmergencies,
                                      {0x481, 0x4ff, "TPDO 4 of the drives"},
                                      {0x201, 0x27f, "RPDO 1, the controller's controlword"}};
 
+bool is_among(const Identifiers& use, std::uint32_t id) { return id >= use.first && id <= use.last; }
+
 template <std::size_t kCount>
 void refuse_use(const SignalSource& source, const char* name, std::uint32_t id,
                 const Identifiers (&uses)[kCount]) {
   for (const Identifiers& one : uses)
-    if (id >= one.first && id <= one.last) {
+    if (is_among(one, id)) {
       char text[128];
       std::snprintf(text, sizeof text, "%s: 0x%03X belongs to %s (0x%03X to 0x%03X)", name, id, one.use,
                     one.first, one.last);
       source.fail_at(name, text);
     }
 }
-
-bool is_among(const Identifiers& use, std::uint32_t id) { return id >= use.first && id <= use.last; }
 
 /// The further RPDOs of this drive may have the offset, if the drive's mapping says so; those of another
 /// drive never.
@@ -99,7 +98,7 @@ CanopenSettings settings_of(const SignalSource& source) {
   settings.emergency = kEmergency + node;
   settings.heartbeat = kHeartbeat + node;
   settings.tpdo = id("tpdo", kTpdo3 + node);
-  settings.rpdo = id("rpdo", kFirstRpdo4 + node);
+  settings.rpdo = id("rpdo", kRpdo4.first + node - 1);
   settings.sync_timeout = InstantNs(kNsPerMs * source.whole("timeout_ms", 20, 2, 1000));
   settings.heartbeat_time = InstantNs(kNsPerMs * source.whole("heartbeat_ms", 200, 10, 10'000));
   refuse_equal_identifiers(source, settings);

@@ -388,6 +388,11 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
                         "kind = \"modbus\"\naddress = \"127.0.0.1\"\nport = 1\n"
                         "register = 12\nsequence = 10\nscale = 0.1\n";
   const std::string counter = "kind = \"counter\"\nroot = \"ROOT\"\ndevice = \"eqep\"\nscale = 0.1\n";
+  const auto with_link = [&](const std::string& receive, const std::string& transmit) {
+    return board_of(sim, output, sync) +
+           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = " + receive +
+           "\ntransmit = " + transmit + "\n";
+  };
   const std::tuple<std::string, const char*> kWrong[] = {
       {board_of(sim, output), "board.toml:11: output of X: the ticks do not follow SYNC; add sync = "},
       {board_of(sim, drive, sync), "board.toml:11: output of X: sync_us is missing"},
@@ -428,18 +433,10 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
        "rpdo: RPDO 3 of the drives have a controlword by default, and pdo_test = \"none\""},
       {board_of(sim, output + "rpdo = 0x100", sync), "rpdo: 0x100 belongs to TIME"},
       {board_of(sim, output + "sync = 0x201", sync), "sync: 0x201 belongs to RPDO 1"},
-      {board_of(sim, output, sync) +
-           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x650\ntransmit = 0\n",
-       "link: receive: 0x650 belongs to SDO requests"},
-      {board_of(sim, output, sync) +
-           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x7e0\ntransmit = 0\n",
-       "link: receive: 0x7E0 belongs to a restricted use"},
-      {board_of(sim, output, sync) +
-           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x202\ntransmit = 0\n",
-       "link: transmit: 0x000 is NMT"},
-      {board_of(sim, output, sync) +
-           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x202\ntransmit = 0x201\n",
-       "link: transmit: the identifier belongs to node 1"},
+      {with_link("0x650", "0"), "link: receive: 0x650 belongs to SDO requests"},
+      {with_link("0x7e0", "0"), "link: receive: 0x7E0 belongs to a restricted use"},
+      {with_link("0x202", "0"), "link: transmit: 0x000 is NMT"},
+      {with_link("0x202", "0x201"), "link: transmit: the identifier belongs to node 1"},
       {board_of(replaced(plc, "register", "baud = 9600\nregister"), output, sync),
        "baud is a setting of a serial line"},
       {board_of(replaced(plc, "address = \"127.0.0.1\"\nport = 1", "device = \"/dev/null\"\nport = 1"),
@@ -453,9 +450,7 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
                 "resolution = 1e-5\nrange = 0.1\nperiod_ms = 20\ntimeout_ms = 400\n"),
        "timeout_ms: a request and its answer are on this line for 230 ms, and must be there within a quarter "
        "of timeout_ms"},
-      {board_of(sim, output, sync) +
-           "[[link]]\nkind = \"isotp\"\ninterface = \"nocan\"\nreceive = 0x700\ntransmit = 0x501\n",
-       "link: transmit: a frame of the drive of "},
+      {with_link("0x700", "0x501"), "link: transmit: a frame of the drive of "},
       {board_of(sim, output + "span = 1", sync),
        "board.toml:18: output of X: unknown setting span of kind canopen"},
       {board_of(sim, replaced(output, "scale = 0.1", "scale = -1"), sync), "scale must be above 0"},

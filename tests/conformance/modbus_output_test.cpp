@@ -254,52 +254,49 @@ TEST_F(ModbusOutputLoss, ShortOutageIsNoLossAndMakesNoStep) {
   EXPECT_LE(largest_step(plc_.blocks()), kMostStep);
 }
 
-/// The values that a serial line usually has.
-ModbusOutputSettings serial_settings() {
-  ModbusOutputSettings made = settings();
-  made.period = TimeUs(20'000);
-  made.timeout = TimeUs(400'000);
-  return made;
-}
+/// A corrected axis behind a serial line with its usual values.
+class ModbusOutputSerial : public testing::Test {
+ protected:
+  void SetUp() override {
+    ModbusOutputSettings usual = settings();
+    usual.period = TimeUs(20'000);
+    usual.timeout = TimeUs(400'000);
+    std::string error;
+    output_ = open(plc_, error, usual);
+    ASSERT_NE(output_, nullptr) << error;
+    ticks_ = std::make_unique<Ticks>(*output_);
+    ticks_->run(100ms, 0);
+    ticks_->run(200ms, 20'000);
+    ASSERT_EQ(plc_.blocks().back().valid & 1, 1);
+  }
+  Plc plc_{Plc::Serial{}};
+  std::unique_ptr<ModbusOutput> output_;
+  std::unique_ptr<Ticks> ticks_;
+};
 
 // A serial line has no number for each request: after a lost answer it is quiet until no late answer can
 // come.
-TEST(ModbusOutputSerial, LostAnswerIsNoLoss) {
-  Plc plc{Plc::Serial{}};
-  std::string error;
-  const auto output = open(plc, error, serial_settings());
-  ASSERT_NE(output, nullptr) << error;
-  Ticks ticks(*output);
-  ticks.run(100ms, 0);
-  ticks.run(200ms, 20'000);
+TEST_F(ModbusOutputSerial, LostAnswerIsNoLoss) {
   for (int lost = 0; lost < 4; ++lost) {
-    plc.lost_answers = 1;
-    ticks.run(500ms + 7ms * lost, 20'000);
-    EXPECT_EQ(plc.lost_answers, 0);
-    EXPECT_EQ(plc.blocks().back().valid & 1, 1) << "answer " << lost;
+    plc_.lost_answers = 1;
+    ticks_->run(500ms + 7ms * lost, 20'000);
+    EXPECT_EQ(plc_.lost_answers, 0);
+    EXPECT_EQ(plc_.blocks().back().valid & 1, 1) << "answer " << lost;
   }
-  EXPECT_NE(output->account().find(" 0 losses"), std::string::npos) << output->account();
+  EXPECT_NE(output_->account().find(" 0 losses"), std::string::npos) << output_->account();
 }
 
 // The requests arrive: the controller must not keep a block that is valid.
-TEST(ModbusOutputSerial, ControllerThatOnlyHearsLearnsThatNothingIsValid) {
-  Plc plc{Plc::Serial{}};
-  std::string error;
-  const auto output = open(plc, error, serial_settings());
-  ASSERT_NE(output, nullptr) << error;
-  Ticks ticks(*output);
-  ticks.run(100ms, 0);
-  ticks.run(200ms, 20'000);
-  ASSERT_EQ(plc.blocks().back().valid & 1, 1);
-  plc.lost_answers = 1'000'000;
-  ticks.run(1500ms, 20'000);
-  EXPECT_EQ(plc.blocks().back().valid, 0);
-  EXPECT_EQ(plc.blocks().back().values[0], 0);
-  plc.lost_answers = 0;
-  while (ticks.written() != 0) ticks.step(0);
-  ticks.run(400ms, 0);
-  ticks.run(400ms, 20'000);
-  EXPECT_EQ(plc.blocks().back().valid & 1, 1);
+TEST_F(ModbusOutputSerial, ControllerThatOnlyHearsLearnsThatNothingIsValid) {
+  plc_.lost_answers = 1'000'000;
+  ticks_->run(1500ms, 20'000);
+  EXPECT_EQ(plc_.blocks().back().valid, 0);
+  EXPECT_EQ(plc_.blocks().back().values[0], 0);
+  plc_.lost_answers = 0;
+  while (ticks_->written() != 0) ticks_->step(0);
+  ticks_->run(400ms, 0);
+  ticks_->run(400ms, 20'000);
+  EXPECT_EQ(plc_.blocks().back().valid & 1, 1);
 }
 
 // The outage is no loss, but the controller has lost its block: it applies nothing, so that the board begins

@@ -32,13 +32,10 @@ std::vector<Eigen::MatrixXd> daily_shifts(const Evidence& evidence) {
 
 }  // namespace
 
-bool daily_drift_explains(const Evidence& evidence, const Pool& pool,
-                          const std::vector<std::size_t>& accepted, std::size_t item, double distance) {
+bool daily_drift_explains(const Evidence& evidence, const Pool& pool, std::size_t item,
+                          const std::vector<std::size_t>& others, double distance) {
   const Evidence::Range time = evidence.time_range();
   if (pool.candidate(item).choice.inputs.empty() || time.high <= time.low) return false;
-  std::vector<std::size_t> others;
-  for (const std::size_t other : accepted)
-    if (other != item) others.push_back(other);
   const Eigen::MatrixXd beside = pool.columns(others);
   const double price = std::log(static_cast<double>(evidence.residual().size()));
   const auto lowers = [&](const Eigen::MatrixXd& columns, std::size_t scanned) {

@@ -191,9 +191,9 @@ class Decision {
   std::string several_causes() {
     const std::size_t others = found_.close().size();
     const bool or_set_up = set_up_explains_it_too();
-    const bool or_day =
-        !or_set_up && daily_drift_explains(finder_.evidence(), pool_, accepted_, accepted_.front(),
-                                           found_.options.thresholds.acceptance.distance);
+    const bool or_day = !or_set_up && daily_drift_explains(finder_.evidence(), pool_, accepted_.front(),
+                                                           {accepted_.begin() + 1, accepted_.end()},
+                                                           found_.options.thresholds.acceptance.distance);
     if (others == 0 && !or_set_up && !or_day) return {};
     if (or_set_up) answer_.instrument = "set-up";
     if (or_day) answer_.instrument = "drift";

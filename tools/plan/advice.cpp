@@ -41,8 +41,7 @@ std::vector<std::string> advice_for(const std::string& text, const model::Machin
   if (d.instrument == "drift")
     return {
         "Read a mark that does not move with the instrument for one day, and record times and temperatures. "
-        "If "
-        "these readings change too, the instrument drifts."};
+        "If these readings change too, the instrument drifts."};
   if (first.confounded_with.empty()) return {};
   return advice(first.add, first.confounded_with.front());
 }

@@ -43,9 +43,8 @@ struct CanopenCounts {
 ///   Operation enabled                    the offset follows, within most_per_sync; it stays while
 ///                                        the drive leaves out a TPDO
 ///   Quick stop, fault reaction           the offset goes to zero within most_per_sync; the drive still moves
-///   any other state, in two TPDOs        zero: the drive has no torque. After the first of the two the
-///   offset
-///                                        stays: a wrong bit in one statusword makes no step
+///   any other state, in one TPDO         the offset stays: a wrong bit of a statusword makes no step
+///   any other state, in two TPDOs        zero: the drive has no torque
 ///   after a loss                         one write is refused; then the offset only decreases, until the
 ///                                        wanted offset is zero
 ///   no SYNC, TPDO or state Operational   the drive takes nothing: writes are refused, the offset stays
@@ -121,7 +120,7 @@ class CanopenDrive {
   bool is_well(InstantNs now) const noexcept;
   std::int64_t goal(std::int64_t wanted, bool well) noexcept;
   void forget() noexcept;
-  bool has_torque(std::uint16_t status) const noexcept {
+  static bool has_torque(std::uint16_t status) noexcept {
     return (status & kStateMask) == kOperationEnabled || (status & kStateMask) == kQuickStopActive ||
            (status & kReactionMask) == kFaultReactionActive;
   }
@@ -138,8 +137,7 @@ class CanopenDrive {
   Doubt doubt_ = Doubt::kRepeat;
   bool well_ = false;    // at the last step
   bool refuse_ = false;  // the tick has not yet learned of a loss
-  bool fading_ =
-      false;  // since a loss the wanted offset was not zero: the board still removes its correction
+  bool fading_ = false;  // the board still removes its correction after a loss
   bool follows_ = true, fresh_ = false;
   std::int32_t position_ = 0;
   std::int32_t applied_ = 0;  // offset of the last SYNC
