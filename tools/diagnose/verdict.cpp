@@ -119,7 +119,7 @@ class Decision {
     name_confusions();
     if (!found_.alternatives.other.empty())
       answer_.runner_up_distance = found_.alternatives.other.front().distance;
-    if (is_noise_) return {};
+    if (is_noise_ || is_explained_on_check()) return {};
     return "Effects of the catalogue reduce the residual, but the residual remains larger than the noise." +
            where_left(answer_.left);
   }
@@ -206,9 +206,12 @@ class Decision {
 
   std::string one_cause() {
     const std::vector<Alternative>& other = found_.alternatives.other;
-    return cause_in_words(answer_.candidates.front(),
-                          other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
-                          other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
+    std::string text =
+        cause_in_words(answer_.candidates.front(),
+                       other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
+                       other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
+    if (!is_noise_) text += " The rest is not noise." + where_left(answer_.left);
+    return text;
   }
 
   // What the rules need.
@@ -351,6 +354,17 @@ class Decision {
 
   bool is_mostly_explained() const {
     return answer_.end.chi_square < (1 - limits_.mostly_explained) * answer_.base.chi_square;
+  }
+
+  /// Without u nothing states the noise: the residual may have structure. Do confirmed steps, the first of
+  /// them a named effect, remove nearly all of the error of the check rows?
+  bool is_explained_on_check() const {
+    if (fit::has_uncertainty(found_.measurement) || pool_.is_custom(accepted_.front())) return false;
+    for (const std::size_t item : accepted_)
+      if (!found_.confirmed.contains(item)) return false;
+    const std::optional<double>& before = answer_.ladder.front().check_rms_um;
+    const std::optional<double>& after = answer_.ladder.back().check_rms_um;
+    return before && after && *after * *after < (1 - limits_.explained_on_check) * *before * *before;
   }
 
   /// Sets which listed candidates cannot be distinguished from the cause.

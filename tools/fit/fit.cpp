@@ -270,6 +270,18 @@ std::vector<model::FitRecord::Range> measured_ranges(const model::Machine& machi
   return list;
 }
 
+/// Returns the planes of unknown place that the tool point touched.
+std::vector<model::FitRecord::Plane> touched_planes(const std::vector<ThingEstimate>& things) {
+  std::vector<model::FitRecord::Plane> planes;
+  const char* const type = model::kArtefactTypes[static_cast<std::size_t>(model::ArtefactType::kPlane)];
+  for (const ThingEstimate& thing : things) {
+    if (thing.type != type || thing.in_measuring_frame || !thing.direction) continue;
+    const Eigen::Vector3d &place = thing.place_mm, &normal = *thing.direction;
+    planes.push_back({thing.name, {place.x(), place.y(), place.z()}, {normal.x(), normal.y(), normal.z()}});
+  }
+  return planes;
+}
+
 /// Fills the record that the machine file keeps of the fit. all: including check rows.
 void remember(FitResult& result, const model::Measurement& rows, const model::Measurement& all,
               const Convention& convention, bool robust) {
@@ -295,6 +307,7 @@ void remember(FitResult& result, const model::Measurement& rows, const model::Me
   record->open = model::open_factor(result.open, result.covariance);
   record->open_known = true;
   record->measured = measured_ranges(result.machine, rows);
+  record->planes = touched_planes(result.things);
   const Eigen::Vector3d lack_mm = model_discrepancy(result, all);
   record->discrepancy_mm = {lack_mm.x(), lack_mm.y(), lack_mm.z()};
   result.machine.fitted = record;

@@ -118,6 +118,14 @@ std::string warnings_xml(const FitRecord& record) {
       text += std::string(" ") + "abc"[i] + "=\"" + text::number_text(one.size[i]) + "\"";
     text += "/>\n";
   }
+  for (const FitRecord::Plane& plane : record.planes) {
+    text += "    <plane name=\"" + text::escape_attribute(plane.name) + "\"";
+    for (std::size_t i = 0; i < 3; ++i)
+      text += std::string(" ") + "xyz"[i] + "=\"" + text::number_text(plane.place_mm[i]) + "\"";
+    for (std::size_t i = 0; i < 3; ++i)
+      text += std::string(" n") + "xyz"[i] + "=\"" + text::number_text(plane.normal[i]) + "\"";
+    text += "/>\n";
+  }
   return text;
 }
 

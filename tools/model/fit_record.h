@@ -53,6 +53,13 @@ struct FitRecord {
     std::array<double, 3> size{};
   };
   std::vector<Alternative> alternatives;
+  /// A plane of unknown place that the tool point touched (the bed of a printer), as the fit estimated it, in
+  /// workpiece coordinates.
+  struct Plane {
+    std::string name;                                   // of the artefact
+    std::array<double, 3> place_mm{}, normal{0, 0, 1};  // a point of the plane; a unit vector
+  };
+  std::vector<Plane> planes;
   /// Noise model of the readings (fit::NoiseModel). The components are in units of u, or in mm if no u was
   /// given. The record contains a noise model only if the errors were correlated or larger than u.
   struct Noise {

@@ -168,6 +168,11 @@ class Reader {
       } else if (is(node, "alternative")) {
         no_children(node);
         record->alternatives.push_back(read_alternative(node));
+      } else if (is(node, "plane")) {
+        no_children(node);
+        record->planes.push_back({attribute(node, "name").value_or(""),
+                                  {number(node, "x", 0), number(node, "y", 0), number(node, "z", 0)},
+                                  {number(node, "nx", 0), number(node, "ny", 0), number(node, "nz", 1)}});
       } else if (is(node, "noise")) {
         no_children(node);
         record->noise = read_noise(node);

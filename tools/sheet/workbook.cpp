@@ -101,12 +101,18 @@ class Reader {
   }
 
   WorkbookSheet read(const std::string& wanted) {
-    std::vector<std::string> names;
+    std::vector<std::string> names, hidden;
     std::optional<WorkbookSheet> found;
     std::size_t number = 0;
     for (const pugi::xml_node entry : child(workbook_.document_element(), "sheets").children()) {
       names.emplace_back(entry.attribute("name").value());
       ++number;
+      // A hidden sheet is often an old state of the data: it is read only if the user names it.
+      const std::string_view state = entry.attribute("state").value();
+      if (wanted.empty() && (state == "hidden" || state == "veryHidden")) {
+        hidden.push_back(names.back());
+        continue;
+      }
       if (found && (!wanted.empty() || is_table(*found))) continue;
       if (!wanted.empty() && wanted != names.back() && wanted != std::to_string(number)) continue;
       WorkbookSheet sheet = cells_of(entry);
@@ -116,6 +122,10 @@ class Reader {
       found->all = std::move(names);
       return std::move(*found);
     }
+    if (wanted.empty() && !hidden.empty())
+      throw text::InputError({file_, 0}, "",
+                             "no visible sheet of this workbook contains a cell; hidden sheets are " +
+                                 text::joined(hidden, ", ") + ": to read one, give --sheet");
     if (wanted.empty()) throw text::InputError({file_, 0}, "", "no sheet of this workbook contains a cell");
     throw text::InputError(
         {file_, 0}, wanted,
@@ -221,7 +231,55 @@ class Reader {
       sheet.is_number.push_back(std::move(numbers));
       sheet.line.push_back(row_number);
     }
+    for (const pugi::xml_node merge : child(document.document_element(), "mergeCells").children())
+      fill_merged(sheet, merge.attribute("ref").value());
     return sheet;
+  }
+
+  /// Column and row of "AB12", from 1; 0 for what is none.
+  struct CellPlace {
+    std::size_t column = 0, row = 0;
+  };
+  static CellPlace place_of(std::string_view reference) {
+    CellPlace place;
+    for (const char c : reference) {
+      if (c >= 'A' && c <= 'Z' && place.column <= kMostColumns)
+        place.column = 26 * place.column + static_cast<std::size_t>(c - 'A') + 1;
+      if (c >= '0' && c <= '9' && place.row <= kMostRows)
+        place.row = 10 * place.row + static_cast<std::size_t>(c - '0');
+    }
+    return place;
+  }
+
+  /// Cells merged over several rows of data have their value in the first one: the name of a run beside its
+  /// rows. Each row gets it. Headings and titles stay as they are.
+  void fill_merged(WorkbookSheet& sheet, std::string_view reference) const {
+    const auto colon = reference.find(':');
+    if (colon == std::string_view::npos) return;
+    const CellPlace from = place_of(reference.substr(0, colon)), to = place_of(reference.substr(colon + 1));
+    if (from.column == 0 || from.column > kMostColumns || to.row <= from.row) return;
+    const auto first = std::lower_bound(sheet.line.begin(), sheet.line.end(), from.row);
+    if (first == sheet.line.end() || *first != from.row) return;
+    auto row = static_cast<std::size_t>(first - sheet.line.begin());
+    const std::size_t column = from.column - 1;
+    if (column >= sheet.rows[row].size() || sheet.rows[row][column].empty()) return;
+    const auto& kinds = sheet.is_number[row];
+    const auto numbers = static_cast<std::size_t>(std::count(kinds.begin(), kinds.end(), 1));
+    const auto filled = static_cast<std::size_t>(std::count_if(
+        sheet.rows[row].begin(), sheet.rows[row].end(), [](const auto& cell) { return !cell.empty(); }));
+    if (2 * numbers < filled) return;
+    const std::string value = sheet.rows[row][column];
+    const char number = kinds[column];
+    for (++row; row < sheet.rows.size() && sheet.line[row] <= to.row; ++row) {
+      if (sheet.rows[row].size() <= column) {
+        sheet.rows[row].resize(column + 1);
+        sheet.is_number[row].resize(column + 1);
+      }
+      // A cell with a value of its own ends the merge: merged cells have none, and overlapping ones no work.
+      if (!sheet.rows[row][column].empty()) return;
+      sheet.rows[row][column] = value;
+      sheet.is_number[row][column] = number;
+    }
   }
 
   /// "AB12" is column 27. Without a reference it is the next column.
@@ -250,6 +308,7 @@ class Reader {
         throw text::InputError({file_, row}, value, "the workbook has no text of this number");
       return strings_[static_cast<std::size_t>(*index)];
     }
+    if (type == "b") return value == "0" ? "FALSE" : "TRUE";
     // Stored with 17 digits, but shown with the 15 digits of a spreadsheet: 200.00509999999997 is
     // 200.0051.
     const auto number = is_number(cell) ? text::parse_number(value) : std::nullopt;

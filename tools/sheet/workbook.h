@@ -18,8 +18,9 @@ struct WorkbookSheet {
   std::vector<std::string> all;                // names of all sheets of the workbook
 };
 
-/// Reads the sheet with this name or number (from 1). Empty: the first sheet with two rows of two numbers,
-/// not a cover sheet; in a workbook without such a sheet the first that contains cells. Throws InputError:
+/// Reads the sheet with this name or number (from 1). Empty: the first visible sheet with two rows of two
+/// numbers, not a cover sheet; in a workbook without such a sheet the first visible one that contains cells.
+/// Cells that are merged over several rows of data each have the value. Throws InputError:
 /// not a workbook, a sheet that does not exist (the error lists the sheets), a part of more than 256 MB.
 WorkbookSheet read_workbook(const std::string& bytes, const std::string& file, const std::string& sheet);
 

@@ -85,6 +85,41 @@ TEST(PrinterFile, LogOfMarlin) {
             "X[mm],Y[mm],Z[mm],on\n100,50.5,-0.02,bed\n10,20,0.11,bed\n");
 }
 
+TEST(PrinterFile, ADecimalCommaInALogIsRefused) {
+  EXPECT_EQ(read("ok\nprobe at 30.000,40.000 is z=1,540929\n"),
+            "refused: p.cfg:2: \"probe at 30.000,40.000 is z=1,540929\": this line of a touch is not "
+            "understood; numbers need a decimal point");
+  EXPECT_THAT(read("probe at 30,000,40,000 is z=1,540929\n"), HasSubstr("not understood"));
+  EXPECT_THAT(read("Bed X: 30,5 Y: 40,5 Z: 1,5\n"), HasSubstr("not understood"));
+  EXPECT_EQ(read("// probe at trigger\nprobe at 1,2 is z=3\n"), "X[mm],Y[mm],Z[mm],on\n1,2,3,bed\n");
+}
+
+TEST(PrinterFile, TouchesThatThePrinterRepeatsAreLeftOut) {
+  const std::string log =
+      "// probe at 1,2 is z=3\n// probe at 1,2 is z=3.1\n// Result is z=3.05\n"
+      "// probe at 1,2 is z=4\n// probe at 1,2 is z=5\n// Probe samples exceed tolerance. Retrying...\n"
+      "// probe at 1,2 is z=3.2\n";
+  EXPECT_EQ(read(log), "X[mm],Y[mm],Z[mm],on\n1,2,3,bed\n1,2,3.1,bed\n1,2,3.2,bed\n");
+  EXPECT_EQ(read_printer_file(log, "k.log", {}).left_out, 2U);
+  EXPECT_EQ(read("// probe at 0,2 is z=3\n// probe at 1,2 is z=4\n// ... Retrying...\n// probe at 1,2 is "
+                 "z=5\n"),
+            "X[mm],Y[mm],Z[mm],on\n0,2,3,bed\n1,2,5,bed\n");
+}
+
+TEST(PrinterFile, AMeshThatWouldBeMirroredIsRefused) {
+  std::string text = kConfiguration;
+  text.replace(text.find("min_x = 20.0"), 12, "min_x = 240.0");
+  EXPECT_THAT(read(text), HasSubstr("\"min_x\": the smallest position 240 is larger than the largest"));
+}
+
+TEST(PrinterFile, TwoProbesOfDifferentOffsetsAreRefused) {
+  const std::string second = "[probe]\nx_offset: 5\n\n";
+  EXPECT_THAT(read(second + kConfiguration), HasSubstr("the sections [bltouch] and [probe] give different"));
+  PrinterOptions options;
+  options.offset_mm = {0, 0};
+  EXPECT_THAT(read(second + kConfiguration, options), testing::StartsWith("X[mm],Y[mm],Z[mm],on\n20,30,"));
+}
+
 TEST(PrinterFile, HeightMapsOfBothVersions) {
   const std::string title = "RepRapFirmware height map file v2 generated at 2026-01-01 00:00\n";
   const std::string present =

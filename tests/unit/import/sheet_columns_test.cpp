@@ -240,6 +240,34 @@ const Case kCases[] = {
     {"UnfilledTemplate", "X[mm],dirX,x[mm],y[mm],run\n0,1,,,a\n9,-1,,,a\n",
      "refused: s.csv:1: the columns of readings are empty (x[mm], y[mm]): fill in the readings"},
     {"AnApproachDirectionIsNoReading", "X[mm],dirX\n0,1\n9,-1\n", "such as --column \"x[mm]=HEADING\""},
+    {"ReadingOfALaserIsADeviationByItsValues", "Position X [mm];Messwert X [um]\n0;1,5\n100;-2,5\n200;3\n",
+     "X[mm],x[mm]\n0,0.0015\n100,99.9975\n200,200.003\n"},
+    {"ActualThatIsADeviationByItsValues", "Soll X [mm];Ist X [um]\n0;0,1\n100;2\n200;1\n",
+     "X[mm],x[mm]\n0,0.0001\n100,100.002\n200,200.001\n"},
+    {"ActualInMicrometresIsAPosition", "Soll X [mm];Ist X [um]\n0;1\n100;100002\n200;200001\n",
+     "X[mm],x[um]\n0,1\n100,100002\n200,200001\n"},
+    {"ActualInAWrongUnit", "Soll X [mm];Ist X [um]\n0;0,001\n100;100,002\n200;200,001\n",
+     "refused: s.csv:1: \"Ist X [um]\": the values follow X with the ratio 1/1000, so they are positions, "
+     "and "
+     "the unit of one of the two columns is wrong"},
+    {"DeviationThatIsAPosition", "Soll X [mm];Abweichung X [mm]\n0;0,001\n100;100,002\n200;200,001\n",
+     "refused: s.csv:1: \"Abweichung X [mm]\": the values follow X, so they are positions and not "
+     "deviations"},
+    {"ActualsInATurnedFrame", "Soll X [mm];Ist X [mm];Ist Y [mm]\n0;5;0\n100;5,01;100\n200;5,02;200\n",
+     "X[mm],x[mm],y[mm]\n0,5,0\n100,5.01,100\n200,5.02,200\n"},
+    {"NamesOfTheFormatStay", "X[mm];x[um]\n0;1\n100;2\n200;3\n", "X[mm],x[um]\n0,1\n100,2\n200,3\n"},
+    {"CorrectionIsNoDeviation", "Soll X [mm];Korrektur X [um]\n0;1\n100;2\n200;3\n",
+     "refused: s.csv:1: nothing measured among the columns"},
+    {"TablesSideBySide",
+     "X soll [mm];X Abw. [um];;Y soll [mm];Y Abw. [um]\n0;1;;0;4\n100;2;;50;5\n200;3;;100;6\n",
+     "refused: s.csv:1: tables side by side, with an empty column between them (X from column 1, Y from "
+     "column "
+     "4)"},
+    {"AnEmptyColumnBetweenTargetsAndReadings",
+     "X soll [mm];Y soll [mm];;X ist [mm];Y ist [mm]\n0;0;;0,1;0,1\n100;50;;100,1;50,2\n",
+     "X[mm],Y[mm],x[mm],y[mm]\n0,0,0.1,0.1\n100,50,100.1,50.2\n"},
+    {"TheNumberOfARowIsNoReading", "Nr;Pos [mm];Anzeige [um]\n1;100;1\n2;200;2\n",
+     "such as --column \"X=Pos [mm]\" --column \"x=Anzeige [um]\""},
     {"OpenQuote", "X[mm];x[mm]\n1;\"2\n", "a closing quote is missing"},
 };
 
@@ -280,6 +308,23 @@ TEST(SheetWish, DeviationIsAddedToThePosition) {
                      assign_deviation(wishes, "X=Anzeige");
                    }),
             "X[mm],x[mm],Stift\n100,100.0015,a\n200,200.0025,b\n");
+}
+
+TEST(SheetWish, ACorrectionIsADeviationOfTheOtherSign) {
+  const auto say = [](SheetWishes& wishes, const SheetTable&) {
+    assign_deviation(wishes, "X=Korrektur X [um]");
+  };
+  EXPECT_EQ(import("Soll X [mm];Korrektur X [um]\n0;1\n100;-2\n", {}, say),
+            "X[mm],x[mm]\n0,-0.001\n100,100.002\n");
+}
+
+TEST(SheetWish, AnotherUnitThanThatOfTheHeadingIsRefused) {
+  const auto say = [](SheetWishes& wishes, const SheetTable& table) {
+    assign_column(wishes, table, "y[um]=Ist y [mm]");
+  };
+  const std::string result = import("Y soll [mm];Ist y [mm]\n0;1\n100;101\n", {}, say);
+  EXPECT_NE(result.find("the table states the unit mm, the assignment to y states um"), std::string::npos)
+      << result;
 }
 
 TEST(SheetWish, OneOfSeveralTablesIsRead) {

@@ -30,9 +30,9 @@ std::string refusal(const std::string& bytes, const std::string& sheet) {
 }
 
 /// A workbook of one sheet with these texts and rows.
-/// second: the rows of a further sheet T.
+/// second: the rows of a further sheet T. state: further attributes of the first sheet, if there are two.
 std::string workbook_of(const std::string& strings, const std::string& rows, const std::string& styles = "",
-                        const std::string& second = "") {
+                        const std::string& second = "", const std::string& state = "") {
   std::map<std::string, std::string> parts = {
       {"xl/workbook.xml",
        "<workbook><sheets><sheet name=\"S\" sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"},
@@ -41,9 +41,8 @@ std::string workbook_of(const std::string& strings, const std::string& rows, con
       {"xl/sharedStrings.xml", "<sst>" + strings + "</sst>"},
       {"xl/worksheets/sheet1.xml", "<worksheet><sheetData>" + rows + "</sheetData></worksheet>"}};
   if (!second.empty()) {
-    parts["xl/workbook.xml"] =
-        "<workbook><sheets><sheet name=\"S\" sheetId=\"1\" r:id=\"rId1\"/><sheet name=\"T\" sheetId=\"2\" "
-        "r:id=\"rId2\"/></sheets></workbook>";
+    parts["xl/workbook.xml"] = "<workbook><sheets><sheet name=\"S\" sheetId=\"1\" r:id=\"rId1\" " + state +
+                               "/><sheet name=\"T\" sheetId=\"2\" r:id=\"rId2\"/></sheets></workbook>";
     parts["xl/_rels/workbook.xml.rels"] =
         "<Relationships><Relationship Id=\"rId1\" Target=\"worksheets/sheet1.xml\"/><Relationship "
         "Id=\"rId2\" Target=\"worksheets/sheet2.xml\"/></Relationships>";
@@ -99,6 +98,49 @@ TEST(Workbook, NumbersStoredAsTextMakeATableToo) {
   const std::string cover = row("Report", "Portal 4") + row("Operator", "K. M.");
   const std::string table = row("X [mm]", "x [mm]") + row("0", "0,001") + row("100", "100,002");
   EXPECT_EQ(read_workbook(workbook_of("", cover, "", table), "b.xlsx", "").name, "T");
+}
+
+const std::string kRowsOfNumbers =
+    "<row r=\"1\"><c><v>1</v></c><c><v>2</v></c></row><row r=\"2\"><c><v>3</v></c><c><v>4</v></c></row>";
+
+TEST(Workbook, AHiddenSheetIsReadOnlyByItsName) {
+  const std::string both = workbook_of("", kRowsOfNumbers, "", kRowsOfNumbers, "state=\"hidden\"");
+  EXPECT_EQ(read_workbook(both, "b.xlsx", "").name, "T");
+  EXPECT_EQ(read_workbook(both, "b.xlsx", "S").name, "S");
+  const std::string alone = workbook_of("", kRowsOfNumbers, "", "<row></row>", "state=\"veryHidden\"");
+  EXPECT_EQ(
+      refusal(alone, ""),
+      "b.xlsx: no visible sheet of this workbook contains a cell; hidden sheets are S: to read one, give "
+      "--sheet");
+}
+
+TEST(Workbook, AMergedCellIsTheValueOfEachOfItsRows) {
+  const auto row = [](int number, const std::string& first, const char* second) {
+    const std::string at = std::to_string(number);
+    return "<row r=\"" + at + "\">" + (first.empty() ? "" : "<c r=\"A" + at + "\">" + first + "</c>") +
+           "<c r=\"B" + at + "\"><v>" + second + "</v></c><c r=\"C" + at + "\"><v>7</v></c></row>";
+  };
+  const std::string rows = row(1, "<v>1</v>", "10") + row(2, "", "20") + row(3, "", "30") + row(4, "", "40");
+  const std::string merged = "</sheetData><mergeCells><mergeCell ref=\"A1:A3\"/></mergeCells><sheetData>";
+  const WorkbookSheet sheet = read_workbook(workbook_of("", rows + merged), "b.xlsx", "");
+  ASSERT_EQ(sheet.rows.size(), 4u);
+  EXPECT_EQ(sheet.rows[1][0], "1");
+  EXPECT_EQ(sheet.rows[2][0], "1");
+  EXPECT_EQ(sheet.rows[3][0], "");
+}
+
+TEST(Workbook, AMergedHeadingStaysOneCell) {
+  const std::string rows =
+      "<row r=\"1\"><c r=\"A1\" t=\"inlineStr\"><is><t>X</t></is></c></row>"
+      "<row r=\"2\"><c r=\"B2\" t=\"inlineStr\"><is><t>mm</t></is></c></row>";
+  const std::string merged = "</sheetData><mergeCells><mergeCell ref=\"A1:A2\"/></mergeCells><sheetData>";
+  EXPECT_EQ(read_workbook(workbook_of("", rows + merged), "b.xlsx", "").rows[1][0], "");
+}
+
+TEST(Workbook, TrueAndFalseAreWords) {
+  const WorkbookSheet sheet = read_workbook(
+      workbook_of("", "<row><c t=\"b\"><v>1</v></c><c t=\"b\"><v>0</v></c></row>"), "b.xlsx", "");
+  EXPECT_EQ(sheet.rows[0], (std::vector<std::string>{"TRUE", "FALSE"}));
 }
 
 TEST(Workbook, SmallNumbersHaveNoExponent) {

@@ -17,8 +17,11 @@ using exchange::Firmware;
 
 struct PrinterArguments {
   ExchangeArguments common;
-  std::string steps;
+  std::string steps, bed;
 };
+
+/// Word of --bed: the heights do not follow a bed.
+constexpr const char* kNoBed = "none";
 
 exchange::PresentSetting present_of(const PrinterArguments& arguments) {
   exchange::PresentSetting present;
@@ -50,14 +53,24 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   const exchange::ThreeAxes axes = exchange::three_axes(machine);
   const model::States at = state_of(machine, common);
   require_safe(machine, common);
-  exchange::PrinterCorrection correction = exchange::printer_correction(
-      machine, axes, exchange::features_of(firmware, present), at, common.tolerance_um);
+  const exchange::PrinterFeatures features = exchange::features_of(firmware, present);
+  const std::optional<exchange::Bed> bed = features.mesh && arguments.bed != kNoBed
+                                               ? exchange::bed_of(machine, axes, arguments.bed)
+                                               : std::nullopt;
+  exchange::PrinterCorrection correction =
+      exchange::printer_correction(machine, axes, features, at, common.tolerance_um, bed);
   const std::vector<exchange::ConfigurationFile> texts =
       exchange::firmware_files(firmware, present, machine.name, correction);
-  const exchange::PrinterErrors errors = exchange::printer_errors(machine, axes, correction, at);
+  const exchange::PrinterErrors errors = exchange::printer_errors(machine, axes, correction, at, bed);
   const Json files = write_folder(common, texts);
+  if (bed)
+    fmt::print(human_stream(common.json),
+               "the heights follow the plane \"{}\", X {:g} to {:g} mm, Y {:g} to {:g} mm\n", bed->name,
+               bed->low[0], bed->high[0], bed->low[1], bed->high[1]);
   print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
-  finish(machine, common, name, remaining(errors.after_um), files, {}, true, errors_json(errors));
+  Json extra = errors_json(errors);
+  if (bed) extra["bed"] = bed->name;
+  finish(machine, common, name, remaining(errors.after_um), files, {}, true, extra);
 }
 
 void add_printer(CLI::App* parent, const char* name, const char* what, const char* steps, Firmware firmware) {
@@ -71,6 +84,13 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
                    "largest error of the interpolated height between the points of the mesh, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  if (firmware != Firmware::kGrbl)
+    command
+        ->add_option(
+            "--bed", arguments->bed,
+            "plane whose slope the heights follow: an <artefact> that the last fit touched, or none; "
+            "default: the only touched plane")
+        ->type_name("NAME");
   command->footer(
       "Writes squareness, heights and steps per mm as far as the firmware holds them, and prints the error\n"
       "that remains, evaluated on the chain between the points. The offset of the axes and a turn of the\n"

@@ -370,6 +370,9 @@ struct VerdictThresholds {
   /// For rows without a standard uncertainty u: factor by which chi^2 must increase if the named effect is
   /// removed. The effect is then larger than the residual beside it.
   double larger_than_rest = 2;
+  /// For rows without a standard uncertainty u: share of the check rows' mean square that confirmed steps
+  /// must remove for a named cause beside a rest that is not noise. The rest is then a small second cause.
+  double explained_on_check = 0.95;
   /// Number of degrees of freedom above which noise larger than the stated value is accepted. Experiment:
   /// outside the catalogue, 160 rows of one reading do not show structure, 400 do.
   double enough_readings = 300;
@@ -397,6 +400,7 @@ struct VerdictThresholds {
     visit("verdict.implausible_uncertainty", implausible_uncertainty);
     visit("verdict.mostly_explained", mostly_explained);
     visit("verdict.larger_than_rest", larger_than_rest);
+    visit("verdict.explained_on_check", explained_on_check);
     visit("verdict.enough_readings", enough_readings);
     visit("verdict.stands_out", stands_out);
     visit("verdict.drift_share", drift_share);

@@ -8,6 +8,9 @@
 #include "tools/kinematics/correction.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain/chain.h"
+#include "tools/model/fit_record.h"
+#include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace vernier::exchange {
 namespace {
@@ -24,6 +27,31 @@ Matrix3Xd needed(const model::Machine& machine, const ThreeAxes& axes, const Mat
   for (std::size_t i = 0; i < 3; ++i)
     offset.row(static_cast<Index>(i)) = result.offset[axes.axis[i]].matrix().transpose();
   return offset;
+}
+
+Matrix3Xd nominal_points(const model::Machine& machine, const ThreeAxes& axes, const Matrix3Xd& commands,
+                         const model::States& at) {
+  return model::forward(model::nominal_machine(machine), states_at(axes, commands, at)).position;
+}
+
+/// Heights of the bed at points of workpiece coordinates; 0 without a bed.
+VectorXd bed_heights(const std::optional<Bed>& bed, const Matrix3Xd& points) {
+  VectorXd heights = VectorXd::Zero(points.cols());
+  for (Index i = 0; bed && i < points.cols(); ++i) heights[i] = bed->height(points(0, i), points(1, i));
+  return heights;
+}
+
+/// What has to be added to the command of Z, mm: for the errors of the machine and for the slope of the bed.
+VectorXd needed_heights(const model::Machine& machine, const ThreeAxes& axes, const Matrix3Xd& commands,
+                        const model::States& at, const std::optional<Bed>& bed) {
+  const VectorXd of_machine = needed(machine, axes, commands, at).row(2);
+  if (!bed) return of_machine;
+  // A bed that moves along Z itself rises where the command of Z falls.
+  Matrix3Xd higher = commands;
+  higher.row(2).array() += 1;
+  const Matrix3Xd points = nominal_points(machine, axes, commands, at);
+  const VectorXd rise = (nominal_points(machine, axes, higher, at) - points).row(2);
+  return of_machine + bed_heights(bed, points).cwiseQuotient(rise);
 }
 
 VectorXd evenly(double low, double high, std::size_t count) {
@@ -63,13 +91,13 @@ void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& fe
 
 /// Heights at the lowest Z, beside the skew. Z is 0 in the middle: homing sets the offset.
 HeightMesh mesh_of(const model::Machine& machine, const ThreeAxes& axes, std::size_t count,
-                   const model::States& at) {
+                   const model::States& at, const std::optional<Bed>& bed) {
   const Matrix3Xd points = grid(axes, {count, count, 1});
-  const Matrix3Xd offset = needed(machine, axes, points, at);
+  const VectorXd offset = needed_heights(machine, axes, points, at, bed);
   HeightMesh mesh{axes.low[0], axes.high[0], axes.low[1], axes.high[1], {}};
   const auto side = static_cast<Index>(count);
   mesh.z.resize(side, side);
-  for (Index row = 0; row < side; ++row) mesh.z.row(row) = offset.row(2).segment(row * side, side);
+  for (Index row = 0; row < side; ++row) mesh.z.row(row) = offset.segment(row * side, side);
   const double middle = mesh.at((axes.low[0] + axes.high[0]) / 2, (axes.low[1] + axes.high[1]) / 2);
   mesh.z.array() -= middle;
   return mesh;
@@ -77,7 +105,7 @@ HeightMesh mesh_of(const model::Machine& machine, const ThreeAxes& axes, std::si
 
 /// Largest error of the mesh in the middle of its cells, um.
 double between_um(const model::Machine& machine, const ThreeAxes& axes, const HeightMesh& mesh,
-                  const model::States& at) {
+                  const model::States& at, const std::optional<Bed>& bed) {
   const auto cells = static_cast<std::size_t>(mesh.z.cols() - 1);
   ThreeAxes middle = axes;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -86,7 +114,7 @@ double between_um(const model::Machine& machine, const ThreeAxes& axes, const He
     middle.high[i] -= half;
   }
   const Matrix3Xd points = grid(middle, {cells, cells, 1});
-  VectorXd error = needed(machine, axes, points, at).row(2);
+  VectorXd error = needed_heights(machine, axes, points, at, bed);
   for (Index i = 0; i < points.cols(); ++i) error[i] -= mesh.at(points(0, i), points(1, i));
   return 1000 * (error.maxCoeff() - error.minCoeff()) / 2;
 }
@@ -103,7 +131,55 @@ void remove_rigid_part(Matrix3Xd& error, const Matrix3Xd& points) {
   error.row(1) -= turn * arm.row(0);
 }
 
+/// The ranges of the axes over the bed.
+ThreeAxes over_bed(ThreeAxes axes, const std::optional<Bed>& bed) {
+  for (std::size_t i = 0; bed && i < 2; ++i) axes.low[i] = bed->low[i], axes.high[i] = bed->high[i];
+  return axes;
+}
+
 }  // namespace
+
+double Bed::height(double x, double y) const {
+  return place_mm.z() - (normal.x() * (x - place_mm.x()) + normal.y() * (y - place_mm.y())) / normal.z();
+}
+
+std::optional<Bed> bed_of(const model::Machine& machine, const ThreeAxes& axes, const std::string& name) {
+  const std::vector<model::FitRecord::Plane> planes =
+      machine.fitted ? machine.fitted->planes : std::vector<model::FitRecord::Plane>{};
+  std::vector<std::string> names;
+  const model::FitRecord::Plane* found = nullptr;
+  for (const model::FitRecord::Plane& plane : planes) {
+    names.push_back(plane.name);
+    if (name.empty() || plane.name == name) found = &plane;
+  }
+  if (name.empty() && planes.empty()) return std::nullopt;
+  if (found == nullptr)
+    throw text::InputError({machine.file, 0}, name,
+                           planes.empty() ? "the last fit of this machine has no rows that touch a plane"
+                                          : "the last fit has no plane of this name; its planes are " +
+                                                text::joined(names, ", "));
+  if (name.empty() && planes.size() > 1)
+    throw text::InputError({machine.file, 0}, "planes",
+                           "the last fit has several planes (" + text::joined(names, ", ") +
+                               "): name the bed with --bed, or none");
+  Bed bed{found->name,
+          {found->place_mm[0], found->place_mm[1], found->place_mm[2]},
+          {found->normal[0], found->normal[1], found->normal[2]},
+          {},
+          {}};
+  constexpr double kSteepest = 0.5;  // cosine of 60 deg: what is steeper is a wall
+  if (std::abs(bed.normal.z()) < kSteepest)
+    throw text::InputError({machine.file, 0}, found->name, "this plane stands upright and is no bed");
+  for (std::size_t i = 0; i < 2; ++i) {
+    bed.low[i] = axes.low[i], bed.high[i] = axes.high[i];
+    for (const model::FitRecord::Range& range : machine.fitted->measured)
+      if (range.name == kLetters[i] && range.max > range.min) {
+        bed.low[i] = std::max(bed.low[i], range.min);
+        bed.high[i] = std::min(bed.high[i], range.max);
+      }
+  }
+  return bed;
+}
 
 double HeightMesh::at(double x, double y) const {
   if (z.size() == 0) return 0;
@@ -131,31 +207,34 @@ Matrix3Xd PrinterCorrection::corrected(const Matrix3Xd& commands) const {
 
 PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
                                      const PrinterFeatures& features, const model::States& at,
-                                     double tolerance_um) {
+                                     double tolerance_um, const std::optional<Bed>& bed) {
   constexpr std::size_t kPositions = 7;  // of each axis, for skew and steps
   const Matrix3Xd points = grid(axes, {kPositions, kPositions, kPositions});
   PrinterCorrection correction;
   fit_straight_parts(correction, features, points, needed(machine, axes, points, at));
   if (!features.mesh) return correction;
+  const ThreeAxes over = over_bed(axes, bed);
   for (const std::size_t count : features.points) {
-    correction.mesh = mesh_of(machine, axes, count, at);
-    if (between_um(machine, axes, correction.mesh, at) <= tolerance_um) break;
+    correction.mesh = mesh_of(machine, over, count, at, bed);
+    if (between_um(machine, over, correction.mesh, at, bed) <= tolerance_um) break;
   }
   return correction;
 }
 
 PrinterErrors printer_errors(const model::Machine& machine, const ThreeAxes& axes,
-                             const PrinterCorrection& correction, const model::States& at) {
+                             const PrinterCorrection& correction, const model::States& at,
+                             const std::optional<Bed>& bed) {
   constexpr Index kPositions = 4096;
   constexpr unsigned long kPositionsSeed = 1;
   std::mt19937_64 random(kPositionsSeed);
   Matrix3Xd points(3, kPositions);
+  const ThreeAxes over = over_bed(axes, bed);
   for (std::size_t i = 0; i < 3; ++i) {
-    std::uniform_real_distribution<double> position(axes.low[i], axes.high[i]);
+    std::uniform_real_distribution<double> position(over.low[i], over.high[i]);
     for (Index k = 0; k < kPositions; ++k) points(static_cast<Index>(i), k) = position(random);
   }
-  const Matrix3Xd nominal =
-      model::forward(model::nominal_machine(machine), states_at(axes, points, at)).position;
+  Matrix3Xd nominal = nominal_points(machine, axes, points, at);
+  nominal.row(2) += bed_heights(bed, nominal).transpose();
   Matrix3Xd before = model::forward(machine, states_at(axes, points, at)).position - nominal;
   Matrix3Xd after =
       model::forward(machine, states_at(axes, correction.corrected(points), at)).position - nominal;

@@ -29,7 +29,7 @@ struct Skew {
 
 /// Also rounds the correction as the file has it.
 Skew skew_of(PrinterCorrection& correction, double digit) {
-  Skew skew{-correction.xy, 0, -correction.yz};
+  Skew skew{0 - correction.xy, 0, 0 - correction.yz};
   skew.xz = rounded(-correction.xz + skew.xy * skew.yz, digit);
   correction.xz = -(skew.xz - skew.xy * skew.yz);
   return skew;

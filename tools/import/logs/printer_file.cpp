@@ -108,6 +108,14 @@ std::string mesh_name(const std::map<std::string, Section>& sections, const std:
                                              "; name one with --profile");
 }
 
+/// A range from a larger to a smaller position would mirror the mesh.
+void expect_rising(const text::Place& place, const std::string& axis, double low, double high) {
+  if (low > high)
+    throw text::InputError(
+        place, axis,
+        fmt::format("the smallest position {:g} is larger than the largest position {:g}", low, high));
+}
+
 class Mesh {
  public:
   Mesh(const std::map<std::string, Section>& sections, const std::string& file, const std::string& name)
@@ -119,6 +127,8 @@ class Mesh {
     if (points.more.size() != rows)
       throw text::InputError({file_, points.line}, "points",
                              fmt::format("the mesh has {} rows, y_count says {}", points.more.size(), rows));
+    for (const auto& [low, high] : {std::pair("min_x", "max_x"), std::pair("min_y", "max_y")})
+      expect_rising({file_, setting(low).line}, low, at(low), at(high));
     std::vector<Touch> touches;
     for (std::size_t j = 0; j < rows; ++j) {
       const auto& [line, number] = points.more[j];
@@ -157,14 +167,28 @@ class Mesh {
   const std::string& file_;
 };
 
-/// Offset of the probe in the configuration, if it has one.
+/// Offset of the probe in the configuration, if it has one. Throws InputError if two sections give different
+/// offsets: nothing in the file says with which probe the mesh was measured.
 std::array<double, 2> offset_in(const std::map<std::string, Section>& sections, const std::string& file) {
   std::array<double, 2> offset = {};
+  std::string of;  // the section that gives the offset
   for (const auto& [name, section] : sections) {
     if (name.starts_with(kMesh)) continue;
+    std::array<double, 2> own = {};
+    std::size_t line = 0;
     for (std::size_t k = 0; k < 2; ++k)
-      if (const auto found = section.find(k == 0 ? "x_offset" : "y_offset"); found != section.end())
-        offset[k] = number_in({file, found->second.line}, found->second.value);
+      if (const auto found = section.find(k == 0 ? "x_offset" : "y_offset"); found != section.end()) {
+        line = found->second.line;
+        own[k] = number_in({file, line}, found->second.value);
+      }
+    if (line == 0) continue;
+    if (!of.empty() && own != offset)
+      throw text::InputError({file, line}, name,
+                             fmt::format("the sections [{}] and [{}] give different offsets of a probe; give "
+                                         "the offset of the probe that measured the mesh with --offset X,Y",
+                                         of, name));
+    offset = own;
+    of = name;
   }
   return offset;
 }
@@ -200,6 +224,8 @@ HeightMapGrid grid_of(const text::Place& place, const std::string& labels, const
   grid.high[0] = number_in(place, value("max0", "xmax"));
   grid.low[1] = number_in(place, value("min1", "ymin")),
   grid.high[1] = number_in(place, value("max1", "ymax"));
+  for (std::size_t k = 0; k < 2; ++k)
+    expect_rising(place, k == 0 ? "min0" : "min1", grid.low[k], grid.high[k]);
   grid.count[0] = count_in(place, value("num0", "xnum")),
   grid.count[1] = count_in(place, value("num1", "ynum"));
   return grid;
@@ -246,43 +272,63 @@ std::optional<double> number_at(const std::string& line, std::size_t& at) {
   return value;
 }
 
-/// The numbers behind these texts, in their order; nullopt: the line has another form.
-template <std::size_t kCount>
-std::optional<std::array<double, kCount>> numbers_behind(const std::string& line,
-                                                         const std::array<std::string_view, kCount>& texts) {
-  std::array<double, kCount> numbers{};
-  std::size_t at = 0;
-  for (std::size_t k = 0; k < kCount; ++k) {
-    at = line.find(texts[k], at);
-    if (at == std::string::npos) return std::nullopt;
-    at += texts[k].size();
-    const auto number = number_at(line, at);
-    if (!number) return std::nullopt;
-    numbers[k] = *number;
+/// Three numbers, each directly behind its text.
+using Form = std::array<std::string_view, 3>;
+
+/// The numbers of a line of this form. nullopt: the line has another form. Throws InputError if the first
+/// number is there and the line is not understood to its end: a decimal comma would be read as two numbers.
+std::optional<Point> point_in(const std::string& line, const Form& form, const text::Place& place) {
+  std::size_t at = line.find(form[0]);
+  if (at == std::string::npos) return std::nullopt;
+  Point point{};
+  for (std::size_t k = 0; k < form.size(); ++k) {
+    while (k > 0 && at < line.size() && line[at] == ' ') ++at;
+    const std::string_view text = form[k][0] == ' ' ? form[k].substr(1) : form[k];
+    const bool there = k == 0 || line.compare(at, text.size(), text) == 0;
+    at += k == 0 ? form[0].size() : text.size();
+    const auto number = there ? number_at(line, at) : std::nullopt;
+    const bool cut = number && k + 1 == form.size() && at < line.size() && line[at] == ',';
+    if (number && !cut) {
+      point[k] = *number;
+      continue;
+    }
+    if (k == 0 || line.find(form[2]) == std::string::npos) return std::nullopt;
+    throw text::InputError(place, text::trimmed(line).substr(0, 60),
+                           "this line of a touch is not understood; numbers need a decimal point");
   }
-  return numbers;
+  return point;
 }
 
-std::optional<Point> touch_in(const std::string& line) {
-  static constexpr std::array<std::string_view, 3> kForms[] = {
+std::optional<Point> touch_in(const std::string& line, const text::Place& place) {
+  static constexpr Form kForms[] = {
       {"probe at ", ",", " is z="}, {"probe: at ", ",", " bed will contact at z="}, {"Bed X:", "Y:", "Z:"}};
-  for (const auto& form : kForms)
-    if (const auto point = numbers_behind(line, form)) return point;
+  for (const Form& form : kForms)
+    if (const auto point = point_in(line, form, place)) return point;
   return std::nullopt;
+}
+
+/// Time of a line "Stats 1000.5: …".
+std::optional<double> time_of_state(const std::string& line) {
+  constexpr std::string_view kStats = "Stats ";
+  if (!line.starts_with(kStats)) return std::nullopt;
+  std::size_t at = kStats.size();
+  return number_at(line, at);
 }
 
 class ProbeLog {
  public:
-  explicit ProbeLog(PrinterFile& result) : result_(result) {}
+  ProbeLog(PrinterFile& result, const std::string& file) : result_(result), file_(file) {}
 
   std::vector<Touch> read(const std::string& text) {
     std::size_t number = 0;
     for (const std::string& line : text::parts_of(text, '\n')) {
       ++number;
-      if (const auto stats = numbers_behind<1>(line, {"Stats "}); stats && line.starts_with("Stats "))
-        state(line, (*stats)[0]);
-      else if (const auto point = touch_in(line))
+      if (const auto time = time_of_state(line))
+        state(line, *time);
+      else if (const auto point = touch_in(line, {file_, number}))
         touch(*point, line, number);
+      else
+        remark(text::in_small_letters(line));
     }
     return std::move(touches_);
   }
@@ -309,12 +355,26 @@ class ProbeLog {
     Touch one = now_;
     one.axes = point;
     one.line = number;
+    const bool elsewhere =
+        touches_.empty() || touches_.back().axes[0] != point[0] || touches_.back().axes[1] != point[1];
+    if (elsewhere) first_of_point_ = touches_.size();
     touches_.push_back(std::move(one));
   }
 
+  /// "Probe samples exceed tolerance. Retrying...": the printer drops its touches of this point and begins
+  /// again. "Result is z=…" ends a point.
+  void remark(const std::string& words) {
+    if (words.find("result is z") != std::string::npos) first_of_point_ = touches_.size();
+    if (words.find("retrying") == std::string::npos) return;
+    result_.left_out += touches_.size() - first_of_point_;
+    touches_.resize(first_of_point_);
+  }
+
   PrinterFile& result_;
+  const std::string& file_;
   Touch now_;  // time and temperatures of the last state
   std::vector<Touch> touches_;
+  std::size_t first_of_point_ = 0;  // index of the first touch of the present point
 };
 
 // ---- the table
@@ -361,7 +421,7 @@ PrinterFile read_printer_file(const std::string& text, const std::string& file,
     if (!options.offset_mm) result.offset_mm = offset_in(sections, file);
     touches = Mesh(sections, file, result.name).touches(result.offset_mm);
   } else {
-    touches = ProbeLog(result).read(text);
+    touches = ProbeLog(result, file).read(text);
     result.offset_mm = {};
   }
   if (touches.empty())

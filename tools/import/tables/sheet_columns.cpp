@@ -11,6 +11,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/tables/column_values.h"
 #include "tools/import/tables/sheet_words.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
@@ -333,6 +334,22 @@ void settle_display(const sheet::SheetTable& table, std::vector<SheetColumn>& co
   }
 }
 
+/// The unit in the brackets of a heading, or in the row of units, is a fact of the file: an assignment with
+/// another unit is a mistake in one of the two.
+void refuse_another_unit(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t at,
+                         const SheetWishes::Assignment& wish) {
+  const sheet::Heading& heading = table.headings[at];
+  const bool stated =
+      table.units_row != 0 || heading.text.find_first_of("[(<") != std::string::npos || table.upper_row;
+  if (!stated || wish.column.unit.empty() || heading.unit.empty() || wish.column.unit == heading.unit) return;
+  throw text::InputError(
+      wish.place.file.empty() ? text::Place{sheet.file, sheet.line[table.heading_row]} : wish.place,
+      heading.text,
+      fmt::format("the table states the unit {}, the assignment to {} states {}: omit the unit in the "
+                  "assignment, or correct the heading",
+                  heading.unit, wish.column.name, wish.column.unit));
+}
+
 bool names_statistic(const sheet::Heading& heading) {
   const std::vector<std::string> words = heading_words(heading.name);
   return std::any_of(words.begin(), words.end(),
@@ -351,6 +368,13 @@ void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& 
       leave(columns[k], "computed from the readings beside it");
 }
 
+/// A correction cancels the deviation: it is nominal - actual (JCGM 200:2012, 2.53).
+bool names_correction(const sheet::Heading& heading) {
+  const std::vector<std::string> words = heading_words(heading.name);
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return says_correction(text::in_small_letters(word)); });
+}
+
 /// A sign that is stated: in the heading of a deviation, or in a title for all of them.
 void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                   std::vector<SheetColumn>& columns) {
@@ -361,7 +385,8 @@ void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (columns[k].use == SheetColumn::Use::kDeviation)
       columns[k].turned = all || says_nominal_less_actual(table.headings[k].text, true) ||
-                          says_nominal_less_actual(table.headings[k].name, true);
+                          says_nominal_less_actual(table.headings[k].name, true) ||
+                          names_correction(table.headings[k]);
 }
 
 /// Deviations and directions without an axis belong to the only axis; columns that remain open are omitted
@@ -527,6 +552,14 @@ std::string angle_of(const std::string& axis, const text::Place& place) {
       "this column is a deviation in degrees: state its direction, for example --column \"rz[deg]=HEADING\"");
 }
 
+/// Does a heading only count or name its rows?
+bool names_counting(const sheet::Heading& heading) {
+  const std::vector<std::string> words = heading_words(heading.name);
+  return !words.empty() && std::all_of(words.begin(), words.end(), [](const std::string& word) {
+    return says_counting(text::in_small_letters(word));
+  });
+}
+
 /// Assignments that read a table in which nothing was recognised as measured, with its own headings.
 std::string assignments_to_try(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
                                const Guess& guess) {
@@ -534,11 +567,12 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
     return column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name);
   });
   std::string position, reading, unit;
-  bool actual = false;
+  bool actual = false, correction = false;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
-        guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name))
+        guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name) ||
+        names_counting(table.headings[k]))
       continue;
     const Guess::Bare bare = Guess::bare(table.headings[k].name);
     if (bare == Guess::Bare::kTarget && axis == columns.end() && position.empty()) {
@@ -548,10 +582,14 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
       reading = table.headings[k].text;
       unit = column.unit;
       actual = bare == Guess::Bare::kActual;
+      correction = names_correction(table.headings[k]);
     }
   }
   const std::string name = axis == columns.end() ? "X" : axis->name;
   if (reading.empty()) reading = "HEADING";
+  if (correction)
+    return fmt::format("{}--deviation \"{}{}={}\" (a correction is nominal - actual: its sign is reversed)",
+                       position, name, unit.empty() ? "[um]" : "", reading);
   return fmt::format(
       "{}--column \"{}{}={}\" for a measured position, or {}--deviation \"{}{}={}\" for a deviation",
       position, text::in_small_letters(name), unit.empty() ? "[mm]" : "", reading, position, name,
@@ -715,6 +753,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
       if (wish.column.use == SheetColumn::Use::kLeft) continue;  // one that this file does not have
       throw text::InputError(wish.place, wish.heading, "no column of " + sheet.file + " has this heading");
     }
+    refuse_another_unit(sheet, table, at, wish);
     columns[at] = wish.column;
     if (columns[at].unit.empty()) columns[at].unit = table.headings[at].unit;
     columns[at].why = wish.place.file.empty() ? "as given" : "by the profile";
@@ -722,7 +761,9 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   settle_axis(sheet, table, columns, guess);
   settle_display(table, columns, guess);
   leave_statistics(table, columns);
+  settle_by_values(sheet, table, columns);
   settle(sheet, table, columns, guess);
+  refuse_tables_side_by_side(sheet, table, columns);
   settle_signs(sheet, table, columns);
   keep_names_apart(table, columns);
   for (SheetColumn& column : columns) {

@@ -21,6 +21,13 @@ const WordSet kMeasuredWords = {"ist",     "istwert", "istposition", "measured",
 const WordSet kDeviationWords = {"abweichung", "abweichungen", "deviation", "deviations", "dev",
                                  "error",      "errors",       "fehler",    "err",        "delta",
                                  "diff",       "abw",          "differenz", "difference", "ecart"};
+const WordSet kCorrectionWords = {"korrektur",    "korrekturen",       "korrekturwert", "korrekturwerte",
+                                  "korr",         "correction",        "corrections",   "corr",
+                                  "kompensation", "kompensationswert", "compensation",  "comp"};
+/// Headings of a column that counts or names its rows.
+const WordSet kCountingWords = {"nr",    "no",    "num",    "nummer", "number", "index", "idx",       "id",
+                                "lfd",   "punkt", "punkte", "point",  "points", "pt",    "messpunkt", "row",
+                                "zeile", "#",     "n",      "pos.nr", "posnr",  "sample"};
 const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte",       "mean",  "average",
                                  "avg",    "mw",         "durchschnitt",      "stdev", "stdabw",
                                  "stabw",  "spannweite", "standardabweichung"};
@@ -72,6 +79,8 @@ std::vector<std::string> heading_words(const std::string& name) {
 bool says_target(const std::string& word) { return kTargetWords.contains(word); }
 bool says_measured(const std::string& word) { return kMeasuredWords.contains(word); }
 bool says_statistic(const std::string& word) { return kStatisticWords.contains(word); }
+bool says_correction(const std::string& word) { return kCorrectionWords.contains(word); }
+bool says_counting(const std::string& word) { return kCountingWords.contains(word); }
 bool says_deviation(const std::string& word) { return kDeviationWords.contains(word); }
 
 int sense_said(std::string_view word) {

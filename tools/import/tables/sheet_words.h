@@ -18,6 +18,10 @@ bool says_measured(const std::string& word);
 /// A mean or a spread, which a spreadsheet computes from its readings: "Mittelwert".
 bool says_statistic(const std::string& word);
 bool says_deviation(const std::string& word);
+/// The opposite of a deviation: "Korrektur".
+bool says_correction(const std::string& word);
+/// A column that counts or names the rows: "Nr".
+bool says_counting(const std::string& word);
 
 /// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no direction.
 int sense_said(std::string_view word);
