@@ -9,6 +9,7 @@
 
 #include "tools/lint/machine_lint.h"
 #include "tools/lint/measurement_lint.h"
+#include "tools/sheet/encoding.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/similar.h"
@@ -212,7 +213,7 @@ std::string import_hint(const std::string& message, const std::vector<std::strin
   for (const std::string& path : arguments) {
     if (path.empty() || !(message.starts_with(path + ":"))) continue;
     const std::string bytes = head_of(path, kMostRead);
-    if (bytes.empty() || is_xml(bytes)) continue;
+    if (bytes.empty() || is_xml(sheet::utf8_of(bytes, sheet::encoding_of(bytes)))) continue;
     const std::string command = lint::import_command_for(bytes, path);
     if (!command.empty()) return path + " is not a measurement file; this command reads it: " + command;
   }

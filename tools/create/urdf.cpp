@@ -315,7 +315,21 @@ PlannedAxis axis_of(const Joint& joint, const std::string& file) {
 }
 
 void require_arm(const std::vector<Joint>& way, const std::string& file) {
+  constexpr double kLongest_mm = 20e3;  // no link of an arm is longer
+  constexpr double kMostTurn_rad = 20;  // more than three turns to each side
   for (const Joint& one : way) {
+    if (one.origin.translation().norm() > kLongest_mm)
+      throw text::InputError(
+          {file, one.line}, one.name,
+          fmt::format("this joint is {:g} m from the joint before it: the lengths of a URDF "
+                      "are in m, and these are probably in mm",
+                      one.origin.translation().norm() / kMmPerM));
+    if (!one.slides() && (one.lower.value_or(0) < -kMostTurn_rad || one.upper.value_or(0) > kMostTurn_rad))
+      throw text::InputError(
+          {file, one.line}, one.name,
+          fmt::format("the limits {:g} to {:g} are more than three turns: the angles of a URDF "
+                      "are in rad, and these are probably in deg",
+                      one.lower.value_or(0), one.upper.value_or(0)));
     if (one.type != "fixed" && one.type != "revolute" && one.type != "continuous" && one.type != "prismatic")
       throw text::InputError({file, one.line}, one.type,
                              "a joint of an arm is revolute, continuous, prismatic or fixed");

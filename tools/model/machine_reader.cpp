@@ -45,6 +45,7 @@ class Reader {
   }
 
   Machine read() {
+    require_utf8();
     const pugi::xml_parse_result result = document_.load_buffer(
         text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
     if (!result) {
@@ -69,6 +70,20 @@ class Reader {
   }
 
  private:
+  /// Other encodings would become wrong names in results, and invalid JSON.
+  void require_utf8() const {
+    constexpr std::size_t kStart = 64;  // bytes; every second byte of a start in UTF-16 is zero
+    if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF") ||
+        std::string_view(text_).substr(0, kStart).find('\0') != std::string_view::npos)
+      throw text::InputError({machine_.file, 1}, "", "the file is UTF-16, not UTF-8: save it as UTF-8");
+    const std::string valid = text::utf8_only(text_);
+    const auto [bad, other] = std::mismatch(text_.begin(), text_.end(), valid.begin(), valid.end());
+    if (bad == text_.end()) return;
+    const auto at = static_cast<std::size_t>(bad - text_.begin());
+    throw text::InputError({machine_.file, line_at(at)}, word_at(at),
+                           "this letter is not UTF-8: save the file as UTF-8, or convert it: iconv -f "
+                           "WINDOWS-1252 -t UTF-8");
+  }
   void read_root(const pugi::xml_node& root) {
     if (!is(root, "machine") && !is(root, "EITransform"))
       fail(root, root.name(), "the root must be <machine> or <EITransform>");

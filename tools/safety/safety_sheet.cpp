@@ -207,20 +207,24 @@ class Judge {
       const double outside = std::max(0.0, measured.min - low) + std::max(0.0, high - measured.max);
       return outside / std::max(measured.max - measured.min, 1e-3 * (high - low));
     };
+    const auto region = [](const char* kind, const model::FitRecord::Range& measured, double low, double high) {
+      return fmt::format("{} {}, measured from {:g} to {:g}, range {:g} to {:g}", kind, measured.name,
+                         measured.min, measured.max, low, high);
+    };
     for (const model::FitRecord::Range& measured : machine_.fitted->measured) {
       if (const auto axis = machine_.find_axis(measured.name)) {
         const auto range = model::work_range(machine_, *axis);
         if (!range || !acts(machine_, {model::SymbolKind::kAxis, *axis})) continue;
         if (const double share = overhang(measured, (*range)[0], (*range)[1]); share > axis_worst) {
           axis_worst = share;
-          axis_of = "axis " + measured.name;
+          axis_of = region("axis", measured, (*range)[0], (*range)[1]);
         }
       } else if (const auto input = machine_.find_input(measured.name)) {
         const model::Input& item = machine_.inputs[*input];
         if (!item.min || !item.max || !acts(machine_, {model::SymbolKind::kInput, *input})) continue;
         if (const double share = overhang(measured, *item.min, *item.max); share > input_worst) {
           input_worst = share;
-          input_of = "input " + measured.name;
+          input_of = region("input", measured, *item.min, *item.max);
         }
       }
     }
@@ -318,20 +322,29 @@ std::uint32_t SafetySheet::accepted_mask() const {
 }
 
 std::string SafetySheet::refusal() const {
-  const SafetyFinding* worst = nullptr;
-  double most = 0;
-  for (const SafetyFinding& finding : findings) {
-    if (finding.ok || finding.accepted) continue;
-    const double times = *finding.value / std::max(finding.limit, 1e-9);
-    if (worst != nullptr && times <= most) continue;
-    worst = &finding;
-    most = times;
+  std::vector<const SafetyFinding*> failed;
+  for (const SafetyFinding& finding : findings)
+    if (!finding.ok && !finding.accepted) failed.push_back(&finding);
+  if (failed.empty()) return {};
+  const auto times = [](const SafetyFinding* finding) {
+    return *finding->value / std::max(finding->limit, 1e-9);
+  };
+  std::stable_sort(failed.begin(), failed.end(),
+                   [&](const auto* a, const auto* b) { return times(a) > times(b); });
+  const auto figures = [](const SafetyFinding& finding) {
+    return fmt::format("{} {:.3g} {}, limit {:g}", rule_name(finding.rule), *finding.value, finding.unit,
+                       finding.limit);
+  };
+  const SafetyFinding& worst = *failed.front();
+  std::string text = "not safe to run: " + figures(worst);
+  if (!worst.culprit.empty()) text += ": " + worst.culprit;
+  text += fmt::format(" ({})", worst.reason);
+  std::string accept;
+  for (const SafetyFinding* finding : failed) {
+    if (finding != &worst) text += "; also not met: " + figures(*finding);
+    accept += fmt::format(" --accept {}", rule_name(finding->rule));
   }
-  if (worst == nullptr) return {};
-  std::string text = fmt::format("not safe to run: {} {:.3g} {}, limit {:g}", rule_name(worst->rule),
-                                 *worst->value, worst->unit, worst->limit);
-  if (!worst->culprit.empty()) text += ": " + worst->culprit;
-  return text + fmt::format(" ({}); --accept {} overrides", worst->reason, rule_name(worst->rule));
+  return text + fmt::format(";{} overrides", accept);
 }
 
 SafetySheet safety_sheet(const model::Machine& machine, const std::vector<SafetyRule>& accepted) {

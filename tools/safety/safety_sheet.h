@@ -52,8 +52,8 @@ struct SafetySheet {
              const std::vector<SafetyRule>& accepted);
   bool ok() const;
   std::uint32_t accepted_mask() const;  // bit n: rule n
-  /// Returns one line: the rule with the largest excess, its value, limit and culprit. The line is empty if
-  /// all rules are met.
+  /// Returns one line: the rule with the largest excess, its value, limit and culprit, and then the other
+  /// rules that are not met. The line is empty if all rules are met.
   std::string refusal() const;
 };
 

@@ -330,7 +330,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     read_from_workbook(sheet, bytes, format);
   } else {
     sheet.encoding = encoding_of(bytes);
-    const std::string text = utf8_of(bytes, sheet.encoding);
+    const std::string text = text::without_invisible(utf8_of(bytes, sheet.encoding));
     if (text.find('\0') != std::string::npos)
       throw text::InputError({file, 0}, "",
                              "the file has bytes of value 0: it is neither a text nor a workbook (.xlsx)");

@@ -206,13 +206,18 @@ class Reader {
       std::vector<std::string> cells;
       std::vector<char> numbers;
       bool any = false;
+      std::string formula;  // the first one without a value
       for (const pugi::xml_node cell : row.children()) {
         const std::size_t column = column_of(cell, cells.size());
         if (column >= kMostColumns)
           throw text::InputError({file_, row_number}, "",
                                  "the sheet has a column beyond the last column of the format");
-        const std::string value = text::trimmed(value_of(cell, row_number));
-        if (value.empty()) continue;
+        const std::string value = text::trimmed(text::without_invisible(value_of(cell, row_number)));
+        if (value.empty()) {
+          if (const pugi::xml_node computed = child(cell, "f"); computed && formula.empty())
+            formula = "=" + std::string(computed.text().get());
+          continue;
+        }
         if (cells.size() <= column) {
           empty += column - cells.size();
           if (empty > kMostEmpty + kMostEmptyForOne * filled)
@@ -227,6 +232,11 @@ class Reader {
         any = true;
       }
       if (!any) continue;
+      const bool data = std::count(numbers.begin(), numbers.end(), 1) > 0;
+      if (data && !formula.empty())
+        throw text::InputError({file_, row_number}, formula,
+                               "a formula without a value: the program that wrote the workbook did not "
+                               "compute it; open the workbook in a spreadsheet program and save it");
       sheet.rows.push_back(std::move(cells));
       sheet.is_number.push_back(std::move(numbers));
       sheet.line.push_back(row_number);

@@ -31,10 +31,18 @@ CodePoint first_of(std::string_view text) {
   return shortest && !surrogate && value < 0x110000 ? CodePoint{value, bytes} : CodePoint{};
 }
 
-// Control characters C0 and C1, line and paragraph separators, and marks of the writing direction.
+// Characters without a width and without a meaning in a table: soft hyphen, zero width space, non-joiner and
+// joiner, word joiner, byte order mark.
+bool is_invisible(std::uint32_t point) {
+  return point == 0xad || (point >= 0x200b && point <= 0x200d) || point == 0x2060 || point == 0xfeff;
+}
+
+// Control characters C0 and C1, line and paragraph separators, marks of the writing direction, and characters
+// that cannot be seen.
 bool is_control(std::uint32_t point) {
   return point < 0x20 || (point >= 0x7f && point < 0xa0) || point == 0x61c || point == 0x200e ||
-         point == 0x200f || (point >= 0x2028 && point <= 0x202e) || (point >= 0x2066 && point <= 0x2069);
+         point == 0x200f || (point >= 0x2028 && point <= 0x202e) || (point >= 0x2066 && point <= 0x2069) ||
+         is_invisible(point);
 }
 
 /// Returns the text with "?" in place of each byte that is not UTF-8; without_controls: and of each control
@@ -57,6 +65,17 @@ std::string with_question_marks(std::string_view text, bool without_controls) {
 void replace_all(std::string& text, std::string_view what, std::string_view with) {
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
     text.replace(at, what.size(), with);
+}
+
+std::string without_invisible(std::string_view text) {
+  std::string seen;
+  while (!text.empty()) {
+    const CodePoint point = first_of(text);
+    const std::size_t bytes = std::max<std::size_t>(point.bytes, 1);
+    if (point.bytes == 0 || !is_invisible(point.value)) seen += text.substr(0, bytes);
+    text.remove_prefix(bytes);
+  }
+  return seen;
 }
 
 std::string printable(std::string_view text) { return with_question_marks(text, true); }

@@ -25,9 +25,13 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
 void replace_all(std::string& text, std::string_view what, std::string_view with);
 
 /// Returns a text from an input file in a form that is safe for a terminal and for JSON. Control characters,
-/// marks that change the writing direction and bytes that are not UTF-8 become "?". upload::Client passes all
-/// texts of a board through this function.
+/// marks that change the writing direction, characters without a width and bytes that are not UTF-8 become
+/// "?". upload::Client passes all texts of a board through this function.
 std::string printable(std::string_view text);
+
+/// Returns the text without characters that have no width: zero width spaces and joiners, soft hyphens, byte
+/// order marks. Web pages and text programs leave them in copied tables.
+std::string without_invisible(std::string_view text);
 
 /// Returns a word of a file as a message quotes it: printable, and shortened if it is longer than
 /// kMostQuotedBytes.

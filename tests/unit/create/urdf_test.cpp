@@ -168,6 +168,13 @@ TEST(Urdf, SaysWhatItCannotTake) {
   EXPECT_NE(refusal(with("type=\"revolute\"", "type=\"floating\"")).find("arm.urdf:3: \"floating\""),
             std::string::npos);
   EXPECT_NE(refusal(with("<limit lower=\"-2\" upper=\"2.5\"/>", "")).find("limit"), std::string::npos);
+  EXPECT_NE(refusal(with("<limit lower=\"-2\" upper=\"2.5\"/>", "<limit lower=\"-120\" upper=\"150\"/>"))
+                .find("probably in deg"),
+            std::string::npos);
+  EXPECT_NE(refusal(urdf_of({{"revolute", {0, 0, 1}, {0, 0, 0}, Vector3d::UnitZ()},
+                             {"revolute", {400, 0, 0}, {0, 0, 0}, Vector3d::UnitY()}}))
+                .find("probably in mm"),
+            std::string::npos);
   EXPECT_NE(refusal(with("<parent link=\"l1\"/>", "<parent link=\"l7\"/>")).find("\"l7\""),
             std::string::npos);
   EXPECT_NE(refusal(with("<parent link=\"l0\"/>", "<parent link=\"l2\"/>")).find("loop"), std::string::npos);

@@ -133,6 +133,62 @@ TEST(PrinterErrors, ScaleStaysWithoutThePresentSteps) {
   EXPECT_NEAR(errors.after_um[0], 0.0008 * 100 * 1000, 3);  // half of the travel to each side of the middle
 }
 
+/// A printer without errors whose last fit touched a bed that falls 1 mm in 1000 along X and rises 2 along Y.
+/// `workpiece`: the bed moves along Z, so that the tool point rises over the bed as Z falls.
+Machine over_a_bed(const std::string& planes, bool workpiece = false) {
+  const std::string z =
+      workpiece ? "</transforms><transforms branch=\"workpiece\"><sixdof n=\"1\" Z=\"Z\"/></transforms>"
+                : "<sixdof n=\"3\" Z=\"Z\"/></transforms>";
+  return parse_machine(
+      R"xml(<machine name="bed"><variables>
+  <machineaxes><X min="0" max="200"/><Y min="0" max="180"/><Z min="0" max="150"/></machineaxes></variables>
+  <transforms branch="tool"><sixdof n="1" X="X"/><sixdof n="2" Y="Y"/>)xml" +
+          z + "<fitted><measured><X min=\"20\" max=\"160\"/><Y min=\"30\" max=\"170\"/></measured>" + planes +
+          "</fitted></machine>",
+      "bed.xml");
+}
+const char* const kBed = R"(<plane name="bed" x="50" y="50" z="7" nx="0.001" ny="-0.002" nz="1"/>)";
+
+TEST(PrinterBed, HeightsFollowItsSlopeWhereItWasTouched) {
+  for (const bool workpiece : {false, true}) {
+    const Machine machine = over_a_bed(kBed, workpiece);
+    const ThreeAxes axes = three_axes(machine);
+    const std::optional<Bed> bed = bed_of(machine, axes, "");
+    ASSERT_TRUE(bed.has_value());
+    PrinterCorrection correction =
+        printer_correction(machine, axes, features_of(Firmware::kKlipper, {}), at_rest(machine), 1, bed);
+    const KlipperFile file(firmware_files(Firmware::kKlipper, {}, "bed", correction).at(0).text);
+    EXPECT_DOUBLE_EQ(file.value.at("min_x"), 20);
+    EXPECT_DOUBLE_EQ(file.value.at("max_y"), 170);
+    const double sign = workpiece ? -1 : 1;
+    EXPECT_NEAR(file.height(160, 30) - file.height(20, 30), sign * -0.14, 1e-6);
+    EXPECT_NEAR(file.height(20, 170) - file.height(20, 30), sign * 0.28, 1e-6);
+    const PrinterErrors errors = printer_errors(machine, axes, correction, at_rest(machine), bed);
+    EXPECT_GT(errors.rms_before_um, 50);
+    EXPECT_LT(errors.rms_after_um, 0.01);
+  }
+}
+
+TEST(PrinterBed, IsTheNamedPlaneOrTheOnlyOne) {
+  const auto said = [](const std::string& planes, const std::string& name) {
+    const Machine machine = over_a_bed(planes);
+    try {
+      const std::optional<Bed> bed = bed_of(machine, three_axes(machine), name);
+      return bed ? bed->name : std::string("none");
+    } catch (const text::InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  const std::string second = R"(<plane name="glass" x="0" y="0" z="1" nx="0" ny="0" nz="1"/>)";
+  EXPECT_EQ(said("", ""), "none");
+  EXPECT_EQ(said(kBed + second, "glass"), "glass");
+  EXPECT_NE(said(kBed + second, "").find("several planes (bed, glass)"), std::string::npos);
+  EXPECT_NE(said(kBed + second, "wood").find("its planes are bed, glass"), std::string::npos);
+  EXPECT_NE(said("", "bed").find("no rows that touch a plane"), std::string::npos);
+  EXPECT_NE(said(R"(<plane name="wall" x="0" y="0" z="1" nx="1" ny="0" nz="0"/>)", "").find("upright"),
+            std::string::npos);
+}
+
 TEST(PrinterFiles, OfGrblHaveTheStepsOfEachAxis) {
   const Machine machine = printer();
   const PresentSetting present{std::array<double, 3>{80, 80, 400}};

@@ -111,6 +111,30 @@ TEST(FitOfThings, ChiSquareOverItsFreedomIsOne) {
   EXPECT_NEAR(sum / kSurveys, 2.0 / 3, 0.07);
 }
 
+/// The bed of a printer: its slope is none of the machine's errors, and the machine file keeps it.
+TEST(FitOfThings, ATouchedPlaneIsInTheRecord) {
+  const std::string machine =
+      R"XML(<machine name="printer"><variables><machineaxes><X/><Y/><Z/></machineaxes>
+  <artefact name="bed" type="plane"/></variables>
+  <transforms branch="tool"><sixdof n="1" X="X" Y="Y" Z="Z"/></transforms></machine>)XML";
+  const model::Machine printer = model::parse_machine(machine, "printer.xml");
+  std::string rows = "X[mm],Y[mm],Z[mm],on\n";
+  for (const double x : {0, 100, 200})
+    for (const double y : {0, 50, 150})
+      rows += fmt::format("{},{},{:.6f},bed\n", x, y, 2 + 0.001 * x - 0.002 * y);
+  const FitResult result = vernier::fit::fit(printer, model::parse_measurement(rows, "bed.csv", printer), {});
+  ASSERT_TRUE(result.machine.fitted);
+  ASSERT_EQ(result.machine.fitted->planes.size(), 1u);
+  const std::string text = model::with_fit_record(machine, *result.machine.fitted);
+  const model::Machine read = model::parse_machine(text, "fitted.xml");
+  ASSERT_EQ(read.fitted->planes.size(), 1u);
+  const model::FitRecord::Plane& plane = read.fitted->planes.front();
+  EXPECT_EQ(plane.name, "bed");
+  EXPECT_NEAR(-plane.normal[0] / plane.normal[2], 0.001, 1e-8);
+  EXPECT_NEAR(-plane.normal[1] / plane.normal[2], -0.002, 1e-8);
+  EXPECT_NEAR(plane.place_mm[2], 2 + 0.001 * plane.place_mm[0] - 0.002 * plane.place_mm[1], 1e-6);
+}
+
 TEST(FitOfThings, ARobustLossIsRefusedByName) {
   FitOptions options;
   options.loss = Loss::kHuber;

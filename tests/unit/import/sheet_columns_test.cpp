@@ -268,6 +268,8 @@ const Case kCases[] = {
      "X[mm],Y[mm],x[mm],y[mm]\n0,0,0.1,0.1\n100,50,100.1,50.2\n"},
     {"TheNumberOfARowIsNoReading", "Nr;Pos [mm];Anzeige [um]\n1;100;1\n2;200;2\n",
      "such as --column \"X=Pos [mm]\" --column \"x=Anzeige [um]\""},
+    {"CharactersWithoutAWidth", "X\u200b[mm];x [mm]\ufeff\n1;\u200b2,5\n2;3\u2060,5\n",
+     "X[mm],x[mm]\n1,2.5\n2,3.5\n"},
     {"OpenQuote", "X[mm];x[mm]\n1;\"2\n", "a closing quote is missing"},
 };
 
@@ -375,6 +377,15 @@ TEST(SheetNote, ASecondColumnOfTheSameNameStatesHowToReadIt) {
   words.left = {"2"};
   EXPECT_EQ(read_as_sheet("X [mm];x [mm];x [mm]\n0;1;2\n9;10;11\n", "s.csv", words).columns[2].use,
             SheetColumn::Use::kColumn);
+}
+
+TEST(SheetNote, ARunThatOnlyItsFirstRowNamesAppliesToTheRowsBelow) {
+  const SheetReading read =
+      read_as_sheet("Lauf;X [mm];x [mm]\na;0;1\n;9;10\n;;\nb;0;1\n;9;11\n", "s.csv", SheetWords{});
+  EXPECT_EQ(measurement_csv(table_of_sheet(read.sheet, read.table, read.columns, read.wishes)),
+            "run,X[mm],x[mm]\na,0,1\na,9,10\nb,0,1\nb,9,11\n");
+  ASSERT_EQ(read.sheet.notes.size(), 1u);
+  EXPECT_EQ(read.sheet.notes[0], "2 empty cells below \"Lauf\" have the name above them");
 }
 
 TEST(SheetNote, NamesEveryRowThatIsLeftOutOrShort) {

@@ -120,6 +120,7 @@ TEST(Tracker, ErrorsNameFileLineAndWord) {
   EXPECT_TRUE(has(message_of(map, "1,2\n1,2x\n"), "data.txt:2: \"2x\""));
   EXPECT_TRUE(has(message_of(map, "1,2\n# c\n1,2,3\n"), "data.txt:3: \"1,2,3\""));
   EXPECT_TRUE(has(message_of(map, "1;2,5\n"), "\"2,5\""));  // decimal comma not asked for
+  EXPECT_TRUE(has(message_of(map, "1;2,5\n"), "give --decimal comma"));
   EXPECT_TRUE(has(message_of(map, "1,nan\n"), "\"nan\""));
   EXPECT_TRUE(has(message_of(map, "1\n"), "\"2\": this column does not exist"));
   EXPECT_TRUE(has(message_of(map, "# nothing\n"), "no rows"));

@@ -124,6 +124,27 @@ TEST(MachineFile, ErrorsNameFileLineAndWord) {
   EXPECT_EQ(error_of(with("", "<X/>\n", table)), "m.xml:10: \"1\": stations must increase");
 }
 
+TEST(MachineFile, OtherEncodingsThanUtf8AreRefused) {
+  const auto said = [](const std::string& text) {
+    try {
+      parse_machine(text, "m.xml");
+    } catch (const text::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  const std::string body = "<transforms branch=\"tool\"><sixdof n=\"1\"/></transforms></machine>";
+  EXPECT_EQ(
+      said("<machine\nname=\"Dr\xFC\x63ker\">" + body),
+      "m.xml:2: \"?cker\"><transforms\": this letter is not UTF-8: save the file as UTF-8, or convert it: "
+      "iconv -f WINDOWS-1252 -t UTF-8");
+  std::string wide = "\xFF\xFE";
+  for (const char c : "<machine>" + body) wide += std::string{c, '\0'};
+  EXPECT_EQ(said(wide), "m.xml:1: the file is UTF-16, not UTF-8: save it as UTF-8");
+  EXPECT_EQ(said(wide.substr(2)), "m.xml:1: the file is UTF-16, not UTF-8: save it as UTF-8");
+  EXPECT_EQ(said("<machine name=\"Dr\xC3\xBC\x63ker\">" + body), "accepted");
+}
+
 TEST(MachineFile, RefusesWhatItWouldOtherwiseHaveToGuess) {
   for (const std::string& text :
        {with("<k value=\"1e999\"/>", "<X/>", ""), with("<k value=\"0x10\"/>", "<X/>", ""),

@@ -70,6 +70,11 @@ TEST(SafetySheet, RefusesAbsurdAnglesAndNamesThem) {
   const SafetySheet sheet = safety_sheet(machine);
   EXPECT_FALSE(sheet.ok());
   EXPECT_NE(sheet.refusal().find("alpha"), std::string::npos) << sheet.refusal();
+  // All rules that are not met are in the line, so that one answer is enough.
+  for (const SafetyFinding& one : sheet.findings)
+    EXPECT_EQ(sheet.refusal().find(std::string("--accept ") + rule_name(one.rule)) != std::string::npos,
+              !one.ok && !one.accepted)
+        << sheet.refusal();
   EXPECT_EQ(finding(sheet, SafetyRule::kCorrection).culprit, "alpha");
   // One rule overridden is one rule overridden.
   const SafetySheet part = safety_sheet(machine, {SafetyRule::kCorrection});
@@ -109,7 +114,8 @@ TEST(SafetySheet, JudgesWhereItWorksAgainstWhereItWasMeasured) {
     m.observations[i].value = exact[static_cast<Eigen::Index>(i)];
   Machine fitted = fit::fit(model, m).machine;
   EXPECT_NEAR(*finding(safety_sheet(fitted), SafetyRule::kMeasuredRange).value, 1, 0.05);
-  EXPECT_EQ(finding(safety_sheet(fitted), SafetyRule::kMeasuredRange).culprit, "axis Y");
+  EXPECT_EQ(finding(safety_sheet(fitted), SafetyRule::kMeasuredRange).culprit.substr(0, 27),
+            "axis Y, measured from 0 to ");
   fitted.volume = {{1, 0, 200}};  // <volume>: it works where it was measured
   EXPECT_TRUE(safety_sheet(fitted).ok()) << safety_sheet(fitted).refusal();
 }

@@ -137,6 +137,16 @@ TEST(Workbook, AMergedHeadingStaysOneCell) {
   EXPECT_EQ(read_workbook(workbook_of("", rows + merged), "b.xlsx", "").rows[1][0], "");
 }
 
+TEST(Workbook, AFormulaWithoutAValueAmongNumbersIsRefused) {
+  const std::string row = "<row r=\"3\"><c><v>1</v></c><c><f>A3*2</f></c></row>";
+  EXPECT_EQ(refusal(workbook_of("", row), ""),
+            "b.xlsx:3: \"=A3*2\": a formula without a value: the program that wrote the workbook did not "
+            "compute it; open the workbook in a spreadsheet program and save it");
+  const std::string total =
+      "<row><c t=\"inlineStr\"><is><t>Mittelwert</t></is></c><c><f>SUM(B1:B2)</f></c></row>";
+  EXPECT_EQ(read_workbook(workbook_of("", kRowsOfNumbers + total), "b.xlsx", "").rows.size(), 3u);
+}
+
 TEST(Workbook, TrueAndFalseAreWords) {
   const WorkbookSheet sheet = read_workbook(
       workbook_of("", "<row><c t=\"b\"><v>1</v></c><c t=\"b\"><v>0</v></c></row>"), "b.xlsx", "");

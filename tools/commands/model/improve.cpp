@@ -13,6 +13,7 @@
 #include "tools/diagnose/sentences.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
+#include "tools/plan/advice.h"
 #include "tools/report/report.h"
 #include "tools/results/detail.h"
 #include "tools/results/diagnosis_json.h"
@@ -128,7 +129,8 @@ class Improver {
     options.effects = effects_;
     Progress progress("diagnose");
     options.progress = [&](double share, const std::string& step) { progress.update(share, step); };
-    const diagnose::Diagnosis d = diagnose::diagnose(text_, machine_, rows_, options);
+    diagnose::Diagnosis d = diagnose::diagnose(text_, machine_, rows_, options);
+    d.next_measurement = plan::advice_for(text_, machine_, rows_, d, effects_);
     if (round == 0 && !d.end.absurd.empty()) throw text::LimitNotMet(d.end.absurd + "; nothing is written");
     last_ = results::diagnosis_json(d, rows_);
     if (round == 0) {
@@ -142,6 +144,11 @@ class Improver {
                  results::error_or_dash(given.check_rms_um, given.check_rms_urad));
     }
     fmt::print(out_, "verdict: {}. {}\n", diagnose::verdict_name(d.verdict), d.explanation);
+    for (const std::string& next : d.next_measurement) fmt::print(out_, "measure next: {}\n", next);
+    if (d.verdict == diagnose::Verdict::kAmbiguous)
+      fmt::print(out_,
+                 "nothing is added: measure, and give all files to improve; or add one cause with "
+                 "vernier add\n");
     if (d.verdict != diagnose::Verdict::kMissingEffect) return false;
     for (std::size_t i = 1; i < d.ladder.size(); ++i) {
       const diagnose::LadderStep& step = d.ladder[i];

@@ -41,8 +41,10 @@ text::Assurance assurance_of(const model::Machine& machine, const ExchangeArgume
 
 }  // namespace
 
-void require_safe(const model::Machine& machine, const ExchangeArguments& arguments) {
-  const safety::SafetySheet sheet = safety::safety_sheet(machine, safety::rules_named(arguments.accept));
+void require_safe(const model::Machine& machine, const ExchangeArguments& arguments, bool not_of_board) {
+  std::vector<safety::SafetyRule> accepted = safety::rules_named(arguments.accept);
+  if (not_of_board) accepted.push_back(safety::SafetyRule::kMaxCorrection);
+  const safety::SafetySheet sheet = safety::safety_sheet(machine, accepted);
   if (!sheet.ok()) throw text::LimitNotMet(sheet.refusal());
 }
 

@@ -34,7 +34,9 @@ struct AxisLines {
 
 /// Throws LimitNotMet if the safety sheet ("safe to run?") fails, because the written files correct a machine
 /// in the same way as a correction image.
-void require_safe(const model::Machine& machine, const ExchangeArguments& arguments);
+/// not_of_board: the format does not use maxcorrection, which is a limit of the board.
+void require_safe(const model::Machine& machine, const ExchangeArguments& arguments,
+                  bool not_of_board = false);
 
 /// Returns the fixed state: the middle of the ranges, overridden by the values of the user.
 model::States state_of(const model::Machine& machine, const ExchangeArguments& arguments);

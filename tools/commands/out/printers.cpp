@@ -52,7 +52,7 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
         "grbl can store only steps per mm: give the present steps per mm with --steps X,Y,Z");
   const exchange::ThreeAxes axes = exchange::three_axes(machine);
   const model::States at = state_of(machine, common);
-  require_safe(machine, common);
+  require_safe(machine, common, true);
   const exchange::PrinterFeatures features = exchange::features_of(firmware, present);
   const std::optional<exchange::Bed> bed = features.mesh && arguments.bed != kNoBed
                                                ? exchange::bed_of(machine, axes, arguments.bed)

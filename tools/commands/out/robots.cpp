@@ -13,7 +13,7 @@ namespace {
 void export_urdf(const ExchangeArguments& arguments) {
   const model::Machine machine = read_model(arguments.machine);
   const model::States at = state_of(machine, arguments);
-  require_safe(machine, arguments);
+  require_safe(machine, arguments, true);
   const exchange::UrdfFile file = exchange::urdf_arm(machine, at);
   const Json files = write_folder(arguments, {{"robot.urdf", file.text}});
   std::vector<exchange::LeftOut> left;

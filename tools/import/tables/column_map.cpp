@@ -104,7 +104,12 @@ std::string cell_of(const std::string& text, const MappedColumn& column, bool de
     throw text::InputError(place, text, format::kRoleRule);
   if (is_word(column.name) || text.empty()) return text;
   const auto number = number_cell(text, decimal_comma);
-  if (!number) throw text::InputError(place, text, "not a number, for " + column.name);
+  if (!number)
+    throw text::InputError(place, text,
+                           "not a number, for " + column.name +
+                               (!decimal_comma && number_cell(text, true)
+                                    ? "; if the table has a decimal comma, give --decimal comma"
+                                    : ""));
   return *number;
 }
 

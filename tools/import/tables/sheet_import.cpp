@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "tools/format/columns.h"
 #include "tools/import/tables/computed_rows.h"
 #include "tools/import/tables/wide_sheet.h"
 #include "tools/sheet/several_tables.h"
@@ -37,6 +40,36 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   return wishes;
 }
 
+/// A run or a set-up that only its first row names applies to the rows below it, up to the next name.
+void fill_labels(SheetReading& reading) {
+  sheet::Sheet& sheet = reading.sheet;
+  for (std::size_t k = 0; k < reading.columns.size(); ++k) {
+    const SheetColumn& column = reading.columns[k];
+    const bool label = column.name == format::columns::kRun || column.name == format::columns::kSetup;
+    const std::size_t first = reading.table.first_data;
+    if (column.use != SheetColumn::Use::kColumn || !label || first >= sheet.rows.size() ||
+        sheet.rows[first][k].empty())
+      continue;
+    std::size_t filled = 0;
+    std::string name;
+    for (std::size_t row = first; row < sheet.rows.size(); ++row) {
+      std::vector<std::string>& cells = sheet.rows[row];
+      const bool blank =
+          std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.empty(); });
+      if (blank) continue;
+      if (!cells[k].empty()) {
+        name = cells[k];
+        continue;
+      }
+      cells[k] = name;
+      ++filled;
+    }
+    if (filled > 0)
+      sheet.notes.push_back(fmt::format("{} empty cells below \"{}\" have the name above them", filled,
+                                        reading.table.headings[k].text));
+  }
+}
+
 }  // namespace
 
 SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
@@ -57,6 +90,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
     result.wishes.assignments.push_back({heading, column, {}});
   }
   result.columns = columns_of_sheet(result.sheet, result.table, result.wishes);
+  fill_labels(result);
   return result;
 }
 
