@@ -246,9 +246,11 @@ std::optional<model::FitRecord::Noise> kept_noise(const NoiseModel& noise, const
   }
   constexpr double kAsStated = 1.1;  // times u
   if (noise.shared() <= 0 && (!of_u || noise.own <= kAsStated)) return std::nullopt;
-  return model::FitRecord::Noise{
-      noise.own,     noise.pose, noise.run, noise.drift, noise.time_constant, noise_layout(rows, fitted).step,
-      noise.in_time, of_u};
+  return model::FitRecord::Noise{noise.own,           noise.pose,
+                                 noise.run,           noise.drift,
+                                 noise.time_constant, noise_layout(rows, fitted).step,
+                                 noise.in_time,       of_u,
+                                 noise.still};
 }
 
 /// Returns the measured ranges of axes and inputs.

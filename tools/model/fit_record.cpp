@@ -7,6 +7,7 @@
 #include <cstring>
 #include <pugixml.hpp>
 
+#include "tools/format/readings.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/machine.h"
 #include "tools/text/numbers.h"
@@ -87,6 +88,14 @@ std::string noise_xml(const FitRecord::Noise& noise) {
                                     {"time", noise.time_constant},
                                     {"step", noise.step}})
     text += std::string(" ") + name + "=\"" + text::number_text(value) + "\"";
+  if (noise.still != 0) {
+    text += " still=\"";
+    for (std::size_t kind = 0, named = 0; kind < format::kReadingKindCount; ++kind)
+      if ((noise.still >> kind & 1U) != 0)
+        text +=
+            (named++ > 0 ? " " : "") + std::string(format::name_of(static_cast<format::ReadingKind>(kind)));
+    text += "\"";
+  }
   return text + " clock=\"" + (noise.in_time ? "s" : "row") + "\" unit=\"" + (noise.of_u ? "u" : "mm") +
          "\"/>\n";
 }

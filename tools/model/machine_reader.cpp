@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tools/format/columns.h"
+#include "tools/format/readings.h"
 #include "tools/format/units.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
@@ -125,6 +126,15 @@ class Reader {
     if (clock != "s" && clock != "row") fail_attribute(node, "clock", clock, "expected s or row");
     if (unit != "u" && unit != "mm") fail_attribute(node, "unit", unit, "expected u or mm");
     noise.in_time = clock == "s", noise.of_u = unit == "u";
+    for (const std::string& name : text::words_in(attribute(node, "still").value_or(""), " ")) {
+      std::size_t kind = 0;
+      while (kind < format::kReadingKindCount &&
+             name != format::name_of(static_cast<format::ReadingKind>(kind)))
+        ++kind;
+      if (kind == format::kReadingKindCount)
+        fail_attribute(node, "still", name, "no kind of reading has this name");
+      noise.still |= 1U << kind;
+    }
     if (!(noise.own > 0))
       fail_attribute(node, "own", "own", "the independent noise of a reading must be above 0");
     if (noise.drift > 0 && !(noise.time_constant > 0))

@@ -277,6 +277,7 @@ ordered_json noise_json(const fit::NoiseModel& noise, const fit::NoiseUnit& unit
           {"pose_" + name, noise.pose * size},
           {"run_" + name, noise.run * size},
           {"drift_" + name, noise.drift * size},
+          {"drift_in", fit::drifting_kinds(noise)},
           {"drift_time", noise.drift > 0 ? ordered_json(noise.time_constant) : ordered_json(nullptr)},
           {"drift_time_unit", noise.in_time ? "s" : "rows"},
           {"support", noise.support},

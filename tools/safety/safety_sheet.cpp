@@ -207,7 +207,8 @@ class Judge {
       const double outside = std::max(0.0, measured.min - low) + std::max(0.0, high - measured.max);
       return outside / std::max(measured.max - measured.min, 1e-3 * (high - low));
     };
-    const auto region = [](const char* kind, const model::FitRecord::Range& measured, double low, double high) {
+    const auto region = [](const char* kind, const model::FitRecord::Range& measured, double low,
+                           double high) {
       return fmt::format("{} {}, measured from {:g} to {:g}, range {:g} to {:g}", kind, measured.name,
                          measured.min, measured.max, low, high);
     };
@@ -336,12 +337,12 @@ std::string SafetySheet::refusal() const {
                        finding.limit);
   };
   const SafetyFinding& worst = *failed.front();
-  std::string text = "not safe to run: " + figures(worst);
+  std::string text = fmt::format("not safe to run: {}", figures(worst));
   if (!worst.culprit.empty()) text += ": " + worst.culprit;
   text += fmt::format(" ({})", worst.reason);
   std::string accept;
   for (const SafetyFinding* finding : failed) {
-    if (finding != &worst) text += "; also not met: " + figures(*finding);
+    if (finding != &worst) text += fmt::format("; also not met: {}", figures(*finding));
     accept += fmt::format(" --accept {}", rule_name(finding->rule));
   }
   return text + fmt::format(";{} overrides", accept);

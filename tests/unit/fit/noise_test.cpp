@@ -93,6 +93,43 @@ TEST(NoiseModel, WhiteningInvertsTheCovariance) {
   }
 }
 
+/// 120 rows of x, y and z, one each 10 s.
+Measurement survey_of_points() {
+  std::string csv = "t[s],X[mm],x[mm],y[mm],z[mm],u[mm]\n";
+  for (int row = 0; row < 120; ++row)
+    csv += std::to_string(10 * row) + "," + std::to_string(37 * row % 100) + ",0,0,0,0.001\n";
+  return parse_measurement(csv, "points.csv", machine());
+}
+
+constexpr std::uint32_t kX = 1U << 0, kY = 1U << 1, kZ = 1U << 2;  // of ReadingKind
+
+TEST(NoiseModel, OneKindMayDriftAlone) {
+  std::mt19937_64 random(kSeed);
+  const Measurement m = survey_of_points();
+  const NoiseLayout layout = noise_layout(m, all_of(m));
+  const auto n = static_cast<Eigen::Index>(m.observations.size());
+  NoiseModel truth = model_of(1, 0, 0, 4, 3000);
+  truth.still = kX | kY;
+  const Eigen::MatrixXd covariance = covariance_times(layout, truth, Eigen::MatrixXd::Identity(n, n));
+  Eigen::MatrixXd whitened = covariance;
+  whiten(layout, truth, whitened);
+  Eigen::MatrixXd unit = whitened.transpose();
+  whiten(layout, truth, unit);
+  EXPECT_LT((unit - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-10);
+  const Eigen::MatrixXd none(n, 0);
+  for (const std::uint32_t still : {kX | kY, kX | kZ, kY, 0U}) {
+    truth.still = still;
+    const NoiseModel found = estimate_noise(layout, draw(layout, truth, n, random), none, false, {});
+    EXPECT_EQ(found.still, still);
+    EXPECT_NEAR(found.own, 1, 0.2);
+    EXPECT_GT(found.drift, 1.5);
+  }
+  truth.still = kX | kY;
+  EXPECT_NE(in_words(truth, {}).find("that lasts 3e+03 s in z"), std::string::npos) << in_words(truth, {});
+  truth.still = 0;
+  EXPECT_TRUE(drifting_kinds(truth).empty());
+}
+
 // An instrument drifts on between two runs. Runs whose times begin at zero anew, or with clocks of their own,
 // are not in one time.
 TEST(NoiseLayout, DriftContinuesWhereTheTimesOfTheRunsContinue) {

@@ -10,14 +10,19 @@
 
 #include "tools/fit/noise/whitener.h"
 #include "tools/format/readings.h"
+#include "tools/text/words.h"
 
 namespace vernier::fit {
 namespace {
 
 NoiseRatios ratios_of(const NoiseModel& model) {
   const double own = model.own * model.own;
-  return {model.pose * model.pose / own, model.run * model.run / own, model.drift * model.drift / own,
-          std::max(model.time_constant, 1e-300), model.in_time};
+  return {model.pose * model.pose / own,
+          model.run * model.run / own,
+          model.drift * model.drift / own,
+          std::max(model.time_constant, 1e-300),
+          model.in_time,
+          model.still};
 }
 
 }  // namespace
@@ -30,6 +35,15 @@ double NoiseModel::price(double of_place) const {
   for (const NoiseStep& step : steps)
     parameters += step.of_set_up() || !places.insert(step.row).second ? 1 : 1 + of_place;
   return parameters;
+}
+
+std::vector<std::string> drifting_kinds(const NoiseModel& model) {
+  std::vector<std::string> names;
+  for (int kind = 0;
+       model.drift > 0 && model.still != 0 && kind < static_cast<int>(format::kReadingKindCount); ++kind)
+    if (!is_still(model.still, kind))
+      names.emplace_back(format::name_of(static_cast<format::ReadingKind>(kind)));
+  return names;
 }
 
 double NoiseModel::total() const { return std::hypot(own, shared()); }
@@ -97,7 +111,7 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
     share(model.run * model.run, new_setup);
     share(model.pose * model.pose,
           [&](std::size_t i) { return new_setup(i) || series.pose[i] != series.pose[i - 1]; });
-    if (model.drift <= 0) continue;
+    if (model.drift <= 0 || is_still(model.still, series.kind)) continue;
     // exp(-|t - t'| / tau): earlier readings, then later ones, each by one recursion.
     const auto rho = [&](std::size_t i) {
       return new_clock(i) ? 0 : std::exp(-passed(series, i, model.in_time) / model.time_constant);
@@ -129,6 +143,8 @@ std::string in_words(const NoiseModel& model, const NoiseUnit& unit) {
   if (model.drift > 0)
     text += fmt::format(", a drift of {:.3g} {} that lasts {:.3g} {}", model.drift * size, name,
                         model.time_constant, model.in_time ? "s" : "rows");
+  if (const std::vector<std::string> kinds = drifting_kinds(model); !kinds.empty())
+    text += " in " + text::joined(kinds, ", ");
   double set_ups = 0, count = 0;
   for (const NoiseStep& step : model.steps) {
     if (!step.of_set_up()) continue;

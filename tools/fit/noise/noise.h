@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct NoiseStep {
 struct NoiseModel {
   double own = 1, pose = 0, run = 0, drift = 0;
   double time_constant = 0;   // of the drift, s or rows
+  std::uint32_t still = 0;    // kinds of reading that do not drift: bit n is kind n
   bool in_time = false;       // else it counts rows, even if time is recorded
   double support = 0;         // decrease of -2 log likelihood (restricted) relative to independent readings
   double log_likelihood = 0;  // restricted
@@ -77,6 +79,9 @@ struct NoiseUnit {
   double of_all() const { return of(angles_only); }
 };
 constexpr const char* unit_name(bool rotation) { return rotation ? "arcsec" : "um"; }
+
+/// Names of the kinds of reading that drift; empty if all kinds or none drift.
+std::vector<std::string> drifting_kinds(const NoiseModel& model);
 
 /// Describes a noise model in one sentence for people.
 std::string in_words(const NoiseModel& model, const NoiseUnit& unit);

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "tools/fit/noise/noise_thresholds.h"
@@ -42,6 +43,9 @@ NoiseLayout noise_layout(const model::Measurement& measurement, const std::vecto
 /// gap between small and large distances of neighbours gives the tolerance. Exactly equal positions always
 /// have the same number.
 std::vector<int> places_of_rows(const model::Measurement& measurement, const LayoutThresholds& limits = {});
+
+/// True if a set of kinds (bit n is kind n) has this kind.
+constexpr bool is_still(std::uint32_t kinds, int kind) { return (kinds >> kind & 1U) != 0; }
 
 /// Returns the interval between a reading of a series and the previous reading: s, or rows.
 double passed(const NoiseSeries& series, std::size_t i, bool in_time);

@@ -16,19 +16,20 @@ void begin(Eigen::MatrixXd& state, Eigen::Matrix3d& p, Eigen::Index which, doubl
 double whiten(const NoiseSeries& series, const NoiseRatios& ratios, Eigen::MatrixXd& readings) {
   Eigen::MatrixXd state = Eigen::MatrixXd::Zero(readings.rows(), 3);
   Eigen::Matrix3d p = Eigen::Matrix3d::Zero();
+  const double drift = is_still(ratios.still, series.kind) ? 0 : ratios.drift;
   double log_det = 0;
   Eigen::VectorXd innovation(readings.rows());
   for (std::size_t i = 0; i < series.reading.size(); ++i) {
     const bool new_setup = i == 0 || series.setup[i] != series.setup[i - 1];
     if (new_setup) begin(state, p, 1, ratios.run);
     if (i == 0 || series.clock[i] != series.clock[i - 1]) {
-      begin(state, p, 0, ratios.drift);
-    } else if (ratios.drift > 0) {
+      begin(state, p, 0, drift);
+    } else if (drift > 0) {
       const double rho = std::exp(-passed(series, i, ratios.in_time) / ratios.time_constant);
       state.col(0) *= rho;
       p.row(0) *= rho;
       p.col(0) *= rho;
-      p(0, 0) += (1 - rho * rho) * ratios.drift;
+      p(0, 0) += (1 - rho * rho) * drift;
     }
     if (new_setup || series.pose[i] != series.pose[i - 1]) begin(state, p, 2, ratios.pose);
     const double variance = 1 + p.sum();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 
 #include "tools/fit/noise/noise_layout.h"
 
@@ -9,7 +10,8 @@ namespace vernier::fit {
 /// Components of a noise model, relative to the independent noise: ratios of variances.
 struct NoiseRatios {
   double pose = 0, run = 0, drift = 0, time_constant = 1;
-  bool in_time = false;  // else the time constant is a number of rows
+  bool in_time = false;     // else the time constant is a number of rows
+  std::uint32_t still = 0;  // kinds of reading that do not drift: bit n is kind n
 };
 
 /// Transforms readings to independent readings. The variance of the transformed readings is 1. whiten() uses
