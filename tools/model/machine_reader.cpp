@@ -195,9 +195,13 @@ class Reader {
         record->alternatives.push_back(read_alternative(node));
       } else if (is(node, "plane")) {
         no_children(node);
-        record->planes.push_back({attribute(node, "name").value_or(""),
-                                  {number(node, "x", 0), number(node, "y", 0), number(node, "z", 0)},
-                                  {number(node, "nx", 0), number(node, "ny", 0), number(node, "nz", 1)}});
+        FitRecord::Plane plane;
+        plane.name = attribute(node, "name").value_or("");
+        for (std::size_t i = 0; i < plane.normal.size(); ++i) {
+          plane.place_mm[i] = number(node, format::columns::kPoint[i], 0);
+          plane.normal[i] = number(node, format::columns::kNormal[i], plane.normal[i]);
+        }
+        record->planes.push_back(plane);
       } else if (is(node, "noise")) {
         no_children(node);
         record->noise = read_noise(node);
