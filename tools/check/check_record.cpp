@@ -92,7 +92,7 @@ class Collector {
     layout_ = fit::noise_layout(m_, all);
     noise_.own = unit * kept->own, noise_.pose = unit * kept->pose, noise_.run = unit * kept->run;
     noise_.drift = unit * kept->drift;
-    noise_.still = kept->still;
+    noise_.drifts = kept->drifts;
     noise_.in_time = layout_.in_time;
     // If only one of both has a clock, its steps are used for the rows of the other.
     noise_.time_constant = kept->time_constant;

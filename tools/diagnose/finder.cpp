@@ -21,7 +21,7 @@ namespace {
 bool is_alike(const fit::NoiseModel& a, const fit::NoiseModel& b, double share) {
   const double same = share * std::max(a.total(), b.total());
   return std::abs(a.own - b.own) < same && std::abs(a.pose - b.pose) < same &&
-         std::abs(a.run - b.run) < same && std::abs(a.drift - b.drift) < same && a.still == b.still &&
+         std::abs(a.run - b.run) < same && std::abs(a.drift - b.drift) < same && a.drifts == b.drifts &&
          a.steps == b.steps;
 }
 

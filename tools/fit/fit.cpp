@@ -250,7 +250,7 @@ std::optional<model::FitRecord::Noise> kept_noise(const NoiseModel& noise, const
                                  noise.run,           noise.drift,
                                  noise.time_constant, noise_layout(rows, fitted).step,
                                  noise.in_time,       of_u,
-                                 noise.still};
+                                 noise.drifts};
 }
 
 /// Returns the measured ranges of axes and inputs.

@@ -27,6 +27,13 @@ std::optional<ReadingKind> kind_named(std::string_view name) {
   return std::nullopt;
 }
 
+std::vector<std::string> names_of_kinds(std::uint32_t kinds) {
+  std::vector<std::string> names;
+  for (std::size_t kind = 0; kind < kReadingKindCount; ++kind)
+    if ((kinds >> kind & 1U) != 0) names.emplace_back(kReadingKinds[kind].name);
+  return names;
+}
+
 const char* report_unit_of(std::string_view name) {
   return report_unit_of(kind_named(name).value_or(ReadingKind::kX));
 }

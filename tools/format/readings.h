@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vernier::format {
 
@@ -166,6 +167,8 @@ constexpr bool is_of_thing(ReadingKind kind) {
 
 /// Returns the kind of this name; nullopt: no kind has the name.
 std::optional<ReadingKind> kind_named(std::string_view name);
+/// Returns the names of a set of kinds: bit n is kind n.
+std::vector<std::string> names_of_kinds(std::uint32_t kinds);
 /// Returns the unit in results of the kind of this name; "um" if no kind has the name.
 const char* report_unit_of(std::string_view name);
 

@@ -88,14 +88,8 @@ std::string noise_xml(const FitRecord::Noise& noise) {
                                     {"time", noise.time_constant},
                                     {"step", noise.step}})
     text += std::string(" ") + name + "=\"" + text::number_text(value) + "\"";
-  if (noise.still != 0) {
-    text += " still=\"";
-    for (std::size_t kind = 0, named = 0; kind < format::kReadingKindCount; ++kind)
-      if ((noise.still >> kind & 1U) != 0)
-        text +=
-            (named++ > 0 ? " " : "") + std::string(format::name_of(static_cast<format::ReadingKind>(kind)));
-    text += "\"";
-  }
+  if (noise.drifts != 0)
+    text += " drifts=\"" + text::joined(format::names_of_kinds(noise.drifts), " ") + "\"";
   return text + " clock=\"" + (noise.in_time ? "s" : "row") + "\" unit=\"" + (noise.of_u ? "u" : "mm") +
          "\"/>\n";
 }

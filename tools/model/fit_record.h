@@ -67,7 +67,7 @@ struct FitRecord {
     double own = 1, pose = 0, run = 0, drift = 0;
     double time_constant = 0, step = 0;  // of the drift, and median of the intervals between rows: s or rows
     bool in_time = false, of_u = true;
-    std::uint32_t still = 0;  // kinds of reading that do not drift: bit n is kind n of ObservationKind
+    std::uint32_t drifts = 0;  // kinds of reading that drift: bit n is kind n of ObservationKind; 0: all
   };
   std::optional<Noise> noise;
   std::vector<std::string> parameters;  // names as in the JSON of `fit`

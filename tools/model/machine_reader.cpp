@@ -126,14 +126,10 @@ class Reader {
     if (clock != "s" && clock != "row") fail_attribute(node, "clock", clock, "expected s or row");
     if (unit != "u" && unit != "mm") fail_attribute(node, "unit", unit, "expected u or mm");
     noise.in_time = clock == "s", noise.of_u = unit == "u";
-    for (const std::string& name : text::words_in(attribute(node, "still").value_or(""), " ")) {
-      std::size_t kind = 0;
-      while (kind < format::kReadingKindCount &&
-             name != format::name_of(static_cast<format::ReadingKind>(kind)))
-        ++kind;
-      if (kind == format::kReadingKindCount)
-        fail_attribute(node, "still", name, "no kind of reading has this name");
-      noise.still |= 1U << kind;
+    for (const std::string& name : text::words_in(attribute(node, "drifts").value_or(""), " ")) {
+      const auto kind = format::kind_named(name);
+      if (!kind) fail_attribute(node, "drifts", name, "no kind of reading has this name");
+      noise.drifts |= 1U << static_cast<unsigned>(*kind);
     }
     if (!(noise.own > 0))
       fail_attribute(node, "own", "own", "the independent noise of a reading must be above 0");

@@ -22,7 +22,7 @@ NoiseRatios ratios_of(const NoiseModel& model) {
           model.drift * model.drift / own,
           std::max(model.time_constant, 1e-300),
           model.in_time,
-          model.still};
+          model.drifts};
 }
 
 }  // namespace
@@ -38,12 +38,7 @@ double NoiseModel::price(double of_place) const {
 }
 
 std::vector<std::string> drifting_kinds(const NoiseModel& model) {
-  std::vector<std::string> names;
-  for (int kind = 0;
-       model.drift > 0 && model.still != 0 && kind < static_cast<int>(format::kReadingKindCount); ++kind)
-    if (!is_still(model.still, kind))
-      names.emplace_back(format::name_of(static_cast<format::ReadingKind>(kind)));
-  return names;
+  return model.drift > 0 ? format::names_of_kinds(model.drifts) : std::vector<std::string>();
 }
 
 double NoiseModel::total() const { return std::hypot(own, shared()); }
@@ -111,7 +106,7 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
     share(model.run * model.run, new_setup);
     share(model.pose * model.pose,
           [&](std::size_t i) { return new_setup(i) || series.pose[i] != series.pose[i - 1]; });
-    if (model.drift <= 0 || is_still(model.still, series.kind)) continue;
+    if (model.drift <= 0 || !is_drifting(model.drifts, series.kind)) continue;
     // exp(-|t - t'| / tau): earlier readings, then later ones, each by one recursion.
     const auto rho = [&](std::size_t i) {
       return new_clock(i) ? 0 : std::exp(-passed(series, i, model.in_time) / model.time_constant);

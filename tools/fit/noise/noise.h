@@ -31,7 +31,7 @@ struct NoiseStep {
 struct NoiseModel {
   double own = 1, pose = 0, run = 0, drift = 0;
   double time_constant = 0;   // of the drift, s or rows
-  std::uint32_t still = 0;    // kinds of reading that do not drift: bit n is kind n
+  std::uint32_t drifts = 0;   // kinds of reading that drift: bit n is kind n; 0: all
   bool in_time = false;       // else it counts rows, even if time is recorded
   double support = 0;         // decrease of -2 log likelihood (restricted) relative to independent readings
   double log_likelihood = 0;  // restricted

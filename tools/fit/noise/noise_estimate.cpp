@@ -60,7 +60,7 @@ class Likelihood {
 /// The active components, and the logarithms of their ratios and of the time constant.
 struct NoiseParts {
   bool pose = false, run = false, drift = false, in_time = false;
-  std::uint32_t still = 0;  // kinds that do not drift
+  std::uint32_t drifts = 0;  // kinds that drift; 0: all
   std::array<double, 4> log = {0, 0, 0, 0};
 
   NoiseRatios ratios() const {
@@ -69,19 +69,19 @@ struct NoiseParts {
             drift ? std::exp(log[2]) : 0,
             std::exp(log[3]),
             in_time,
-            still};
+            drifts};
   }
 };
 
-/// The sets of kinds that may stay still beside a drift: none; all but one; one of three or more.
-std::vector<std::uint32_t> still_kinds(const NoiseLayout& layout) {
+/// The sets of kinds that may drift: all (0), one alone, all but one.
+std::vector<std::uint32_t> sets_that_drift(const NoiseLayout& layout) {
   std::vector<std::uint32_t> sets = {0};
   if (layout.series.size() < 2) return sets;
   std::uint32_t all = 0;
   for (const NoiseSeries& series : layout.series) all |= 1U << series.kind;
-  for (const NoiseSeries& series : layout.series) sets.push_back(all & ~(1U << series.kind));
+  for (const NoiseSeries& series : layout.series) sets.push_back(1U << series.kind);
   for (const NoiseSeries& series : layout.series)
-    if (layout.series.size() > 2) sets.push_back(1U << series.kind);
+    if (layout.series.size() > 2) sets.push_back(all & ~(1U << series.kind));
   return sets;
 }
 
@@ -235,17 +235,17 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
     }
     if (!parts.drift) {
       constexpr double kTimeSteps = 1.2;  // of the logarithm of a time constant: a factor of 3.3
-      for (const std::uint32_t still : still_kinds(layout)) {
+      for (const std::uint32_t drifts : sets_that_drift(layout)) {
         starts.clear();
         for (double time = least_log_time + kTimeSteps; time <= most_log_time; time += kTimeSteps)
           for (const double log : kLogRatios) {
             starts.push_back(parts);
             starts.back().drift = true;
-            starts.back().still = still;
+            starts.back().drifts = drifts;
             starts.back().log[2] = log;
             starts.back().log[3] = time;
           }
-        const double choice = still == 0 ? 0 : 2 * std::log(static_cast<double>(layout.series.size()));
+        const double choice = drifts == 0 ? 0 : 2 * std::log(static_cast<double>(layout.series.size()));
         if (!starts.empty()) offer(best_start(starts), limits.drift_component + choice);
       }
     }
@@ -272,7 +272,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
   model.run = model.own * std::sqrt(ratios.run);
   model.drift = model.own * std::sqrt(ratios.drift);
   model.time_constant = parts.drift ? ratios.time_constant : 0;
-  model.still = parts.drift ? parts.still : 0;
+  model.drifts = parts.drift ? parts.drifts : 0;
   model.support = white - best;
   model.log_likelihood = -best / 2;
   return model;

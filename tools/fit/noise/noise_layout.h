@@ -44,8 +44,8 @@ NoiseLayout noise_layout(const model::Measurement& measurement, const std::vecto
 /// have the same number.
 std::vector<int> places_of_rows(const model::Measurement& measurement, const LayoutThresholds& limits = {});
 
-/// True if a set of kinds (bit n is kind n) has this kind.
-constexpr bool is_still(std::uint32_t kinds, int kind) { return (kinds >> kind & 1U) != 0; }
+/// True if readings of this kind drift. kinds: those that drift (bit n is kind n); 0: all.
+constexpr bool is_drifting(std::uint32_t kinds, int kind) { return kinds == 0 || (kinds >> kind & 1U) != 0; }
 
 /// Returns the interval between a reading of a series and the previous reading: s, or rows.
 double passed(const NoiseSeries& series, std::size_t i, bool in_time);

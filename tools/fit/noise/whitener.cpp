@@ -16,7 +16,7 @@ void begin(Eigen::MatrixXd& state, Eigen::Matrix3d& p, Eigen::Index which, doubl
 double whiten(const NoiseSeries& series, const NoiseRatios& ratios, Eigen::MatrixXd& readings) {
   Eigen::MatrixXd state = Eigen::MatrixXd::Zero(readings.rows(), 3);
   Eigen::Matrix3d p = Eigen::Matrix3d::Zero();
-  const double drift = is_still(ratios.still, series.kind) ? 0 : ratios.drift;
+  const double drift = is_drifting(ratios.drifts, series.kind) ? ratios.drift : 0;
   double log_det = 0;
   Eigen::VectorXd innovation(readings.rows());
   for (std::size_t i = 0; i < series.reading.size(); ++i) {

@@ -10,8 +10,8 @@ namespace vernier::fit {
 /// Components of a noise model, relative to the independent noise: ratios of variances.
 struct NoiseRatios {
   double pose = 0, run = 0, drift = 0, time_constant = 1;
-  bool in_time = false;     // else the time constant is a number of rows
-  std::uint32_t still = 0;  // kinds of reading that do not drift: bit n is kind n
+  bool in_time = false;      // else the time constant is a number of rows
+  std::uint32_t drifts = 0;  // kinds of reading that drift: bit n is kind n; 0: all
 };
 
 /// Transforms readings to independent readings. The variance of the transformed readings is 1. whiten() uses
