@@ -210,10 +210,11 @@ std::string import_hint(const std::string& message, const std::vector<std::strin
   // A command that reads it needs no hint; tables of touches are read in any form.
   static const std::set<std::string> kAnyForm = {"import", "probe-cal", "fit-feature"};
   if (!arguments.empty() && kAnyForm.contains(arguments.front())) return "";
+  if (message.find("machine file (XML) is expected") != std::string::npos) return "";
   for (const std::string& path : arguments) {
     if (path.empty() || !(message.starts_with(path + ":"))) continue;
     const std::string bytes = head_of(path, kMostRead);
-    if (bytes.empty() || is_xml(sheet::utf8_of(bytes, sheet::encoding_of(bytes)))) continue;
+    if (bytes.empty() || is_xml(sheet::utf8_text(bytes))) continue;
     const std::string command = lint::import_command_for(bytes, path);
     if (!command.empty()) return path + " is not a measurement file; this command reads it: " + command;
   }

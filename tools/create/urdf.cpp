@@ -111,6 +111,10 @@ class Reader {
     one.mimic = static_cast<bool>(node.child("mimic"));
     const pugi::xml_node origin = node.child("origin");
     const Vector3d turn = triple(origin, "rpy", Vector3d::Zero());
+    constexpr double kFullTurn = 6.3;  // rad
+    if (turn.cwiseAbs().maxCoeff() > kFullTurn)
+      fail(origin, origin.attribute("rpy").as_string(),
+           "more than a full turn: the angles of a URDF are in rad, and these are probably in deg");
     one.origin.linear() =
         (Eigen::AngleAxisd(turn[2], Vector3d::UnitZ()) * Eigen::AngleAxisd(turn[1], Vector3d::UnitY()) *
          Eigen::AngleAxisd(turn[0], Vector3d::UnitX()))
@@ -324,6 +328,13 @@ void require_arm(const std::vector<Joint>& way, const std::string& file) {
           fmt::format("this joint is {:g} m from the joint before it: the lengths of a URDF "
                       "are in m, and these are probably in mm",
                       one.origin.translation().norm() / kMmPerM));
+    if (one.slides() &&
+        std::max(std::abs(one.lower.value_or(0)), std::abs(one.upper.value_or(0))) * kMmPerM > kLongest_mm)
+      throw text::InputError(
+          {file, one.line}, one.name,
+          fmt::format("the limits are {:g} and {:g} m: the lengths of a URDF are in m, and "
+                      "these are probably in mm",
+                      one.lower.value_or(0), one.upper.value_or(0)));
     if (!one.slides() && (one.lower.value_or(0) < -kMostTurn_rad || one.upper.value_or(0) > kMostTurn_rad))
       throw text::InputError(
           {file, one.line}, one.name,

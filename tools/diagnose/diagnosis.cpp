@@ -410,7 +410,6 @@ void withdraw_if_the_fit_contradicts(Diagnosis& answer) {
 
 Diagnosis diagnose(const std::string& text, const model::Machine& given,
                    const model::Measurement& measurement, const DiagnoseOptions& options) {
-  model::refuse_things(measurement, "vernier diagnose");
   model::require_time_order(measurement);
   const std::optional<WithoutCopies> distinct = without_copies(measurement);
   Diagnosis answer =

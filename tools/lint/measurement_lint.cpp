@@ -406,7 +406,23 @@ std::vector<LintFinding> lint_measurement(const std::string& bytes, const std::s
   return Look(bytes, file, machine).all();
 }
 
+namespace {
+
+/// True for a file of a printer: its configuration, its height map, or its log with touches.
+bool is_of_printer(const std::string& text) {
+  if (text.starts_with("RepRapFirmware height map")) return true;
+  return text.find("[bed_mesh ") != std::string::npos || text.find("probe at ") != std::string::npos ||
+         text.find("probe: at ") != std::string::npos ||
+         (text.find("Bed X:") != std::string::npos && text.find("Z:") != std::string::npos);
+}
+
+}  // namespace
+
 std::string import_command_for(const std::string& bytes, const std::string& file) {
+  if (file.ends_with(".comp"))
+    return "vernier import-tables linuxcnc " + quoted_for_shell(file) +
+           " --machine MACHINE.xml --axis X -o NEW.xml";
+  if (!sheet::is_workbook(bytes) && is_of_printer(sheet::utf8_text(bytes))) return command(file, "printer");
   if (const auto* const kind = importer::import_kind_of(file)) return command(file, kind->name);
   if (sheet::is_workbook(bytes)) return command(file);
   const sheet::Encoding encoding = sheet::encoding_of(bytes);

@@ -327,7 +327,7 @@ class Meaning {
     if (near(1 / 25.4)) meaning = "the readings are in inch?";
     if (meaning.empty() && ratio < 0.02)
       meaning = "deviations instead of positions? vernier import table " + quoted_for_shell(file_) +
-                " --deviation \"X[mm]=x\" … adds them to the positions";
+                " --deviation \"X=x\" … adds them to the positions";
     if (!meaning.empty())
       findings_.warn(
           table_.header_line, columns::kPoint.front(),

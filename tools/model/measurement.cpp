@@ -805,16 +805,6 @@ bool Measurement::has_recorded(std::string_view name) const {
   return std::find(recorded.begin(), recorded.end(), name) != recorded.end();
 }
 
-void refuse_things(const Measurement& m, const std::string& command) {
-  for (std::size_t row = 0; row < m.rows(); ++row) {
-    if (m.thing_of(row) == kNoThing) continue;
-    const Thing& thing = m.things[m.thing[row]];
-    throw text::InputError(
-        {m.files[m.file[row]], m.line[row]}, thing.label,
-        command + " does not read the columns same and on; leave out these files, or use vernier fit");
-  }
-}
-
 void require_time_order(const Measurement& m) {
   const std::vector<std::string>& clocks = m.states.names(m.states.clock);
   std::vector<std::size_t> last(clocks.size(), m.rows());

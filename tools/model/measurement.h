@@ -135,10 +135,6 @@ Measurement read_measurement(const std::vector<std::string>& paths, const Machin
 /// time order, time-dependent terms and lags have no meaning.
 void require_time_order(const Measurement& measurement);
 
-/// Throws InputError with file, line and label if a row has `same` or `on`. command: name of the command that
-/// cannot use such rows, for the message.
-void refuse_things(const Measurement& measurement, const std::string& command);
-
 /// Returns the rows `keep` of a measurement with their observations. `keep` may contain a row several times.
 /// A distance is included only if the rows of both its ends are included.
 Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& keep);

@@ -10,10 +10,28 @@
 #include "tools/text/error.h"
 
 namespace vernier::plan {
+namespace {
+
+/// What tells an effect of the instrument from an effect of the machine.
+std::vector<std::string> advice_on_instrument(const std::string& instrument) {
+  if (instrument == "set-up")
+    return {
+        "Measure several runs without touching the instrument, and state this in a column `setup` with one "
+        "label for these runs. A shift between runs of one set-up is an error of the machine."};
+  if (instrument == "drift")
+    return {
+        "Test the instrument: read a mark that does not move with it for one day, and record times and "
+        "temperatures. If these readings change as much, the instrument drifts. They do not belong into the "
+        "measurement files."};
+  return {};
+}
+
+}  // namespace
 
 std::vector<std::string> advice_for(const std::string& text, const model::Machine& machine,
                                     const model::Measurement& m, const diagnose::Diagnosis& d,
                                     const std::vector<effects::Effect>& effects) {
+  if (d.verdict == diagnose::Verdict::kInstrument) return advice_on_instrument(d.instrument);
   if (d.verdict != diagnose::Verdict::kAmbiguous || d.candidates.empty()) return {};
   const diagnose::CandidateFinding& first = d.candidates.front();
   const std::string& id = first.candidate.choice.effect->id;
@@ -34,14 +52,8 @@ std::vector<std::string> advice_for(const std::string& text, const model::Machin
     if (&other == &first || std::find(names.begin(), names.end(), id) == names.end()) continue;
     return advice(first.add, other.add);
   }
-  if (d.instrument == "set-up")
-    return {
-        "Measure several runs without touching the instrument, and state this in a column `setup` with one "
-        "label for these runs. A shift between runs of one set-up is an error of the machine."};
-  if (d.instrument == "drift")
-    return {
-        "Read a mark that does not move with the instrument for one day, and record times and temperatures. "
-        "If these readings change too, the instrument drifts."};
+  if (std::vector<std::string> on_instrument = advice_on_instrument(d.instrument); !on_instrument.empty())
+    return on_instrument;
   if (first.confounded_with.empty()) return {};
   return advice(first.add, first.confounded_with.front());
 }

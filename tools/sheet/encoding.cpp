@@ -135,4 +135,6 @@ std::string utf8_of(std::string_view bytes, Encoding encoding) {
   return {};
 }
 
+std::string utf8_text(std::string_view bytes) { return utf8_of(bytes, encoding_of(bytes)); }
+
 }  // namespace vernier::sheet

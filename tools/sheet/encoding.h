@@ -18,4 +18,7 @@ Encoding encoding_of(std::string_view bytes);
 /// The text as UTF-8 without a mark. Invalid bytes become U+FFFD.
 std::string utf8_of(std::string_view bytes, Encoding encoding);
 
+/// The text as UTF-8 without a mark, from the encoding that encoding_of detects.
+std::string utf8_text(std::string_view bytes);
+
 }  // namespace vernier::sheet

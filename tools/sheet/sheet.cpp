@@ -236,6 +236,7 @@ void guess_decimal(Sheet& sheet) {
   // sign.
   sheet.decimal_comma = comma > 0 || (point == 0 && either_comma > either_point);
   sheet.decimal_doubtful = point == 0 && comma == 0 && either_comma + either_point > 0;
+  sheet.decimal_known = point + comma > 0;
   // Where a comma parts the columns it is no decimal sign of an unquoted cell.
   if (sheet.separator == ',' && comma == 0) sheet.decimal_comma = false;
 }
@@ -255,6 +256,7 @@ void settle_decimal(Sheet& sheet, const std::vector<std::vector<char>>& is_numbe
   if (!decimal_comma) guess_decimal(texts);
   sheet.decimal_comma = decimal_comma.value_or(texts.decimal_comma);
   sheet.decimal_doubtful = !decimal_comma && texts.decimal_doubtful;
+  sheet.decimal_known = decimal_comma.has_value() || texts.decimal_known;
   if (sheet.decimal_comma)
     each_number(sheet, [](std::string& cell) { std::replace(cell.begin(), cell.end(), '.', ','); });
 }
@@ -270,6 +272,9 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
   sheet.workbook = true;
   sheet.sheet = read.name;
   sheet.sheets = std::move(read.all);
+  if (read.hidden_rows > 0)
+    sheet.notes.push_back(std::to_string(read.hidden_rows) +
+                          " hidden rows are read as well; delete the rows that do not belong to the table");
   std::vector<std::vector<char>> is_number;
   for (std::size_t i = 0; i < read.rows.size(); ++i) {
     if (read.line[i] <= format.skip) continue;
@@ -330,7 +335,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     read_from_workbook(sheet, bytes, format);
   } else {
     sheet.encoding = encoding_of(bytes);
-    const std::string text = text::without_invisible(utf8_of(bytes, sheet.encoding));
+    const std::string text = text::with_plain_blanks(text::without_invisible(utf8_of(bytes, sheet.encoding)));
     if (text.find('\0') != std::string::npos)
       throw text::InputError({file, 0}, "",
                              "the file has bytes of value 0: it is neither a text nor a workbook (.xlsx)");
@@ -339,10 +344,12 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     sheet.separator = format.separator != 0 ? format.separator : said != 0 ? said : separator_of_lines(lines);
     split(sheet, lines);
     drop_empty_columns(sheet);
-    if (format.decimal_comma)
+    if (format.decimal_comma) {
       sheet.decimal_comma = *format.decimal_comma;
-    else
+      sheet.decimal_known = true;
+    } else {
       guess_decimal(sheet);
+    }
   }
   if (sheet.rows.empty()) throw text::InputError({file, 0}, "", "no rows");
   return sheet;

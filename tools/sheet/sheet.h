@@ -28,6 +28,7 @@ struct Sheet {
   Encoding encoding = Encoding::kUtf8;
   char separator = ',';
   bool decimal_comma = false;
+  bool decimal_known = false;                  // some number shows the sign, or the user gave it
   bool decimal_doubtful = false;               // every sign found could be either ("1,234")
   std::vector<std::vector<std::string>> rows;  // cells without blanks around them; as many in each
   std::vector<std::size_t> line;               // 1-based, of each row

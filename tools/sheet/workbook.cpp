@@ -194,11 +194,13 @@ class Reader {
   }
 
   WorkbookSheet cells_of(const pugi::xml_node& entry) const {
-    WorkbookSheet sheet{entry.attribute("name").value(), {}, {}, {}, {}};
+    WorkbookSheet sheet;
+    sheet.name = entry.attribute("name").value();
     pugi::xml_document document;
     read_part(part_of(entry), document);
     std::size_t row_number = 0, filled = 0, empty = 0;
     for (const pugi::xml_node row : child(document.document_element(), "sheetData").children()) {
+      sheet.hidden_rows += row.attribute("hidden").as_bool() ? 1 : 0;
       row_number = row.attribute("r") ? row.attribute("r").as_uint() : row_number + 1;
       if (row_number > kMostRows)
         throw text::InputError({file_, 0}, sheet.name,
@@ -212,7 +214,8 @@ class Reader {
         if (column >= kMostColumns)
           throw text::InputError({file_, row_number}, "",
                                  "the sheet has a column beyond the last column of the format");
-        const std::string value = text::trimmed(text::without_invisible(value_of(cell, row_number)));
+        const std::string value =
+            text::trimmed(text::with_plain_blanks(text::without_invisible(value_of(cell, row_number))));
         if (value.empty()) {
           if (const pugi::xml_node computed = child(cell, "f"); computed && formula.empty())
             formula = "=" + std::string(computed.text().get());

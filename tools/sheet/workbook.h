@@ -16,6 +16,7 @@ struct WorkbookSheet {
   std::vector<std::size_t> line;               // row number in the sheet
   std::vector<std::vector<char>> is_number;    // of each cell: stored as a number, not as text
   std::vector<std::string> all;                // names of all sheets of the workbook
+  std::size_t hidden_rows = 0;                 // by a filter or by hand; they are among the rows
 };
 
 /// Reads the sheet with this name or number (from 1). Empty: the first visible sheet with two rows of two

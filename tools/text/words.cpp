@@ -32,9 +32,14 @@ CodePoint first_of(std::string_view text) {
 }
 
 // Characters without a width and without a meaning in a table: soft hyphen, zero width space, non-joiner and
-// joiner, word joiner, byte order mark.
+// joiner, marks of the writing direction, word joiner, byte order mark.
 bool is_invisible(std::uint32_t point) {
-  return point == 0xad || (point >= 0x200b && point <= 0x200d) || point == 0x2060 || point == 0xfeff;
+  return point == 0xad || (point >= 0x200b && point <= 0x200f) || point == 0x2060 || point == 0xfeff;
+}
+
+/// Blanks of typesetting: no-break, figure, thin and narrow no-break.
+bool is_typeset_blank(std::uint32_t point) {
+  return point == 0xa0 || point == 0x2007 || point == 0x2009 || point == 0x202f;
 }
 
 // Control characters C0 and C1, line and paragraph separators, marks of the writing direction, and characters
@@ -76,6 +81,23 @@ std::string without_invisible(std::string_view text) {
     text.remove_prefix(bytes);
   }
   return seen;
+}
+
+std::string with_plain_blanks(std::string_view text) {
+  std::string plain;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  while (!text.empty()) {
+    const CodePoint point = first_of(text);
+    const std::size_t bytes = std::max<std::size_t>(point.bytes, 1);
+    const bool in_number =
+        !plain.empty() && is_digit(plain.back()) && bytes < text.size() && is_digit(text[bytes]);
+    if (point.bytes > 0 && is_typeset_blank(point.value) && !in_number)
+      plain += ' ';
+    else
+      plain += text.substr(0, bytes);
+    text.remove_prefix(bytes);
+  }
+  return plain;
 }
 
 std::string printable(std::string_view text) { return with_question_marks(text, true); }

@@ -33,6 +33,10 @@ std::string printable(std::string_view text);
 /// order marks. Web pages and text programs leave them in copied tables.
 std::string without_invisible(std::string_view text);
 
+/// Returns the text with blanks in place of the blanks of typesetting (no-break, thin). Between two digits
+/// they stay: there they separate thousands.
+std::string with_plain_blanks(std::string_view text);
+
 /// Returns a word of a file as a message quotes it: printable, and shortened if it is longer than
 /// kMostQuotedBytes.
 std::string quotable(std::string_view word);

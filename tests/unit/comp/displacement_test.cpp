@@ -76,6 +76,17 @@ TEST(Displacement, RefusesSettingsItCannotKeepItsBoundsWith) {
     EXPECT_FALSE(filter.start(bad));
 }
 
+TEST(Displacement, CountsSamplesBeyondItsLimit) {
+  Displacement filter;
+  ASSERT_TRUE(filter.start({}));
+  filter.step(Displacement::kLimit);
+  filter.step(-Displacement::kLimit);
+  EXPECT_EQ(filter.held(), 0u);
+  filter.step(Displacement::kLimit + 1);
+  filter.step(-Displacement::kLimit - 1);
+  EXPECT_EQ(filter.held(), 2u);
+}
+
 TEST(Displacement, GainsStayBelowTheirBounds) {
   for (const double e : {0.125, 0.098, 0.03, 1e-3, 5e-5}) {
     double v1 = 0, p1 = 0, v2 = 0, p2 = 0, speed = 0, travel = 0, sum = 0, step = 0;
@@ -113,10 +124,13 @@ TEST(Displacement, RoundingStaysBelowItsBound) {
     }
     EXPECT_EQ(filter.held(), 0u);
     // Coefficients have 31 significant bits.
-    EXPECT_LT(worst, rounding_bound_nm(reference) + std::ldexp(largest, -28));
-    std::printf("seed %u, %lld mHz corner at %lld mHz: %.3f nm from double, proved %.3f\n", kSeed,
-                static_cast<long long>(scale.corner_mHz), static_cast<long long>(scale.rate_mHz), worst,
-                rounding_bound_nm(reference));
+    const double coefficients = std::ldexp(largest, -28);
+    EXPECT_LT(worst, rounding_bound_nm(reference) + coefficients);
+    std::printf(
+        "seed %u, %lld mHz corner at %lld mHz: %.3f nm from double; bound %.3f of rounding, %.3f of the "
+        "coefficients\n",
+        kSeed, static_cast<long long>(scale.corner_mHz), static_cast<long long>(scale.rate_mHz), worst,
+        rounding_bound_nm(reference), coefficients);
   }
 }
 

@@ -76,12 +76,29 @@ TEST(Latch, SaysWhatTheInstantsUncertaintyMeansAtTheSpeed) {
   EXPECT_NEAR(static_cast<double>(latched.owed.count), 1000 + 100 * 10.5, 1.5);
 }
 
+// Positions 0, 0, 0 and 1000 at even distances: in the middle one parabola is at 0, the other one at -125.
+TEST(Latch, SaysHowFarItsTwoParabolasAreApart) {
+  LatchRing ring;
+  for (int i = 0; i < 4; ++i) {
+    LatchSample sample{};
+    sample.at = InstantNs(i * 1'000'000);
+    sample.position[0] = AxisPosition(i == 3 ? 1000 : 0);
+    ring.add(sample);
+  }
+  ASSERT_EQ(ring.seek(InstantNs(1'500'000)), LatchFault::kNone);
+  LatchedPosition latched;
+  ASSERT_EQ(ring.position_of(0, false, InstantNs(0), latched), LatchFault::kNone);
+  EXPECT_EQ(latched.truncation.count, 125);
+  EXPECT_EQ(latched.uncertainty.count, 250);
+}
+
 TEST(Latch, SaysWhyItHasNoPosition) {
   LatchRing ring;
   EXPECT_EQ(ring.seek(InstantNs(0)), LatchFault::kNotYet);
   ring = sampled([](double t) { return 1e6 * t; }, 1, 100, 0, 1);
   EXPECT_EQ(ring.seek(InstantNs(1'000'000'000)), LatchFault::kTooOld);
   EXPECT_EQ(ring.seek(InstantNs(1'098'500'000)), LatchFault::kNotYet);
+  EXPECT_EQ(ring.seek(InstantNs(1'098'000'000)), LatchFault::kNotYet);  // the instant of the newest but one
   EXPECT_EQ(ring.seek(InstantNs(1'097'999'999)), LatchFault::kNone);
   LatchSample sample{};
   sample.at = InstantNs(1'120'000'000);

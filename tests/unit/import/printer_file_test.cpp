@@ -106,6 +106,48 @@ TEST(PrinterFile, TouchesThatThePrinterRepeatsAreLeftOut) {
             "X[mm],Y[mm],Z[mm],on\n0,2,3,bed\n1,2,5,bed\n");
 }
 
+TEST(PrinterFile, TouchesOfTheProbeArePositionsLessItsOffset) {
+  PrinterOptions options;
+  options.offset_mm = {-20, 5};
+  const std::string rows = "X[mm],Y[mm],Z[mm],on\n50,35,0.5,bed\n";
+  EXPECT_EQ(read("probe: at 30.0,40.0 bed will contact at z=0.5\n", options), rows);
+  EXPECT_EQ(read("Bed X: 30.0 Y: 40.0 Z: 0.5\n", options), rows);
+  EXPECT_EQ(read("[probe]\nx_offset = -20\ny_offset = 5\nprobe: at 30.0,40.0 bed will contact at z=0.5\n"),
+            rows);
+  EXPECT_THAT(read("probe at 30.0,40.0 is z=0.5\n", options), HasSubstr("omit --offset"));
+  EXPECT_THAT(read("[include probe.cfg]\n[x]\na: 1\n" + kConfiguration.substr(kConfiguration.find("#*#"))),
+              HasSubstr("state it with --offset"));
+}
+
+TEST(PrinterFile, LevellingAndRepeatsAreNoSurveyOfTheBed) {
+  EXPECT_EQ(read("probe at 0,0 is z=5\nprobe at 9,0 is z=6\n// Gantry-relative probe points:\n"
+                 "probe at 1,2 is z=3\nprobe at 2,2 is z=4\n"),
+            "X[mm],Y[mm],Z[mm],on\n1,2,3,bed\n2,2,4,bed\n");
+  EXPECT_EQ(read("probe at 1,2 is z=3\nMesh Bed Leveling Complete\nprobe at 0,0 is z=5\nprobe at 0,0 is z=6\n"
+                 "probe accuracy results: maximum 6\n"),
+            "X[mm],Y[mm],Z[mm],on\n1,2,3,bed\n");
+  const std::string two =
+      "probe at 1,2 is z=3\nMesh Bed Leveling Complete\nprobe at 1,2 is z=4\nMesh Bed Leveling Complete\n";
+  EXPECT_THAT(read(two), HasSubstr("1 (1 touches from line 1), 2 (1 touches from line 3); choose one with "
+                                   "--series"));
+  PrinterOptions options;
+  options.series = 2;
+  EXPECT_EQ(read(two, options), "X[mm],Y[mm],Z[mm],on\n1,2,4,bed\n");
+  options.series = 3;
+  EXPECT_THAT(read(two, options), HasSubstr("no such survey"));
+}
+
+TEST(PrinterFile, PointsOfAHeightMapHaveItsSpacing) {
+  const std::string map =
+      "RepRapFirmware height map file "
+      "v2\naxis0,axis1,min0,max0,min1,max1,radius,spacing0,spacing1,num0,num1\n"
+      "X,Y,20.00,180.00,0.00,0.00,-1.00,50.00,50.00,4,1\n0.1,0.2,0.3,0.4\n";
+  EXPECT_EQ(read(map), "X[mm],Y[mm],Z[mm],on\n20,0,0.1,bed\n70,0,0.2,bed\n120,0,0.3,bed\n170,0,0.4,bed\n");
+  std::string wrong = map;
+  wrong.replace(wrong.find("50.00,50.00"), 5, "90.00");
+  EXPECT_THAT(read(wrong), HasSubstr("reach beyond the maximum"));
+}
+
 TEST(PrinterFile, AMeshThatWouldBeMirroredIsRefused) {
   std::string text = kConfiguration;
   text.replace(text.find("min_x = 20.0"), 12, "min_x = 240.0");

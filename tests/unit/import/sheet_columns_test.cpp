@@ -258,11 +258,42 @@ const Case kCases[] = {
     {"NamesOfTheFormatStay", "X[mm];x[um]\n0;1\n100;2\n200;3\n", "X[mm],x[um]\n0,1\n100,2\n200,3\n"},
     {"CorrectionIsNoDeviation", "Soll X [mm];Korrektur X [um]\n0;1\n100;2\n200;3\n",
      "refused: s.csv:1: nothing measured among the columns"},
+    {"ReadingsBesideAConstantTarget", "Soll X [mm];Messwert X [um]\n300;0,4\n300;-1,2\n300;2,3\n",
+     "X[mm],x[mm]\n300,300.0004\n300,299.9988\n300,300.0023\n"},
+    {"OneReading", "Soll X [mm];Messwert X [um]\n100;2,5\n", "X[mm],x[mm]\n100,100.0025\n"},
+    {"OneTypingErrorAmongDeviations",
+     "Soll X [mm];Messwert X [um]\n0;0,4\n50;99999\n100;2,3\n150;3,1\n200;1\n",
+     "X[mm],x[mm]\n0,0.0004\n50,149.999\n100,100.0023\n150,150.0031\n200,200.001\n"},
+    {"ReadingsThatAreNeither", "Soll X [mm];Messwert X [um]\n0;8\n0,1;-24\n0,2;46\n0,3;62\n",
+     "refused: s.csv:1: \"Messwert X [um]\": the values neither follow X nor stay small beside it: state "
+     "what they "
+     "are, --column \"x[um]=Messwert X [um]\""},
+    {"ReadingAndDeviationOfOneAxis",
+     "Position X [mm];Messwert X [um];Ist X [mm]\n0;0,4;0,0004\n50;-1,2;49,9988\n100;2,3;100,0023\n",
+     "X[mm],x[mm]\n0,0.0004\n50,49.9988\n100,100.0023\n"},
+    {"DeviationsOfThreeAxesOneOfWhichMoves",
+     "Soll X [mm];Soll Y [mm];Messwert X [um];Messwert Y [um]\n0;400;0,4;0,9\n50;400;-1,2;1\n100;400;2,3;2\n",
+     "X[mm],Y[mm],x[mm],y[mm]\n0,400,0.0004,400.0009\n50,400,49.9988,400.001\n100,400,100.0023,400.002\n"},
+    {"ActualOfARotaryAxis", "Soll C [°];Ist C [°]\n0;0,001\n30;30,002\n60;59,999\n",
+     "C[deg],rz[deg]\n0,0.001\n30,30.002\n60,59.999\n"},
+    {"DeviationOfAnAxisWithoutAReading", "Soll U [mm];Abweichung U [um]\n0;1\n100;2\n",
+     "refused: s.csv:1: nothing measured"},
+    {"DeviationAfterACorrection", "Soll X [mm];Abweichung X nach Korrektur [um]\n0;1\n100;2\n",
+     "X[mm],x[mm]\n0,0.001\n100,100.002\n"},
+    {"DeviationWithoutCompensation", "Soll X [mm];Deviation X without compensation [um]\n0;1\n100;2\n",
+     "X[mm],x[mm]\n0,0.001\n100,100.002\n"},
+    {"NoBreakBlanks", "X\u202f[mm];x [mm]\n1\u00a0;\u00a02,5\n\u200e2;3,5\u2009\n",
+     "X[mm],x[mm]\n1,2.5\n2,3.5\n"},
+    {"TablesSideBySideWithoutAnEmptyColumn",
+     "X soll [mm];X Abw. [um];Y soll [mm];Y Abw. [um]\n0;1;0;4\n100;2;50;5\n200;3;100;6\n",
+     "refused: s.csv:1: X with its readings stands in the columns 1 to 2, Y in the columns 3 to 4"},
+    {"GridOfTwoAxes",
+     "X soll [mm];X Abw. [um];Y soll [mm];Y Abw. [um]\n0;1;0;4\n100;2;0;5\n0;3;50;6\n100;4;50;7\n",
+     "X[mm],x[mm],Y[mm],y[mm]\n0,0.001,0,0.004\n100,100.002,0,0.005\n0,0.003,50,50.006\n100,100.004,50,50."
+     "007\n"},
     {"TablesSideBySide",
      "X soll [mm];X Abw. [um];;Y soll [mm];Y Abw. [um]\n0;1;;0;4\n100;2;;50;5\n200;3;;100;6\n",
-     "refused: s.csv:1: tables side by side, with an empty column between them (X from column 1, Y from "
-     "column "
-     "4)"},
+     "refused: s.csv:1: X with its readings stands in the columns 1 to 2, Y in the columns 4 to 5"},
     {"AnEmptyColumnBetweenTargetsAndReadings",
      "X soll [mm];Y soll [mm];;X ist [mm];Y ist [mm]\n0;0;;0,1;0,1\n100;50;;100,1;50,2\n",
      "X[mm],Y[mm],x[mm],y[mm]\n0,0,0.1,0.1\n100,50,100.1,50.2\n"},
@@ -318,6 +349,44 @@ TEST(SheetWish, ACorrectionIsADeviationOfTheOtherSign) {
   };
   EXPECT_EQ(import("Soll X [mm];Korrektur X [um]\n0;1\n100;-2\n", {}, say),
             "X[mm],x[mm]\n0,-0.001\n100,100.002\n");
+}
+
+TEST(SheetWish, ADeviationOfPositionsIsRefused) {
+  const auto say = [](SheetWishes& wishes, const SheetTable&) { assign_deviation(wishes, "X=Ist X [mm]"); };
+  const std::string result = import("Soll X [mm];Ist X [mm]\n0;0,1\n50;50,2\n100;100,1\n", {}, say);
+  EXPECT_NE(result.find("the values follow X, so they are positions"), std::string::npos) << result;
+}
+
+TEST(SheetWish, AxesThatMovedTogetherAreOneMotion) {
+  const auto say = [](SheetWishes& wishes, const SheetTable&) { wishes.one_motion = true; };
+  EXPECT_EQ(import("X soll [mm];X ist [mm];Y soll [mm];Y ist [mm]\n0;1;0;1\n100;101;50;51\n", {}, say),
+            "X[mm],x[mm],Y[mm],y[mm]\n0,1,0,1\n100,101,50,51\n");
+}
+
+TEST(SheetWish, EmptyCellsHaveTheValueAboveThem) {
+  SheetWords words;
+  words.fill = {"T"};
+  const SheetReading read =
+      read_as_sheet("X [mm];x [mm];T [degC]\n0;1;20\n9;10;\n0;1;21\n9;10;\n", "s.csv", words);
+  EXPECT_EQ(measurement_csv(table_of_sheet(read.sheet, read.table, read.columns, read.wishes)),
+            "X[mm],x[mm],T[degC]\n0,1,20\n9,10,20\n0,1,21\n9,10,21\n");
+  words.fill.clear();
+  const SheetReading sparse =
+      read_as_sheet("X [mm];x [mm];T [degC]\n0;1;20\n9;10;\n0;1;\n9;10;\n", "s.csv", words);
+  ASSERT_EQ(sparse.sheet.notes.size(), 1u);
+  EXPECT_NE(sparse.sheet.notes[0].find("3 of 4 cells below \"T [degC]\" are empty"), std::string::npos);
+}
+
+TEST(SheetProfile, DoesNotStoreWhatTheValuesDecide) {
+  const auto profile_of = [](const std::string& bytes) {
+    const SheetReading read = read_as_sheet(bytes, "s.csv", SheetWords{});
+    return sheet_profile(read.sheet, read.table, read.columns, read.wishes);
+  };
+  const std::string text = profile_of("Soll X [mm];Messwert X [mm]\n0;1\n50;50\n100;101\n");
+  EXPECT_EQ(text.find("Messwert X [mm] ="), std::string::npos) << text;
+  EXPECT_EQ(text.find("decimal"), std::string::npos) << "no number shows the sign";
+  EXPECT_NE(profile_of("Soll X [mm];Messwert X [mm]\n0;1,5\n50;50\n100;101\n").find("decimal = comma"),
+            std::string::npos);
 }
 
 TEST(SheetWish, AnotherUnitThanThatOfTheHeadingIsRefused) {
@@ -385,7 +454,7 @@ TEST(SheetNote, ARunThatOnlyItsFirstRowNamesAppliesToTheRowsBelow) {
   EXPECT_EQ(measurement_csv(table_of_sheet(read.sheet, read.table, read.columns, read.wishes)),
             "run,X[mm],x[mm]\na,0,1\na,9,10\nb,0,1\nb,9,11\n");
   ASSERT_EQ(read.sheet.notes.size(), 1u);
-  EXPECT_EQ(read.sheet.notes[0], "2 empty cells below \"Lauf\" have the name above them");
+  EXPECT_EQ(read.sheet.notes[0], "2 empty cells below \"Lauf\" have the value above them");
 }
 
 TEST(SheetNote, NamesEveryRowThatIsLeftOutOrShort) {

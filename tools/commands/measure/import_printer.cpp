@@ -6,6 +6,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
 #include "tools/import/logs/printer_file.h"
+#include "tools/sheet/encoding.h"
 #include "tools/text/files.h"
 
 namespace vernier::commands::import_cli {
@@ -32,8 +33,8 @@ const char* name_of(importer::PrinterFile::Kind kind) {
 
 void run_printer(PrinterArguments& arguments) {
   if (!arguments.offset.empty()) arguments.options.offset_mm = {arguments.offset[0], arguments.offset[1]};
-  const importer::PrinterFile read =
-      importer::read_printer_file(text::read_file(arguments.file), arguments.file, arguments.options);
+  const importer::PrinterFile read = importer::read_printer_file(
+      sheet::utf8_text(text::read_file(arguments.file)), arguments.file, arguments.options);
   text::write_file(arguments.output.csv_path, importer::measurement_csv(read.table));
   const std::size_t rows = read.table.line.size();
   write_json(arguments.output.json_path, {{"kind", "printer"},
@@ -46,7 +47,7 @@ void run_printer(PrinterArguments& arguments) {
   std::FILE* out = human_stream(arguments.output.json_path);
   fmt::print(out, "{}{}: {} touches of the artefact \"{}\"\n", name_of(read.kind),
              read.name.empty() ? "" : " " + read.name, rows, arguments.options.artefact);
-  if (read.kind != importer::PrinterFile::Kind::kProbeLog)
+  if (read.kind != importer::PrinterFile::Kind::kProbeLog || read.offset_mm[0] != 0 || read.offset_mm[1] != 0)
     fmt::print(out, "axes: the point of the probe less its offset ({:g}, {:g}) mm\n", read.offset_mm[0],
                read.offset_mm[1]);
   if (read.not_probed > 0)
@@ -68,11 +69,14 @@ void add_printer_kind(CLI::App& kind) {
   kind.add_option("--profile", arguments->options.profile, "name of the saved mesh; default: the only one");
   kind.add_option("--on", arguments->options.artefact, "name of the <artefact> of the bed")
       ->capture_default_str();
-  kind.add_option(
-          "--offset", arguments->offset,
-          "X,Y mm, probe less nozzle, for a mesh or height map; default: the configuration's own, else 0")
+  kind.add_option("--offset", arguments->offset,
+                  "X,Y mm, probe less nozzle, for a mesh, a height map or a log with places of the probe; "
+                  "default: that "
+                  "of the configuration in the file, else 0")
       ->delimiter(',')
       ->expected(2);
+  kind.add_option("--series", arguments->options.series,
+                  "number of the survey of the bed, from 1, if a log has several");
   kind.add_option("--u", arguments->options.u_um, "standard uncertainty of a touch, um")
       ->check(CLI::PositiveNumber);
   add_import_output(kind, arguments->output);

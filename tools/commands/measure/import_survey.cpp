@@ -12,6 +12,7 @@
 #include "tools/import/tables/survey.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
+#include "tools/sheet/encoding.h"
 #include "tools/text/optional_json.h"
 
 namespace vernier::commands::import_cli {
@@ -114,8 +115,8 @@ void write_survey(const std::string& kind, const SurveyArguments& arguments,
 }
 
 void run_survey(const std::string& kind_name, const SurveyArguments& arguments, const CLI::App& kind) {
-  importer::ImportTable table =
-      importer::mapped_table(text::read_file(arguments.file), arguments.file, map_of(arguments, kind));
+  importer::ImportTable table = importer::mapped_table(sheet::utf8_text(text::read_file(arguments.file)),
+                                                       arguments.file, map_of(arguments, kind));
   if (kind_name == "tracker")
     importer::finish_tracker(table);
   else

@@ -129,6 +129,13 @@ void add_table_kind(CLI::App& kind) {
   kind.add_option("--set", arguments->words.constants,
                   "column with the same value in every row: \"run=s1\", \"u[um]=5\"")
       ->allow_extra_args(false);
+  kind.add_option(
+          "--fill", arguments->words.fill,
+          "heading of a column whose empty cells have the value above them; repeat the option for each "
+          "column")
+      ->allow_extra_args(false);
+  kind.add_flag("--one-motion", arguments->words.one_motion,
+                "columns of several axes side by side are poses of all axes, not several tables");
   kind.add_option("--unit", arguments->words.unit,
                   "unit of the lengths and angles whose heading has no unit");
   kind.add_option("--separator", arguments->words.separator, "default: detected and printed")

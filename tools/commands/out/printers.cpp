@@ -69,8 +69,14 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
                bed->low[0], bed->high[0], bed->low[1], bed->high[1]);
   print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
   Json extra = errors_json(errors);
-  if (bed) extra["bed"] = bed->name;
-  finish(machine, common, name, remaining(errors.after_um), files, {}, true, extra);
+  std::vector<exchange::LeftOut> left = remaining(errors.after_um);
+  if (bed) {
+    extra["bed"] = bed->name;
+    extra["errors"]["beyond_bed_um"] = errors.beyond_bed_um;
+    if (errors.beyond_bed_um > errors.after_um[2] + exchange::kNothing_um)
+      left.push_back({"error along Z outside the region where the bed was touched", errors.beyond_bed_um});
+  }
+  finish(machine, common, name, left, files, {}, true, extra);
 }
 
 void add_printer(CLI::App* parent, const char* name, const char* what, const char* steps, Firmware firmware) {

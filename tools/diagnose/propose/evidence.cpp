@@ -104,7 +104,8 @@ void Evidence::respond() {
   hold_all(probed);
   for (const effects::DofPlace& place : places_) effects::add_probe(probed, place);
   const model::ParameterSet probes(probed, {});
-  const model::Linearisation linear = model::linearise(probed, measurement_, probes);
+  const model::HeldLinearisation held = model::linearise_held(probed, measurement_, probes);
+  const model::Linearisation& linear = held.linear;
   const Eigen::MatrixXd all(linear.jacobian);
   response_.resize(static_cast<Eigen::Index>(observation_.size()), all.cols());
   residual_.resize(response_.rows());
@@ -113,8 +114,21 @@ void Evidence::respond() {
     response_.row(at) = weight_[at] * all.row(from);
     residual_[at] = weight_[at] * (measurement_.observations[observation_[i]].value - linear.predicted[from]);
   }
+  take_things(held);
   silence_rounding();
   find_reach(linear.predicted);
+}
+
+void Evidence::take_things(const model::HeldLinearisation& held) {
+  std::vector<Eigen::VectorXd> columns;
+  for (Eigen::Index k = 0; k < held.by_unknown.cols(); ++k) {
+    const Eigen::VectorXd all = held.by_unknown.col(k);
+    const Eigen::VectorXd column = weight_.cwiseProduct(Eigen::VectorXd(all(observation_)));
+    // A value that is known better than the readings tell is held.
+    if (column.squaredNorm() > held.precision[k]) columns.push_back(column);
+  }
+  things_.resize(weight_.size(), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) things_.col(static_cast<Eigen::Index>(k)) = columns[k];
 }
 
 void Evidence::silence_rounding() {
@@ -144,15 +158,18 @@ void Evidence::find_reach(const Eigen::VectorXd& predicted) {
 void Evidence::absorb() {
   const model::ParameterSet parameters(machine_, fit::setups_of_fit_rows(measurement_));
   absorbed_.resize(residual_.size(), 0);
-  if (parameters.size() == 0 && noise_.steps.empty()) return;
-  const model::Linearisation linear = model::linearise(machine_, measurement_, parameters);
+  if (parameters.size() == 0 && noise_.steps.empty() && things_.cols() == 0) return;
+  const model::Linearisation linear = model::linearise_held(machine_, measurement_, parameters).linear;
   const Eigen::MatrixXd all(linear.jacobian);
   Eigen::MatrixXd jacobian(residual_.size(), all.cols());
   for (std::size_t i = 0; i < observation_.size(); ++i)
     jacobian.row(static_cast<Eigen::Index>(i)) =
         weight_[static_cast<Eigen::Index>(i)] * all.row(static_cast<Eigen::Index>(observation_[i]));
+  jacobian.conservativeResize(Eigen::NoChange, all.cols() + things_.cols());
+  jacobian.rightCols(things_.cols()) = things_;
   if (!noise_.steps.empty()) {
-    jacobian.conservativeResize(Eigen::NoChange, all.cols() + static_cast<Eigen::Index>(noise_.steps.size()));
+    jacobian.conservativeResize(Eigen::NoChange,
+                                jacobian.cols() + static_cast<Eigen::Index>(noise_.steps.size()));
     jacobian.rightCols(static_cast<Eigen::Index>(noise_.steps.size())) =
         fit::step_columns(layout_, noise_.steps, residual_.size());
   }

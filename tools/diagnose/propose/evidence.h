@@ -10,6 +10,7 @@
 #include "tools/effects/candidate.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/noise/noise.h"
+#include "tools/model/chain/prediction.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
@@ -116,6 +117,8 @@ class Evidence {
   void take_inputs();
   void respond();
   void silence_rounding();
+  /// Takes the columns of the unknown values of touched objects: the model absorbs them.
+  void take_things(const model::HeldLinearisation& held);
   void find_reach(const Eigen::VectorXd& predicted);
   void absorb();
   void share_poses(Eigen::MatrixXd& columns) const;
@@ -138,6 +141,7 @@ class Evidence {
   std::vector<std::size_t> observation_, rows_;  // of the fit observations
   Eigen::MatrixXd response_, absorbed_;
   Eigen::VectorXd weight_, residual_;
+  Eigen::MatrixXd things_;  // weighted readings per unit of each unknown value of a touched object
   std::vector<int> block_;
   std::vector<model::Column> position_;
   std::vector<std::vector<Eigen::Index>> poses_;  // observations that share an error

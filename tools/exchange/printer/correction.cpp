@@ -221,25 +221,42 @@ PrinterCorrection printer_correction(const model::Machine& machine, const ThreeA
   return correction;
 }
 
-PrinterErrors printer_errors(const model::Machine& machine, const ThreeAxes& axes,
-                             const PrinterCorrection& correction, const model::States& at,
-                             const std::optional<Bed>& bed) {
-  constexpr Index kPositions = 4096;
+namespace {
+
+constexpr Index kPositions = 4096;
+
+/// Random positions in the ranges of the axes (fixed seed).
+Matrix3Xd positions_in(const ThreeAxes& axes) {
   constexpr unsigned long kPositionsSeed = 1;
   std::mt19937_64 random(kPositionsSeed);
   Matrix3Xd points(3, kPositions);
-  const ThreeAxes over = over_bed(axes, bed);
   for (std::size_t i = 0; i < 3; ++i) {
-    std::uniform_real_distribution<double> position(over.low[i], over.high[i]);
+    std::uniform_real_distribution<double> position(axes.low[i], axes.high[i]);
     for (Index k = 0; k < kPositions; ++k) points(static_cast<Index>(i), k) = position(random);
   }
+  return points;
+}
+
+/// Errors with the correction, or without (nullptr), heights counted from the bed; without their rigid part.
+Matrix3Xd errors_at(const model::Machine& machine, const ThreeAxes& axes, const Matrix3Xd& points,
+                    const PrinterCorrection* correction, const model::States& at,
+                    const std::optional<Bed>& bed) {
   Matrix3Xd nominal = nominal_points(machine, axes, points, at);
   nominal.row(2) += bed_heights(bed, nominal).transpose();
-  Matrix3Xd before = model::forward(machine, states_at(axes, points, at)).position - nominal;
-  Matrix3Xd after =
-      model::forward(machine, states_at(axes, correction.corrected(points), at)).position - nominal;
-  remove_rigid_part(before, nominal);
-  remove_rigid_part(after, nominal);
+  const Matrix3Xd commands = correction != nullptr ? correction->corrected(points) : points;
+  Matrix3Xd error = model::forward(machine, states_at(axes, commands, at)).position - nominal;
+  remove_rigid_part(error, nominal);
+  return error;
+}
+
+}  // namespace
+
+PrinterErrors printer_errors(const model::Machine& machine, const ThreeAxes& axes,
+                             const PrinterCorrection& correction, const model::States& at,
+                             const std::optional<Bed>& bed) {
+  const Matrix3Xd points = positions_in(over_bed(axes, bed));
+  const Matrix3Xd before = errors_at(machine, axes, points, nullptr, at, bed),
+                  after = errors_at(machine, axes, points, &correction, at, bed);
   PrinterErrors errors;
   errors.positions = static_cast<std::size_t>(kPositions);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -248,6 +265,10 @@ PrinterErrors printer_errors(const model::Machine& machine, const ThreeAxes& axe
   }
   errors.rms_before_um = rms_um(before);
   errors.rms_after_um = rms_um(after);
+  if (bed)
+    errors.beyond_bed_um =
+        1000 *
+        errors_at(machine, axes, positions_in(axes), &correction, at, bed).row(2).cwiseAbs().maxCoeff();
   return errors;
 }
 

@@ -71,6 +71,9 @@ struct PrinterErrors {
   std::array<double, 3> before_um{}, after_um{};  // largest of each direction
   double rms_before_um = 0, rms_after_um = 0;     // of the three directions together
   std::size_t positions = 0;
+  /// Largest error of the height over the whole travel, um; 0 without a bed. Outside the mesh the firmware
+  /// holds the end values.
+  double beyond_bed_um = 0;
 };
 
 /// Evaluates the chain with the corrected commands at positions between the points of the mesh (4096, fixed

@@ -58,23 +58,23 @@ std::vector<ConfigurationFile> klipper(const PresentSetting& present, const std:
   const HeightMesh& mesh = correction.mesh;
   const Skew skew = skew_of(correction, 1e-9);
   std::string text = fmt::format(
-      "# {}: squareness and bed heights. Append to printer.cfg, in its SAVE_CONFIG block.\n"
-      "# Then load both at the end of the start code: SKEW_PROFILE LOAD=vernier and\n"
-      "# BED_MESH_PROFILE LOAD=vernier. The sections [skew_correction] and [bed_mesh] must be present.\n",
+      "# {}: squareness and bed heights. Write [include vernier.cfg] into printer.cfg, beside the sections\n"
+      "# [skew_correction] and [bed_mesh], which must be present. Load both at the end of the start code:\n"
+      "# SKEW_PROFILE LOAD=vernier and BED_MESH_PROFILE LOAD=vernier.\n",
       name);
-  text += fmt::format(
-      "#*# [skew_correction vernier]\n#*# xy_skew = {:.9f}\n#*# xz_skew = {:.9f}\n#*# yz_skew = {:.9f}\n",
-      skew.xy, skew.xz, skew.yz);
-  text += "#*#\n#*# [bed_mesh vernier]\n#*# version = 1\n#*# points =\n";
+  text += fmt::format("[skew_correction vernier]\nxy_skew = {:.9f}\nxz_skew = {:.9f}\nyz_skew = {:.9f}\n",
+                      skew.xy, skew.xz, skew.yz);
+  text += "\n[bed_mesh vernier]\nversion = 1\npoints =\n";
   for (Index row = 0; row < mesh.z.rows(); ++row) {
-    text += "#*# \t  ";
+    text += "\t";
     for (Index column = 0; column < mesh.z.cols(); ++column)
       text += fmt::format("{}{:.6f}", column == 0 ? "" : ", ", mesh.z(row, column));
     text += "\n";
   }
   text += fmt::format(
-      "#*# tension = 0.2\n#*# min_x = {:.3f}\n#*# algo = direct\n#*# y_count = {}\n#*# mesh_y_pps = 0\n"
-      "#*# min_y = {:.3f}\n#*# x_count = {}\n#*# max_y = {:.3f}\n#*# mesh_x_pps = 0\n#*# max_x = {:.3f}\n",
+      "tension = 0.2\nmin_x = {:.3f}\nalgo = direct\ny_count = {}\nmesh_y_pps = 0\nmin_y = {:.3f}\nx_count = "
+      "{}\n"
+      "max_y = {:.3f}\nmesh_x_pps = 0\nmax_x = {:.3f}\n",
       mesh.x_low, mesh.z.rows(), mesh.y_low, mesh.z.cols(), mesh.y_high, mesh.x_high);
   std::string steps =
       steps_lines(present, correction, "# rotation_distance of the steppers, in mm per turn\n", true,
@@ -82,7 +82,7 @@ std::vector<ConfigurationFile> klipper(const PresentSetting& present, const std:
                     return fmt::format("[stepper_{}]\nrotation_distance: {:.6f}\n",
                                        static_cast<char>('x' + static_cast<int>(i)), next);
                   });
-  std::vector<ConfigurationFile> files = {{"vernier_saved.cfg", text}};
+  std::vector<ConfigurationFile> files = {{"vernier.cfg", text}};
   if (!steps.empty()) files.push_back({"vernier_steppers.cfg", steps});
   return files;
 }

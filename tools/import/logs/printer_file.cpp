@@ -25,6 +25,7 @@ struct Touch {
   double t = kUnknown;
   std::map<std::string, double> temperature;  // by the name of the heater or sensor
   std::size_t line = 0;
+  bool of_probe = false;  // the place that the probe touched, not the position of the axes
 };
 
 double number_in(const text::Place& place, std::string_view word) {
@@ -190,6 +191,13 @@ std::array<double, 2> offset_in(const std::map<std::string, Section>& sections, 
     offset = own;
     of = name;
   }
+  if (of.empty())
+    for (const auto& [name, section] : sections)
+      if (name.starts_with("include "))
+        throw text::InputError(
+            {file, 0}, name,
+            "the offset of the probe may be in this other file: state it with --offset X,Y "
+            "(0,0 if the nozzle itself touches)");
   return offset;
 }
 
@@ -199,8 +207,13 @@ constexpr std::string_view kHeightMap = "RepRapFirmware height map file v2";
 
 /// Columns of the second line: in the present version with the names of the axes before them.
 struct HeightMapGrid {
-  double low[2], high[2];
+  double low[2], high[2], spacing[2];
   std::size_t count[2];
+
+  /// Position of a point: the last one can be before the maximum.
+  double at(std::size_t axis, std::size_t i) const {
+    return low[axis] + spacing[axis] * static_cast<double>(i);
+  }
 };
 
 HeightMapGrid grid_of(const text::Place& place, const std::string& labels, const std::string& values) {
@@ -224,10 +237,18 @@ HeightMapGrid grid_of(const text::Place& place, const std::string& labels, const
   grid.high[0] = number_in(place, value("max0", "xmax"));
   grid.low[1] = number_in(place, value("min1", "ymin")),
   grid.high[1] = number_in(place, value("max1", "ymax"));
+  grid.spacing[0] = number_in(place, value("spacing0", "xspacing"));
+  grid.spacing[1] = number_in(place, value("spacing1", "yspacing"));
   for (std::size_t k = 0; k < 2; ++k)
     expect_rising(place, k == 0 ? "min0" : "min1", grid.low[k], grid.high[k]);
   grid.count[0] = count_in(place, value("num0", "xnum")),
   grid.count[1] = count_in(place, value("num1", "ynum"));
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double beyond = grid.at(k, grid.count[k] - 1) - grid.high[k];
+    if (!(grid.spacing[k] > 0) || beyond > grid.spacing[k] / 2)
+      throw text::InputError(place, k == 0 ? "num0" : "num1",
+                             "spacing and number of points reach beyond the maximum of this axis");
+  }
   return grid;
 }
 
@@ -253,8 +274,7 @@ void add_height_map(const std::string& text, const std::string& file, const std:
         continue;
       }
       Touch touch;
-      touch.axes = {station(grid.low[0], grid.high[0], grid.count[0], i) - offset[0],
-                    station(grid.low[1], grid.high[1], grid.count[1], j) - offset[1], number_in(place, cell)};
+      touch.axes = {grid.at(0, i) - offset[0], grid.at(1, j) - offset[1], number_in(place, cell)};
       touch.line = place.line;
       touches.push_back(std::move(touch));
     }
@@ -299,11 +319,20 @@ std::optional<Point> point_in(const std::string& line, const Form& form, const t
   return point;
 }
 
-std::optional<Point> touch_in(const std::string& line, const text::Place& place) {
-  static constexpr Form kForms[] = {
-      {"probe at ", ",", " is z="}, {"probe: at ", ",", " bed will contact at z="}, {"Bed X:", "Y:", "Z:"}};
-  for (const Form& form : kForms)
-    if (const auto point = point_in(line, form, place)) return point;
+/// A touch of a log: the position of the axes, or the place that the probe touched.
+struct LoggedTouch {
+  Point point;
+  bool of_probe = false;
+};
+
+std::optional<LoggedTouch> touch_in(const std::string& line, const text::Place& place) {
+  // Klipper's older line has the position of the nozzle; its newer one and Marlin's G30 have the place of the
+  // probe.
+  static constexpr std::pair<Form, bool> kForms[] = {{{"probe at ", ",", " is z="}, false},
+                                                     {{"probe: at ", ",", " bed will contact at z="}, true},
+                                                     {{"Bed X:", "Y:", "Z:"}, true}};
+  for (const auto& [form, of_probe] : kForms)
+    if (const auto point = point_in(line, form, place)) return LoggedTouch{*point, of_probe};
   return std::nullopt;
 }
 
@@ -317,7 +346,8 @@ std::optional<double> time_of_state(const std::string& line) {
 
 class ProbeLog {
  public:
-  ProbeLog(PrinterFile& result, const std::string& file) : result_(result), file_(file) {}
+  ProbeLog(PrinterFile& result, const std::string& file, const PrinterOptions& options)
+      : result_(result), file_(file), options_(options) {}
 
   std::vector<Touch> read(const std::string& text) {
     std::size_t number = 0;
@@ -325,12 +355,14 @@ class ProbeLog {
       ++number;
       if (const auto time = time_of_state(line))
         state(line, *time);
-      else if (const auto point = touch_in(line, {file_, number}))
-        touch(*point, line, number);
+      else if (const auto one = touch_in(line, {file_, number}))
+        touch(*one, line, number);
       else
         remark(text::in_small_letters(line));
     }
-    return std::move(touches_);
+    end_series();
+    take_offset(text);
+    return chosen();
   }
 
  private:
@@ -346,7 +378,8 @@ class ProbeLog {
     }
   }
 
-  void touch(const Point& point, const std::string& line, std::size_t number) {
+  void touch(const LoggedTouch& logged, const std::string& line, std::size_t number) {
+    const Point& point = logged.point;
     const std::string words = text::in_small_letters(line);
     if (words.find("discarded") != std::string::npos || words.find("skipped") != std::string::npos) {
       ++result_.left_out;
@@ -358,23 +391,79 @@ class ProbeLog {
     const bool elsewhere =
         touches_.empty() || touches_.back().axes[0] != point[0] || touches_.back().axes[1] != point[1];
     if (elsewhere) first_of_point_ = touches_.size();
+    one.of_probe = logged.of_probe;
     touches_.push_back(std::move(one));
   }
 
   /// "Probe samples exceed tolerance. Retrying...": the printer drops its touches of this point and begins
   /// again. "Result is z=…" ends a point.
   void remark(const std::string& words) {
-    if (words.find("result is z") != std::string::npos) first_of_point_ = touches_.size();
-    if (words.find("retrying") == std::string::npos) return;
-    result_.left_out += touches_.size() - first_of_point_;
-    touches_.resize(first_of_point_);
+    const auto has = [&](const char* part) { return words.find(part) != std::string::npos; };
+    if (has("result is z")) first_of_point_ = touches_.size();
+    if (has("retrying")) leave_out_from(first_of_point_);
+    // Levelling of the gantry or the bed, and repeats at one place: no survey of the bed.
+    if (has("gantry-relative") || has("making the following z") || has("probe accuracy results") ||
+        has("z-tilt") || has("retries:"))
+      leave_out_from(series_.empty() ? 0 : series_.back());
+    if (has("mesh bed leveling complete") || has("mesh has been saved") || has("bed mesh generated"))
+      end_series();
+  }
+
+  void leave_out_from(std::size_t first) {
+    result_.left_out += touches_.size() - first;
+    touches_.resize(first);
+    first_of_point_ = first;
+  }
+
+  /// Ends a survey of the bed: later touches may be of another state of the bed.
+  void end_series() {
+    if (touches_.size() > (series_.empty() ? 0 : series_.back())) series_.push_back(touches_.size());
+    first_of_point_ = touches_.size();
+  }
+
+  /// The axes stood at the place of the probe less its offset.
+  void take_offset(const std::string& text) {
+    const bool of_probe =
+        std::any_of(touches_.begin(), touches_.end(), [](const Touch& one) { return one.of_probe; });
+    if (!of_probe && options_.offset_mm)
+      throw text::InputError({file_, 0}, "--offset",
+                             "this log has positions of the nozzle (\"probe at\"), to which no offset "
+                             "applies: omit --offset");
+    result_.offset_mm = {};
+    if (!of_probe) return;
+    result_.offset_mm = options_.offset_mm ? *options_.offset_mm : offset_in(sections_of(text), file_);
+    for (Touch& one : touches_)
+      for (std::size_t k = 0; one.of_probe && k < 2; ++k) one.axes[k] -= result_.offset_mm[k];
+  }
+
+  /// The touches of the series that the user names, or of the only one.
+  std::vector<Touch> chosen() const {
+    if (series_.size() < 2 && !options_.series) return touches_;
+    std::string list;
+    for (std::size_t k = 0; k < series_.size(); ++k) {
+      const std::size_t first = k == 0 ? 0 : series_[k - 1];
+      list += fmt::format("{}{} ({} touches from line {})", k == 0 ? "" : ", ", k + 1, series_[k] - first,
+                          touches_[first].line);
+    }
+    if (!options_.series)
+      throw text::InputError(
+          {file_, touches_[series_[0]].line}, "touches",
+          "the log has several surveys of the bed, which may differ: " + list + "; choose one with --series");
+    if (*options_.series < 1 || *options_.series > series_.size())
+      throw text::InputError({file_, 0}, std::to_string(*options_.series),
+                             "no such survey of the bed: the log has " + (list.empty() ? "none" : list));
+    const std::size_t k = *options_.series - 1, first = k == 0 ? 0 : series_[k - 1];
+    return {touches_.begin() + static_cast<std::ptrdiff_t>(first),
+            touches_.begin() + static_cast<std::ptrdiff_t>(series_[k])};
   }
 
   PrinterFile& result_;
   const std::string& file_;
+  const PrinterOptions& options_;
   Touch now_;  // time and temperatures of the last state
   std::vector<Touch> touches_;
-  std::size_t first_of_point_ = 0;  // index of the first touch of the present point
+  std::size_t first_of_point_ = 0;   // index of the first touch of the present point
+  std::vector<std::size_t> series_;  // ends of the surveys of the bed
 };
 
 // ---- the table
@@ -421,8 +510,7 @@ PrinterFile read_printer_file(const std::string& text, const std::string& file,
     if (!options.offset_mm) result.offset_mm = offset_in(sections, file);
     touches = Mesh(sections, file, result.name).touches(result.offset_mm);
   } else {
-    touches = ProbeLog(result, file).read(text);
-    result.offset_mm = {};
+    touches = ProbeLog(result, file, options).read(text);
   }
   if (touches.empty())
     throw text::InputError(

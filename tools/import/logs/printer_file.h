@@ -14,6 +14,7 @@ struct PrinterOptions {
   std::string artefact = "bed";  // that the nozzle or the probe touched
   std::optional<std::array<double, 2>> offset_mm;  // probe − nozzle, X and Y; default: the file's own, else 0
   std::optional<double> u_um;                      // standard uncertainty of a touch; absent: no column
+  std::optional<std::size_t> series;               // number of the survey in a log, from 1
 };
 
 /// Touches of a printer's bed.
@@ -32,7 +33,9 @@ struct PrinterFile {
 /// - a log or console text of Klipper ("probe at X,Y is z=Z"; "Stats T:" lines give time and temperatures),
 ///   or of Marlin ("Bed X: X Y: Y Z: Z"),
 /// - a height map of RepRapFirmware (heightmap.csv, version 2).
-/// A mesh or height map states where the probe touched: the axes stood at this point less the offset.
+/// A mesh, a height map, Marlin's G30 and Klipper's newer line ("probe: at X,Y bed will contact at z=Z")
+/// state where the probe touched: the axes stood at this point less the offset. Touches of a levelling and
+/// repeats at one place (PROBE_ACCURACY) are left out. A log with several surveys of the bed needs `series`.
 /// Throws InputError with file, line and word.
 PrinterFile read_printer_file(const std::string& text, const std::string& file,
                               const PrinterOptions& options);

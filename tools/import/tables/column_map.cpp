@@ -7,6 +7,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
 #include "tools/format/units.h"
+#include "tools/sheet/heading.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/csv.h"
 #include "tools/text/numbers.h"
@@ -96,6 +97,17 @@ std::size_t source_index(const DelimitedFile& file, const MappedColumn& column) 
     throw text::InputError({file.file, file.header_line}, column.source,
                            "several columns have this name: give the number of the column");
   return static_cast<std::size_t>(found - file.header.begin());
+}
+
+/// A unit in the brackets of a heading is a fact of the file.
+void refuse_another_unit(const DelimitedFile& file, std::size_t index, const MappedColumn& column) {
+  const sheet::Heading heading = sheet::parse_heading(file.header[index]);
+  if (heading.text.find_first_of("[(<") == std::string::npos || heading.unit.empty() || column.unit.empty() ||
+      heading.unit == column.unit)
+    return;
+  throw text::InputError({file.file, file.header_line}, heading.text,
+                         "the table states the unit " + heading.unit + ", the assignment to " + column.name +
+                             " states " + column.unit + ": correct one of the two");
 }
 
 std::string cell_of(const std::string& text, const MappedColumn& column, bool decimal_comma,
@@ -201,6 +213,7 @@ ImportTable mapped_table(const std::string& text, const std::string& file, const
     ImportTable::Column cells{column.name, column.unit, {}};
     const bool constant = column.source.empty();
     const std::size_t index = constant ? 0 : source_index(read, column);
+    if (!constant && !read.header.empty()) refuse_another_unit(read, index, column);
     const std::string same = constant ? constant_cell(column, format.decimal_comma) : "";
     for (std::size_t i = 0; i < read.rows.size(); ++i)
       cells.cells.push_back(cell_of(constant ? same : read.rows[i][index], column,

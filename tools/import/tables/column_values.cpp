@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -23,15 +22,19 @@ namespace {
 
 using Use = SheetColumn::Use;
 
-/// A measured position spans what its target spans, and no machine is wrong by a twentieth of that.
-constexpr double kSpanOfDeviation = 0.05;
+/// A measured position follows its target with the slope 1 to within this value, a deviation with the slope
+/// 0. No machine has a scale error of a twentieth.
+constexpr double kSlope = 0.05;
+/// Without two targets, one of target and reading is this share of the other one.
+constexpr double kSmall = 0.05;
+/// A deviation that does not change is smaller than this share of the travel.
+constexpr double kShareOfTravel = 0.02;
 /// Positions in a wrong unit follow the target with the ratio of the units. A true scale error is never
 /// within this share of such a ratio.
 constexpr double kSameRatio = 0.01;
-/// Two positions show no line.
-constexpr std::size_t kFewestPairs = 3;
 
-constexpr std::array<std::pair<const char*, const char*>, 3> kLinear = {{{"X", "x"}, {"Y", "y"}, {"Z", "z"}}};
+/// Axes with a reading along or about them.
+constexpr std::array kAxes = {"X", "Y", "Z", "A", "B", "C"};
 
 /// Values of one cell pair after another: target, reading; mm if their units are known.
 struct Pairs {
@@ -63,62 +66,89 @@ Pairs pairs_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
   return pairs;
 }
 
+std::optional<std::size_t> column_named(const std::vector<SheetColumn>& columns, const std::string& name) {
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (columns[k].use == Use::kColumn && columns[k].name == name) return k;
+  return std::nullopt;
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 double span_of(const std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return *most - *least;
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
+/// Median of the slopes of all pairs of points (Theil 1950; Sen 1968): one wrong cell does not change it.
+/// nullopt: the target has one value.
+std::optional<double> slope_of(const Pairs& pairs) {
+  constexpr std::size_t kMost = 200;  // points that are compared with one another
+  const std::size_t n = pairs.target.size(), stride = n / kMost + 1;
+  std::vector<double> slopes;
+  for (std::size_t i = 0; i < n; i += stride)
+    for (std::size_t k = i + stride; k < n; k += stride)
+      if (const double moved = pairs.target[k] - pairs.target[i]; moved != 0)
+        slopes.push_back((pairs.reading[k] - pairs.reading[i]) / moved);
+  if (slopes.empty()) return std::nullopt;
+  return median_of(std::move(slopes));
 }
 
-/// Slope of the reading over the target, and the part of the reading's span that the line leaves.
-struct Line {
-  double slope = 0, rest = 0;
-};
-
-Line line_through(const Pairs& pairs) {
-  const double x0 = mean_of(pairs.target), y0 = mean_of(pairs.reading);
-  double xx = 0, xy = 0;
-  for (std::size_t i = 0; i < pairs.target.size(); ++i) {
-    xx += (pairs.target[i] - x0) * (pairs.target[i] - x0);
-    xy += (pairs.target[i] - x0) * (pairs.reading[i] - y0);
-  }
-  Line line;
-  line.slope = xx > 0 ? xy / xx : 0;
-  std::vector<double> left;
-  for (std::size_t i = 0; i < pairs.target.size(); ++i)
-    left.push_back(pairs.reading[i] - line.slope * pairs.target[i]);
-  const double span = span_of(pairs.reading);
-  line.rest = span > 0 ? span_of(left) / span : 1;
-  return line;
-}
-
-/// The ratio of two units of length that a slope is; empty if it is none.
-std::string ratio_of_units(const Line& line) {
-  if (line.rest > kSpanOfDeviation) return "";
+/// The ratio of two units of length that a slope is, if the readings follow the line; else empty.
+std::string ratio_of_units(const Pairs& pairs, double slope) {
   constexpr std::array<std::pair<double, const char*>, 4> kRatios = {
       {{1e-3, "1/1000"}, {1e3, "1000"}, {1 / 25.4, "1/25.4"}, {25.4, "25.4"}}};
+  std::vector<double> left;
+  for (std::size_t i = 0; i < pairs.target.size(); ++i)
+    left.push_back(pairs.reading[i] - slope * pairs.target[i]);
+  const double middle = median_of(left);
+  for (double& one : left) one = std::abs(one - middle);
+  if (median_of(left) > kSlope * std::abs(slope) * span_of(pairs.target)) return "";
   for (const auto& [ratio, text] : kRatios)
-    if (std::abs(line.slope / ratio - 1) < kSameRatio) return text;
+    if (std::abs(slope / ratio - 1) < kSameRatio) return text;
   return "";
 }
 
-/// Does another component of the measured point follow this axis? Then the readings are in a frame that is
-/// turned against the machine.
-bool another_follows(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+/// What the values of a column are beside the target of its axis.
+enum class Nature { kPosition, kDeviation, kUnclear };
+
+Nature nature_of(const Pairs& pairs) {
+  std::vector<double> target, reading, apart;
+  for (std::size_t i = 0; i < pairs.target.size(); ++i) {
+    target.push_back(std::abs(pairs.target[i]));
+    reading.push_back(std::abs(pairs.reading[i]));
+    apart.push_back(std::abs(pairs.reading[i] - pairs.target[i]));
+  }
+  const double size = median_of(reading);
+  if (const auto slope = slope_of(pairs)) {
+    if (std::abs(*slope - 1) < kSlope) return Nature::kPosition;
+    const bool small = size < kShareOfTravel * std::max(span_of(pairs.target), median_of(target));
+    return std::abs(*slope) < kSlope && small ? Nature::kDeviation : Nature::kUnclear;
+  }
+  if (median_of(apart) < kSmall * median_of(target)) return Nature::kPosition;
+  return size < kSmall * median_of(target) ? Nature::kDeviation : Nature::kUnclear;
+}
+
+std::string reading_name(const std::string& axis) {
+  return format::angle_about(axis).value_or(text::in_small_letters(axis));
+}
+
+/// Does another component of the measured point follow this axis, and not its own one? Then the readings are
+/// in a frame that is turned against the machine.
+bool is_turned_frame(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                      const std::vector<SheetColumn>& columns, std::size_t target, std::size_t reading) {
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    const bool point = std::find(format::columns::kPoint.begin(), format::columns::kPoint.end(),
-                                 columns[k].name) != format::columns::kPoint.end();
-    if (k == reading || columns[k].use != Use::kColumn || !point) continue;
-    const Pairs pairs = pairs_of(sheet, table, columns, target, k);
-    if (pairs.target.size() < kFewestPairs) continue;
-    const Line line = line_through(pairs);
-    if (std::abs(line.slope) > kSpanOfDeviation) return true;
+  for (const char* const axis : kAxes) {
+    const auto other = column_named(columns, reading_name(axis));
+    if (!other || *other == reading || columns[*other].name == columns[reading].name) continue;
+    if (const auto own = column_named(columns, axis))
+      if (nature_of(pairs_of(sheet, table, columns, *own, *other)) != Nature::kUnclear) continue;
+    const auto slope = slope_of(pairs_of(sheet, table, columns, target, *other));
+    if (slope && std::abs(*slope) > kSlope) return true;
   }
   return false;
 }
@@ -127,10 +157,12 @@ std::string length_text(double mm) {
   return mm < 1 ? fmt::format("{:.3g} um", mm * 1e3) : fmt::format("{:.6g} mm", mm);
 }
 
-std::optional<std::size_t> column_named(const std::vector<SheetColumn>& columns, const std::string& name) {
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    if (columns[k].use == Use::kColumn && columns[k].name == name) return k;
-  return std::nullopt;
+/// The two ways to state what a column is.
+std::string ways_to_read(const sheet::Heading& heading, const std::string& axis, const SheetColumn& column) {
+  const std::string unit = column.unit.empty() ? "" : "[" + column.unit + "]";
+  return fmt::format(
+      "--column \"{}{}={}\" for a measured position, or --deviation \"{}{}={}\" for a deviation",
+      reading_name(axis), unit, heading.text, axis, unit, heading.text);
 }
 
 void settle_reading(const sheet::Sheet& sheet, const sheet::SheetTable& table,
@@ -139,31 +171,62 @@ void settle_reading(const sheet::Sheet& sheet, const sheet::SheetTable& table,
   SheetColumn& column = columns[k];
   const std::string& axis = columns[target].name;
   const Pairs pairs = pairs_of(sheet, table, columns, target, k);
-  const double moved = span_of(pairs.target), spans = span_of(pairs.reading);
-  if (pairs.target.size() < kFewestPairs || moved <= 0) return;
+  if (pairs.target.empty()) return;
   const text::Place place{sheet.file, sheet.line[table.heading_row]};
-  const Line line = line_through(pairs);
-  const std::string ratio = ratio_of_units(line);
-  const bool deviation = column.use == Use::kDeviation;
-  const bool follows = std::abs(line.slope - 1) < kSpanOfDeviation && line.rest < kSpanOfDeviation;
-  if (deviation && (follows || (!ratio.empty() && line.slope > 1)))
-    throw text::InputError(place, heading.text,
-                           fmt::format("the values follow {}, so they are positions and not deviations; "
-                                       "correct the heading, or give --column \"{}[{}]={}\"",
-                                       axis, text::in_small_letters(axis),
-                                       column.unit.empty() ? "mm" : column.unit, heading.text));
-  if (deviation || spans > kSpanOfDeviation * moved) return;
-  if (!ratio.empty() && !column.unit.empty())
+  const Nature nature = nature_of(pairs);
+  const double slope = slope_of(pairs).value_or(0);
+  const std::string ratio = ratio_of_units(pairs, slope);
+  const bool units_differ = !ratio.empty() && !column.unit.empty() && pairs.target.size() > 2;
+  if (column.use == Use::kDeviation) {
+    if (nature == Nature::kPosition && !column.turned && slope != 0)
+      throw text::InputError(
+          place, heading.text,
+          fmt::format("the values follow {}, so they are positions and not deviations; give "
+                      "--column \"{}{}={}\"",
+                      axis, reading_name(axis), column.unit.empty() ? "" : "[" + column.unit + "]",
+                      heading.text));
+    if (units_differ && slope > 1)
+      throw text::InputError(place, heading.text,
+                             fmt::format("the values follow {} with the ratio {}, so they are positions in "
+                                         "another unit and not deviations; correct the heading",
+                                         axis, ratio));
+    return;
+  }
+  column.by_values = true;
+  if (nature == Nature::kPosition) return;
+  if (units_differ)
     throw text::InputError(place, heading.text,
                            fmt::format("the values follow {} with the ratio {}, so they are positions, and "
                                        "the unit of one of the two columns is wrong; correct the heading",
                                        axis, ratio));
-  if (another_follows(sheet, table, columns, target, k)) return;
+  if (is_turned_frame(sheet, table, columns, target, k)) return;
+  if (nature == Nature::kUnclear) {
+    // A target that is always 0 has positions that are its deviations.
+    if (span_of(pairs.target) == 0 && pairs.target.front() == 0) return;
+    const bool alone = std::none_of(columns.begin(), columns.end(), [&](const SheetColumn& other) {
+      return &other != &column && other.use == Use::kColumn && other.name != column.name &&
+             std::any_of(kAxes.begin(), kAxes.end(),
+                         [&](const char* one) { return other.name == reading_name(one); });
+    });
+    constexpr std::size_t kEnough = 3;  // fewer rows show nothing
+    if (!alone || pairs.target.size() < kEnough) return;
+    throw text::InputError(
+        place, heading.text,
+        fmt::format("the values neither follow {} nor stay small beside it: state what they "
+                    "are, {}",
+                    axis, ways_to_read(heading, axis, column)));
+  }
   column.use = Use::kDeviation;
   column.name = axis;
-  column.why = fmt::format("by its values: they span {}, {} spans {}",
-                           column.unit.empty() ? fmt::format("{:.3g}", spans) : length_text(spans), axis,
-                           length_text(moved));
+  const bool angle = format::angle_about(axis).has_value();
+  const auto shown = [&](double value, const std::string& unit) {
+    return unit.empty() ? fmt::format("{:.3g}", value)
+           : angle      ? fmt::format("{:.3g} deg", value)
+                        : length_text(value);
+  };
+  column.why =
+      fmt::format("by its values: they span {}, {} spans {}", shown(span_of(pairs.reading), column.unit),
+                  axis, shown(span_of(pairs.target), columns[target].unit));
 }
 
 }  // namespace
@@ -171,61 +234,79 @@ void settle_reading(const sheet::Sheet& sheet, const sheet::SheetTable& table,
 void settle_by_values(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                       std::vector<SheetColumn>& columns) {
   if (!table.has_headings) return;
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    // A heading that is written as in the measurement file has its meaning.
-    if (columns[k].why != "by its heading" || table.headings[k].name == columns[k].name) continue;
-    for (const auto& [axis, point] : kLinear) {
-      const bool is_reading = columns[k].use == Use::kColumn && columns[k].name == point;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    for (const char* const axis : kAxes) {
+      const bool by_heading = columns[k].why == "by its heading";
+      // A heading that is written as in the measurement file has its meaning.
+      const bool is_reading = columns[k].use == Use::kColumn && columns[k].name == reading_name(axis) &&
+                              by_heading && table.headings[k].name != columns[k].name;
       const bool is_deviation = columns[k].use == Use::kDeviation && columns[k].name == axis;
       if (!is_reading && !is_deviation) continue;
       if (const auto target = column_named(columns, axis)) settle_reading(sheet, table, columns, *target, k);
       break;
     }
-  }
 }
+
+namespace {
+
+/// The columns of one axis: its target and its readings.
+struct AxisBlock {
+  std::size_t target = 0, first = 0, last = 0;
+  bool read = false;
+};
+
+/// Share of the steps from row to row at which both targets change; 1 if a row has only one of them.
+double moved_together(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t one,
+                      std::size_t other) {
+  double steps = 0, both = 0;
+  std::optional<std::size_t> before;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::string &a = sheet.rows[row][one], &b = sheet.rows[row][other];
+    if (a.empty() != b.empty()) return 1;
+    if (a.empty()) continue;
+    if (before) {
+      ++steps;
+      both += a != sheet.rows[*before][one] && b != sheet.rows[*before][other] ? 1 : 0;
+    }
+    before = row;
+  }
+  return steps > 0 ? both / steps : 0;
+}
+
+}  // namespace
 
 void refuse_tables_side_by_side(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                 const std::vector<SheetColumn>& columns) {
-  // Axes with a target and a reading of their own, in each block of columns between empty columns.
-  std::vector<std::set<std::string>> blocks(1);
-  std::vector<std::size_t> first = {0};
-  std::set<std::string> targets, read;
-  const auto close = [&] {
-    for (const std::string& axis : targets)
-      if (read.contains(axis)) blocks.back().insert(axis);
-    targets.clear();
-    read.clear();
-  };
-  const auto is_empty = [&](std::size_t k) {
-    for (std::size_t row = table.has_headings ? table.heading_row : table.first_data; row < sheet.rows.size();
-         ++row)
-      if (!sheet.rows[row][k].empty()) return false;
-    return true;
-  };
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    if (is_empty(k)) {
-      close();
-      blocks.emplace_back();
-      first.push_back(k + 1);
-      continue;
+  if (!table.has_headings) return;
+  std::vector<AxisBlock> blocks;
+  for (const char* const axis : kAxes) {
+    const auto target = column_named(columns, axis);
+    if (!target) continue;
+    AxisBlock block{*target, *target, *target, false};
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const bool reading = (columns[k].use == Use::kColumn && columns[k].name == reading_name(axis)) ||
+                           (columns[k].use == Use::kDeviation && columns[k].name == axis);
+      if (!reading) continue;
+      block.first = std::min(block.first, k);
+      block.last = std::max(block.last, k);
+      block.read = true;
     }
-    for (const auto& [axis, point] : kLinear) {
-      if (columns[k].use == Use::kColumn && columns[k].name == axis) targets.insert(axis);
-      if (columns[k].use == Use::kColumn && columns[k].name == point) read.insert(axis);
-      if (columns[k].use == Use::kDeviation && columns[k].name == axis) read.insert(axis);
-    }
+    if (block.read) blocks.push_back(block);
   }
-  close();
-  std::vector<std::string> found;
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    if (!blocks[b].empty())
-      found.push_back(fmt::format("{} from column {}", *blocks[b].begin(), first[b] + 1));
-  if (found.size() < 2) return;
-  throw text::InputError({sheet.file, sheet.line[table.heading_row]}, "",
-                         "tables side by side, with an empty column between them (" +
-                             text::joined(found, ", ") +
-                             "): a row would be one pose of all axes; save each table as a file of its own, "
-                             "or remove the empty column if the axes moved together");
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      if (blocks[i].last >= blocks[k].first) continue;
+      constexpr double kNearlyAll = 0.8;  // a grid moves one axis at nearly every step, a diagonal both
+      if (moved_together(sheet, table, blocks[i].target, blocks[k].target) < kNearlyAll) continue;
+      const std::string one = columns[blocks[i].target].name, other = columns[blocks[k].target].name;
+      throw text::InputError(
+          {sheet.file, sheet.line[table.heading_row]}, "",
+          fmt::format("{} with its readings stands in the columns {} to {}, {} in the columns {} to {}: if "
+                      "these are two tables side by side, read each with --leave for the columns of the "
+                      "other one; if the axes moved together, give --one-motion",
+                      one, blocks[i].first + 1, blocks[i].last + 1, other, blocks[k].first + 1,
+                      blocks[k].last + 1));
+    }
 }
 
 }  // namespace vernier::importer

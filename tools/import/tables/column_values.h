@@ -8,14 +8,15 @@ namespace vernier::importer {
 
 /// Decides by the values what a heading such as "Messwert X [um]" leaves open: the measured position, or its
 /// deviation from the target. A measured position follows the target; a deviation stays small while the axis
-/// moves. Only columns recognised by their heading are changed. Throws InputError if the values contradict
-/// each reading: positions in a unit that is wrong by a factor, or a deviation that follows the axis.
+/// moves. Readings are changed only if their heading gave their meaning. Throws InputError if the values
+/// contradict each reading: positions in a unit that is wrong by a factor, deviations that follow the axis
+/// (also if the user stated them), or values that are neither.
 void settle_by_values(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                       std::vector<SheetColumn>& columns);
 
-/// Refuses two tables that stand side by side: two blocks of columns with an empty column between them, each
-/// with the target and the readings of an axis of its own. A row of the sheet is then no pose of the machine.
-/// Throws InputError.
+/// Refuses what may be two tables side by side: two blocks of columns, each with the target and the readings
+/// of its own axis, and both targets change from row to row. A row of the sheet is then perhaps no pose of
+/// the machine. Throws InputError.
 void refuse_tables_side_by_side(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                 const std::vector<SheetColumn>& columns);
 

@@ -63,6 +63,13 @@ class Readings {
   std::map<std::string, format::CsvColumn, std::less<>> header_;
 };
 
+/// Name of the reading along or about an axis: x, y, z of X, Y, Z; rx, ry, rz of A, B, C; nullopt: other
+/// axes.
+std::optional<std::string> reading_of(const std::string& axis) {
+  if (axis == "X" || axis == "Y" || axis == "Z") return text::in_small_letters(axis);
+  return format::angle_about(axis);
+}
+
 class Guess {
  public:
   explicit Guess(const SheetWishes& wishes) : wishes_(wishes) {}
@@ -112,7 +119,13 @@ class Guess {
     deviation |= says_nominal_less_actual(heading.text, true) || says_nominal_less_actual(heading.name, true);
     if (deviation) return {SheetColumn::Use::kDeviation, axis, heading.unit, "by its heading"};
     if (!axis.empty() && measured) {
-      column.name = text::in_small_letters(axis);
+      if (const auto reading = reading_of(axis)) {
+        column.name = *reading;
+      } else {
+        column.use = SheetColumn::Use::kLeft;
+        column.why = "no reading of a measurement file is along " + axis +
+                     ": state which one this is, --column \"x=" + heading.text + "\"";
+      }
       return column;
     }
     if (!axis.empty() && (target || words.size() == 1)) {
@@ -306,8 +319,8 @@ void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
     SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.why != "by its heading") continue;
     const Guess::Bare bare = Guess::bare(table.headings[k].name);
-    if (bare == Guess::Bare::kActual && !actual && is_linear(axis)) {
-      column.name = text::in_small_letters(axis);
+    if (bare == Guess::Bare::kActual && !actual && reading_of(axis)) {
+      column.name = *reading_of(axis);
       actual = true;
     } else if (bare == Guess::Bare::kTarget && !target) {
       column.name = axis;
@@ -334,14 +347,12 @@ void settle_display(const sheet::SheetTable& table, std::vector<SheetColumn>& co
   }
 }
 
-/// The unit in the brackets of a heading, or in the row of units, is a fact of the file: an assignment with
-/// another unit is a mistake in one of the two.
+/// The unit in a heading, or in the row of units, is a fact of the file: an assignment with another unit is a
+/// mistake in one of the two.
 void refuse_another_unit(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t at,
                          const SheetWishes::Assignment& wish) {
   const sheet::Heading& heading = table.headings[at];
-  const bool stated =
-      table.units_row != 0 || heading.text.find_first_of("[(<") != std::string::npos || table.upper_row;
-  if (!stated || wish.column.unit.empty() || heading.unit.empty() || wish.column.unit == heading.unit) return;
+  if (wish.column.unit.empty() || heading.unit.empty() || wish.column.unit == heading.unit) return;
   throw text::InputError(
       wish.place.file.empty() ? text::Place{sheet.file, sheet.line[table.heading_row]} : wish.place,
       heading.text,
@@ -368,11 +379,16 @@ void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& 
       leave(columns[k], "computed from the readings beside it");
 }
 
-/// A correction cancels the deviation: it is nominal - actual (JCGM 200:2012, 2.53).
+/// A correction cancels the deviation: it is nominal - actual (JCGM 200:2012, 2.53). "Abweichung nach
+/// Korrektur" is a deviation, and so is a column that states its formula.
 bool names_correction(const sheet::Heading& heading) {
-  const std::vector<std::string> words = heading_words(heading.name);
-  return std::any_of(words.begin(), words.end(),
-                     [](const std::string& word) { return says_correction(text::in_small_letters(word)); });
+  bool correction = false;
+  for (const std::string& word : heading_words(heading.name)) {
+    const std::string small = text::in_small_letters(word);
+    if (says_deviation(small) || says_measured(small) || says_state_of_correction(small)) return false;
+    correction |= says_correction(small);
+  }
+  return correction;
 }
 
 /// A sign that is stated: in the heading of a deviation, or in a title for all of them.
@@ -426,8 +442,12 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     else if (deviation && (column.name.empty() || !axes.contains(column.name)))
       leave(column, "the axis of this deviation is not known: state the axis, --deviation \"X=" +
                         table.headings[k].text + "\"");
-    else if (deviation && measured.contains(text::in_small_letters(column.name)))
-      leave(column, "the measured position is there as " + text::in_small_letters(column.name));
+    else if (deviation && !reading_of(column.name))
+      leave(column, "no reading of a measurement file is along " + column.name +
+                        ": state the axis that it is parallel to, --deviation \"X=" + table.headings[k].text +
+                        "\"");
+    else if (deviation && measured.contains(*reading_of(column.name)))
+      leave(column, "the measured position is there as " + *reading_of(column.name));
     else if (column.name == kSensePrefix && moved.size() == 1)
       column.name = format::axis_column(format::AxisQuantity::kSense, *moved.begin());
     else if (column.name == kSensePrefix)
@@ -592,8 +612,10 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
                        position, name, unit.empty() ? "[um]" : "", reading);
   return fmt::format(
       "{}--column \"{}{}={}\" for a measured position, or {}--deviation \"{}{}={}\" for a deviation",
-      position, text::in_small_letters(name), unit.empty() ? "[mm]" : "", reading, position, name,
-      unit.empty() ? "[um]" : "", reading);
+      position, reading_of(name).value_or("x"),
+      unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[mm]" : "[deg]") : "", reading,
+      position, name,
+      unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[um]" : "[arcsec]") : "", reading);
 }
 
 /// The headings of readings whose cells are all empty: a template that was not filled in.
@@ -621,6 +643,10 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
     throw text::InputError(place, cell, format::kRoleRule);
   }
   if (is_missing(cell) && !is_sense(column.name)) return "";
+  if (cell.empty())
+    throw text::InputError(place, column.name,
+                           "the cell of the approach direction is empty; if the value above it applies, give "
+                           "--fill with the heading of this column");
   if (is_sense(column.name))
     if (const int sense = sense_said(cell); sense != 0) return std::to_string(sense);
   if (const auto number = sheet::plain_number(cell, sheet.decimal_comma)) return *number;
@@ -688,6 +714,8 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
       SheetColumn column;
       column.use = SheetColumn::Use::kLeft;
       wishes.assignments.push_back({rest, column, place});
+    } else if (key == "fill") {
+      wishes.fill.push_back(rest);
     } else if (key == "set") {
       ColumnMap map;
       add_constant(map, rest, place);
@@ -711,7 +739,7 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
         wishes.unit = *sheet::unit_meant(value);
       else
         throw text::InputError(place, name,
-                               "unknown statement; known statements are column, deviation, leave, set, "
+                               "unknown statement; known statements are column, deviation, leave, fill, set, "
                                "separator, decimal, skip, table, sheet, comment, unit");
     }
   }
@@ -725,18 +753,22 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
   if (!sheet.workbook)
     text += std::string("separator = ") +
             (sheet.separator == ' ' ? "space" : sheet::separator_word(sheet.separator)) + "\n";
-  text += std::string("decimal = ") + (sheet.decimal_comma ? "comma" : "point") + "\n";
+  if (sheet.decimal_known)
+    text += std::string("decimal = ") + (sheet.decimal_comma ? "comma" : "point") + "\n";
   if (wishes.format.table) text += "table = " + std::to_string(*wishes.format.table) + "\n";
   if (wishes.format.skip > 0) text += "skip = " + std::to_string(wishes.format.skip) + "\n";
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     const std::string& heading = table.headings[k].text;
-    if (column.use == SheetColumn::Use::kLeft)
+    if (column.by_values)
+      text += "# " + heading + ": position or deviation, by the values of each file\n";
+    else if (column.use == SheetColumn::Use::kLeft)
       text += "leave " + heading + "\n";
     else
       text += (column.use == SheetColumn::Use::kDeviation ? "deviation " : "column ") + heading + " = " +
               format::heading(column.name, column.unit) + "\n";
   }
+  for (const std::string& heading : wishes.fill) text += "fill " + heading + "\n";
   for (const MappedColumn& constant : wishes.constants)
     text += "set " + format::heading(constant.name, constant.unit) + " = " + constant.constant + "\n";
   return text;
@@ -763,7 +795,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   leave_statistics(table, columns);
   settle_by_values(sheet, table, columns);
   settle(sheet, table, columns, guess);
-  refuse_tables_side_by_side(sheet, table, columns);
+  if (!wishes.one_motion) refuse_tables_side_by_side(sheet, table, columns);
   settle_signs(sheet, table, columns);
   keep_names_apart(table, columns);
   for (SheetColumn& column : columns) {
@@ -802,9 +834,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
         throw text::InputError(heading, table.headings[k].text,
                                "[" + unknown + "] is no known unit; known are " + format::known_units() +
-                                   "; correct the heading, or give the unit, such as " +
-                                   (deviation ? "--deviation" : "--column") + " \"" + column.name + "[" +
-                                   unit + "]=" + std::to_string(k + 1) + "\"");
+                                   "; convert the values to one of these units, and correct the heading");
       units.insert(unit);
       without += fmt::format(" {} \"{}[{}]={}\"", deviation ? "--deviation" : "--column", column.name, unit,
                              table.headings[k].text);
@@ -835,6 +865,13 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       continue;
     result.line.push_back(sheet.line[row]);
   }
+  const auto twice = [&](std::size_t k, const std::string& name) {
+    throw text::InputError(heading, table.headings[k].text,
+                           "this would be " + name +
+                               " a second time; leave one of the two columns out, such as "
+                               "--leave " +
+                               std::to_string(k + 1));
+  };
   std::set<std::string> names;
   std::map<std::string, std::size_t> axis_column;
   for (std::size_t k = 0; k < columns.size(); ++k)
@@ -865,9 +902,12 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       throw text::InputError(heading, table.headings[k].text,
                              "an angle, where " + column.name + " is a length");
     }
-    if (!names.insert(made.name).second)
-      throw text::InputError(heading, table.headings[k].text,
-                             "this would be " + made.name + " a second time");
+    if (deviation && !column.to_target && !reading_of(column.name))
+      throw text::InputError(heading, column.name,
+                             "no reading of a measurement file is along this axis; state the axis that it is "
+                             "parallel to, such as --deviation \"X=" +
+                                 table.headings[k].text + "\"");
+    if (!names.insert(made.name).second) twice(k, made.name);
     for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
       const auto& cells = sheet.rows[row];
       if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
@@ -877,7 +917,10 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         const std::string at = cell_text(sheet, columns[base], cells[base], row);
         if (at.empty())
           throw text::InputError({sheet.file, sheet.line[row]}, column.name,
-                                 "a deviation without its position");
+                                 "a deviation without its position: the cell of \"" +
+                                     table.headings[base].text +
+                                     "\" is empty; if the value above it applies, give --fill \"" +
+                                     table.headings[base].text + "\"");
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
         text = text::fixed_text(mm(at, columns[base].unit) + sign * mm(text, column.unit), 9);
       }

@@ -19,6 +19,7 @@ struct SheetColumn {
   bool words = false;      // kept unchanged, a label of its rows
   bool turned = false;     // of a deviation: labelled nominal - actual, its sign is reversed
   bool to_target = false;  // of a deviation: the measured position is given, the target is computed
+  bool by_values = false;  // the values decided between a position and a deviation
 };
 
 /// Columns as the user describes them: assignments by heading or number, constants, and the unit of headings
@@ -34,6 +35,8 @@ struct SheetWishes {
   std::vector<MappedColumn> constants;  // "run=a", "u[um]=2"
   std::string unit;
   std::vector<std::string> axes;  // of the machine, if it is known; else X Y Z A B C U V W J1 …
+  std::vector<std::string> fill;  // headings whose empty cells have the value above them
+  bool one_motion = false;        // blocks of columns side by side are poses of all axes
 };
 
 /// Adds an assignment "x[mm]=X ist". "X ist=x[mm]" is also accepted, as in the other imports: the headings of
@@ -45,6 +48,7 @@ void assign_deviation(SheetWishes& wishes, const std::string& words, const text:
 /// A profile: the stored settings for reading tables of one form. A statement a line, # remarks:
 ///   separator = semicolon    decimal = comma    skip = 2    sheet = Tabelle1    unit = mm
 ///   column X ist = x[mm]     deviation Abw. = X[um]     leave Bemerkung     set run = a
+///   fill Lauf
 /// Throws InputError with file, line and word.
 void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std::string& file);
 /// Returns a profile of the recognised columns: with it, the next file of this kind needs no further

@@ -27,6 +27,8 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   if (words.table) wishes.format.table = words.table;
   if (!words.sheet.empty()) wishes.format.sheet = words.sheet;
   if (!words.axes.empty()) wishes.axes = words.axes;
+  wishes.fill.insert(wishes.fill.end(), words.fill.begin(), words.fill.end());
+  wishes.one_motion |= words.one_motion;
   if (!words.unit.empty()) {
     const auto unit = sheet::unit_meant(words.unit);
     if (!unit) throw text::InputError("--unit " + words.unit + ": unknown unit");
@@ -40,33 +42,59 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   return wishes;
 }
 
-/// A run or a set-up that only its first row names applies to the rows below it, up to the next name.
-void fill_labels(SheetReading& reading) {
+/// Does an empty cell of this column have the value above it? A run or a set-up that only its first row names
+/// applies to the rows below; other columns only if the user states it.
+bool is_filled_down(const SheetReading& reading, std::size_t k) {
+  const SheetColumn& column = reading.columns[k];
+  if (column.use == SheetColumn::Use::kLeft) return false;
+  const sheet::Heading& heading = reading.table.headings[k];
+  for (const std::string& wish : reading.wishes.fill)
+    if (wish == heading.text || wish == heading.name || wish == std::to_string(k + 1)) return true;
+  return column.use == SheetColumn::Use::kColumn &&
+         (column.name == format::columns::kRun || column.name == format::columns::kSetup);
+}
+
+void fill_down(SheetReading& reading) {
   sheet::Sheet& sheet = reading.sheet;
   for (std::size_t k = 0; k < reading.columns.size(); ++k) {
-    const SheetColumn& column = reading.columns[k];
-    const bool label = column.name == format::columns::kRun || column.name == format::columns::kSetup;
     const std::size_t first = reading.table.first_data;
-    if (column.use != SheetColumn::Use::kColumn || !label || first >= sheet.rows.size() ||
-        sheet.rows[first][k].empty())
-      continue;
+    if (first >= sheet.rows.size() || sheet.rows[first][k].empty() || !is_filled_down(reading, k)) continue;
     std::size_t filled = 0;
-    std::string name;
+    std::string above;
     for (std::size_t row = first; row < sheet.rows.size(); ++row) {
       std::vector<std::string>& cells = sheet.rows[row];
       const bool blank =
           std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.empty(); });
       if (blank) continue;
       if (!cells[k].empty()) {
-        name = cells[k];
+        above = cells[k];
         continue;
       }
-      cells[k] = name;
+      cells[k] = above;
       ++filled;
     }
     if (filled > 0)
-      sheet.notes.push_back(fmt::format("{} empty cells below \"{}\" have the name above them", filled,
+      sheet.notes.push_back(fmt::format("{} empty cells below \"{}\" have the value above them", filled,
                                         reading.table.headings[k].text));
+  }
+}
+
+/// Notes the columns of numbers with few values: a fit leaves out rows without a value.
+void note_sparse_columns(SheetReading& reading) {
+  for (std::size_t k = 0; k < reading.columns.size(); ++k) {
+    const SheetColumn& column = reading.columns[k];
+    if (column.use == SheetColumn::Use::kLeft || column.words) continue;
+    std::size_t empty = 0, rows = 0;
+    for (std::size_t row = reading.table.first_data; row < reading.sheet.rows.size(); ++row) {
+      const std::vector<std::string>& cells = reading.sheet.rows[row];
+      if (std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.empty(); })) continue;
+      ++rows;
+      empty += cells[k].empty() ? 1 : 0;
+    }
+    if (2 * empty > rows)
+      reading.sheet.notes.push_back(fmt::format(
+          "{} of {} cells below \"{}\" are empty; if the value above them applies, give --fill \"{}\"", empty,
+          rows, reading.table.headings[k].text, reading.table.headings[k].text));
   }
 }
 
@@ -90,7 +118,8 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
     result.wishes.assignments.push_back({heading, column, {}});
   }
   result.columns = columns_of_sheet(result.sheet, result.table, result.wishes);
-  fill_labels(result);
+  fill_down(result);
+  note_sparse_columns(result);
   return result;
 }
 

@@ -14,6 +14,8 @@ struct SheetWords {
   std::string separator, decimal, comment, sheet, unit;
   std::optional<std::size_t> skip, table;
   std::vector<std::string> columns, deviations, constants, left;
+  std::vector<std::string> fill;  // headings
+  bool one_motion = false;
   std::vector<std::string> axes;  // of the machine, if it is known
 };
 

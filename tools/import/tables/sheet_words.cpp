@@ -21,9 +21,13 @@ const WordSet kMeasuredWords = {"ist",     "istwert", "istposition", "measured",
 const WordSet kDeviationWords = {"abweichung", "abweichungen", "deviation", "deviations", "dev",
                                  "error",      "errors",       "fehler",    "err",        "delta",
                                  "diff",       "abw",          "differenz", "difference", "ecart"};
-const WordSet kCorrectionWords = {"korrektur",    "korrekturen",       "korrekturwert", "korrekturwerte",
-                                  "korr",         "correction",        "corrections",   "corr",
-                                  "kompensation", "kompensationswert", "compensation",  "comp"};
+const WordSet kCorrectionWords = {"korr", "corr", "comp", "komp"};
+constexpr std::array<std::string_view, 4> kCorrectionStarts = {"korrektur", "correction", "kompensation",
+                                                               "compensation"};
+const WordSet kStateOfCorrectionWords = {
+    "nach",           "vor",     "ohne", "mit", "unkorrigiert", "korrigiert", "after",  "before",   "without",
+    "with",           "on",      "off",  "ein", "aus",          "aktiv",      "active", "inactive", "w/o",
+    "actual-nominal", "ist-soll"};
 /// Headings of a column that counts or names its rows.
 const WordSet kCountingWords = {"nr",    "no",    "num",    "nummer", "number", "index", "idx",       "id",
                                 "lfd",   "punkt", "punkte", "point",  "points", "pt",    "messpunkt", "row",
@@ -79,7 +83,12 @@ std::vector<std::string> heading_words(const std::string& name) {
 bool says_target(const std::string& word) { return kTargetWords.contains(word); }
 bool says_measured(const std::string& word) { return kMeasuredWords.contains(word); }
 bool says_statistic(const std::string& word) { return kStatisticWords.contains(word); }
-bool says_correction(const std::string& word) { return kCorrectionWords.contains(word); }
+bool says_correction(const std::string& word) {
+  return kCorrectionWords.contains(word) ||
+         std::any_of(kCorrectionStarts.begin(), kCorrectionStarts.end(),
+                     [&](std::string_view start) { return word.starts_with(start); });
+}
+bool says_state_of_correction(const std::string& word) { return kStateOfCorrectionWords.contains(word); }
 bool says_counting(const std::string& word) { return kCountingWords.contains(word); }
 bool says_deviation(const std::string& word) { return kDeviationWords.contains(word); }
 

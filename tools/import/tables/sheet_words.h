@@ -18,8 +18,10 @@ bool says_measured(const std::string& word);
 /// A mean or a spread, which a spreadsheet computes from its readings: "Mittelwert".
 bool says_statistic(const std::string& word);
 bool says_deviation(const std::string& word);
-/// The opposite of a deviation: "Korrektur".
+/// The opposite of a deviation: "Korrektur", "Korrekturtabelle".
 bool says_correction(const std::string& word);
+/// A word of "after the correction", "without compensation": the column states no correction.
+bool says_state_of_correction(const std::string& word);
 /// A column that counts or names the rows: "Nr".
 bool says_counting(const std::string& word);
 

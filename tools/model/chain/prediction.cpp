@@ -161,6 +161,32 @@ Linearisation linearise(const Machine& machine, const Linearizer& linearizer, st
                     [&](const ThingsAt& at, Linearisation& raw) { eliminate(linearizer.things(), at, raw); });
 }
 
+HeldLinearisation linearise_held(const Machine& machine, const Measurement& m,
+                                 const ParameterSet& parameters) {
+  HeldLinearisation result;
+  const Linearizer linearizer(machine, m, parameters);
+  const Things& things = linearizer.things();
+  std::vector<Eigen::Index> first;  // of the unknown values of each cluster
+  Eigen::Index count = 0;
+  for (std::size_t cluster = 0; cluster < things.clusters(); ++cluster) {
+    first.push_back(count);
+    count += things.unknowns(cluster);
+  }
+  result.by_unknown = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(m.observations.size()), count);
+  result.precision = Eigen::VectorXd::Zero(count);
+  const auto take = [&](const ThingsAt& at, const Linearisation&) {
+    for (std::size_t cluster = 0; cluster < things.clusters(); ++cluster) {
+      result.precision.segment(first[cluster], things.unknowns(cluster)) = at.known(cluster).precision;
+      for (const std::size_t i : things.readings(cluster))
+        for (const UnknownSlope& one : at.read(m.observations[i]).by_unknown)
+          result.by_unknown.row(static_cast<Eigen::Index>(i))
+              .segment(first[cluster] + one.first, one.slope.size()) += one.slope.transpose();
+    }
+  };
+  result.linear = linearised(machine, linearizer, m.observations.size(), parameters.size(), take);
+  return result;
+}
+
 std::vector<EstimatedThing> estimate_things(const Machine& machine, const Measurement& m,
                                             const ParameterSet& parameters) {
   std::vector<EstimatedThing> list;

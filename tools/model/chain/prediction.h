@@ -45,6 +45,18 @@ class Linearizer;
 Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
                         std::size_t parameters);
 
+/// The derivatives with touched objects held at their best estimates: by the free parameters (n_obs x
+/// n_params), and by the unknown values of all objects (n_obs x unknown values, mm/mm and mm/rad).
+/// `precision`: 1/u^2 of each unknown value, 0 if nothing is known of it. A change of the readings that
+/// differs from row to row is the product with these derivatives; afterwards the objects follow it.
+struct HeldLinearisation {
+  Linearisation linear;
+  Eigen::MatrixXd by_unknown;
+  Eigen::VectorXd precision;
+};
+HeldLinearisation linearise_held(const Machine& machine, const Measurement& measurement,
+                                 const ParameterSet& parameters);
+
 /// A touched object (unknown point or artefact) with the best estimates of its unknown values. `own`:
 /// covariance of the unknown values for a fixed machine and readings of weight 1/u; `follows`: derivatives of
 /// the unknown values by the parameters.
