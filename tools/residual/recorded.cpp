@@ -43,9 +43,11 @@ class Recorder {
   std::vector<RecordedColumn>& list_;
 };
 
-void add_motion(Recorder& recorder, const model::Machine& machine, const model::Measurement& m) {
+void add_motion(Recorder& recorder, const model::Machine& machine, const model::Measurement& m,
+                const std::set<std::size_t>& without) {
   const model::States& s = m.states;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    if (without.contains(i)) continue;
     const std::string& axis = machine.axes[i].name;
     const auto motion = [&](AxisQuantity quantity, ColumnKind kind, const model::Column& v) {
       const std::string name = format::axis_column(quantity, axis);
@@ -281,14 +283,16 @@ int pair_rank(const RecordedColumn& a, const RecordedColumn& b) {
 }  // namespace
 
 std::vector<RecordedColumn> recorded_columns(const model::Machine& machine, const model::Measurement& m,
-                                             const std::vector<std::size_t>& rows) {
+                                             const std::vector<std::size_t>& rows,
+                                             const std::set<std::size_t>& without) {
   std::vector<RecordedColumn> list;
   Recorder recorder(rows, list);
   const model::States& s = m.states;
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
-    recorder.add(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", ColumnKind::kAxis,
-                 model::commanded(m, i), machine.axes[i].rotary);
-  add_motion(recorder, machine, m);
+    if (!without.contains(i))
+      recorder.add(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", ColumnKind::kAxis,
+                   model::commanded(m, i), machine.axes[i].rotary);
+  add_motion(recorder, machine, m, without);
   if (m.has_recorded(columns::kTime))
     recorder.add(columns::kTime, format::column_unit(columns::kTime), ColumnKind::kTime, s.time);
   recorder.add(columns::kVisit, "", ColumnKind::kVisit, s.visit);

@@ -112,6 +112,23 @@ TEST(Things, OfEveryTypeGiveTheirNumberOfReadingsAndTheirDerivatives) {
   }
 }
 
+// With the point held each row follows the parameters alone; the rest is the point that follows them.
+TEST(Things, HeldDerivativesAndTheUnknownsMakeTheWhole) {
+  const Machine machine = parse_machine(xml(""), "m.xml");
+  const Measurement m = parse_measurement(touches("same", 9, "A"), "m.csv", machine);
+  const ParameterSet parameters(machine, m.states.names(m.states.setup));
+  const Eigen::MatrixXd whole(linearise(machine, m, parameters).jacobian);
+  const HeldLinearisation held = linearise_held(machine, m, parameters);
+  const std::vector<EstimatedThing> things = estimate_things(machine, m, parameters);
+  ASSERT_EQ(things.size(), 1u);
+  ASSERT_EQ(held.by_unknown.cols(), 3);
+  EXPECT_EQ(held.precision, Eigen::Vector3d::Zero());
+  const Eigen::MatrixXd made =
+      Eigen::MatrixXd(held.linear.jacobian) + held.by_unknown * things.front().follows;
+  EXPECT_LT((made - whole).norm(), 1e-9 * whole.norm());
+  EXPECT_GT((Eigen::MatrixXd(held.linear.jacobian) - whole).norm(), 0.1 * whole.norm());
+}
+
 TEST(Things, ASphereIsFoundWithItsRadius) {
   Artefact ball;
   ball.name = "S";

@@ -18,6 +18,7 @@
 #include "tools/maths/orthonormal.h"
 #include "tools/model/chain/evaluate.h"
 #include "tools/model/chain/prediction.h"
+#include "tools/model/chain/touching_axes.h"
 
 namespace vernier::diagnose {
 namespace {
@@ -66,9 +67,22 @@ Evidence::Evidence(const model::Machine& fitted, const model::Measurement& measu
   raw_residual_ = residual_;
   absorb();
   raw_absorbed_ = absorbed_;
+  hold_axes_that_follow_touches();
   split_blocks();
 }
 
+void Evidence::hold_axes_that_follow_touches() {
+  if (things_.cols() == 0) return;
+  double squares = 0, count = 0;
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    if (!model::is_rotation(measurement_.observations[observation_[i]].kind)) {
+      const auto at = static_cast<Eigen::Index>(i);
+      squares += std::pow(raw_residual_[at] / weight_[at], 2);
+      ++count;
+    }
+  following_ = model::touching_axes(machine_, measurement_, rows_, std::sqrt(squares / std::max(1.0, count)));
+  for (const std::size_t axis : following_) position_[axis].setConstant(range_of(axis).low);
+}
 void Evidence::take_inputs() {
   for (const model::CandidateInput& candidate : measurement_.candidates) {
     model::Input input;
@@ -153,6 +167,9 @@ void Evidence::find_reach(const Eigen::VectorXd& predicted) {
     range = {std::min(range.first, value), std::max(range.second, value)};
   }
   for (const auto& [kind, range] : ranges) reach_mm_ = std::hypot(reach_mm_, range.second - range.first);
+  if (things_.cols() == 0) return;
+  // Readings of touches are 0: the points that were touched show the extent.
+  reach_mm_ = std::max(reach_mm_, model::extent_of_points(machine_, measurement_, rows_));
 }
 
 void Evidence::absorb() {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -109,6 +110,8 @@ class Evidence {
   /// Returns the approach direction of a row: as recorded, else from the rows before. The result is 0 if the
   /// approach direction is unknown.
   int sense_of(std::size_t axis, std::size_t row) const;
+  /// True if the positions of an axis are readings of touches, and not commands.
+  bool follows_touches(std::size_t axis) const { return following_.contains(axis); }
   /// Extent of the points that were read, mm; 0 if no lengths were read.
   double reach_mm() const { return reach_mm_; }
   Range time_range() const;
@@ -117,6 +120,9 @@ class Evidence {
   void take_inputs();
   void respond();
   void silence_rounding();
+  /// An axis that moved only until the tool touched, about as far as the error, has positions that follow the
+  /// error: they are readings and drive no effect. The search takes them for constant.
+  void hold_axes_that_follow_touches();
   /// Takes the columns of the unknown values of touched objects: the model absorbs them.
   void take_things(const model::HeldLinearisation& held);
   void find_reach(const Eigen::VectorXd& predicted);
@@ -145,6 +151,7 @@ class Evidence {
   std::vector<int> block_;
   std::vector<model::Column> position_;
   std::vector<std::vector<Eigen::Index>> poses_;  // observations that share an error
+  std::set<std::size_t> following_;               // axes whose positions are readings of touches
   std::vector<int> place_;                        // of each row of the measurement
   double pose_share_ = 0;
   bool noise_known_ = false, with_u_ = false;

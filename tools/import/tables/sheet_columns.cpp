@@ -426,7 +426,7 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       column.words = true;
       column.unit.clear();
     }
-    if (column.why != "by its heading") continue;
+    if (column.why != "by its heading" && !column.by_values) continue;
     const bool deviation = column.use == SheetColumn::Use::kDeviation;
     if (deviation && column.name.empty() && axes.size() == 1) column.name = *axes.begin();
     if (deviation && column.name.empty() && axes.empty() && alone_measured.size() == 1)
