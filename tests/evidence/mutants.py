@@ -22,6 +22,7 @@ EQUIVALENT = [
     ("nanometres.shift > 94", (">", ">="), "no setting reaches it"),
     ("s.b >= e.lag_count", (">=", ">"), "a state that is not counted is refused at the end as well"),
     ("a.low > 0 ? a.low", ("<", "<="), "zero is its own opposite"),
+    ("Feature::kPeakImpact, peak * per_mav, top < 0", ("<", "<="), "a peak of zero has no sign"),
     ("scale.rate_mHz < 1 ||", ("1", "2"), "a corner of at least 1 mHz needs a rate 64 times as high"),
     ("const std::int64_t p[4]", ("4", "5"), "a fifth place that nothing reads"),
 ]

@@ -76,14 +76,29 @@ class Reader {
     constexpr std::size_t kStart = 64;  // bytes; every second byte of a start in UTF-16 is zero
     if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF") ||
         std::string_view(text_).substr(0, kStart).find('\0') != std::string_view::npos)
-      throw text::InputError({machine_.file, 1}, "", "the file is UTF-16, not UTF-8: save it as UTF-8");
+      throw text::InputError({machine_.file, 1}, "",
+                             "the file is UTF-16 or UTF-32, not UTF-8: save it as UTF-8");
     const std::string valid = text::utf8_only(text_);
     const auto [bad, other] = std::mismatch(text_.begin(), text_.end(), valid.begin(), valid.end());
     if (bad == text_.end()) return;
     const auto at = static_cast<std::size_t>(bad - text_.begin());
     throw text::InputError({machine_.file, line_at(at)}, word_at(at),
-                           "this letter is not UTF-8: save the file as UTF-8, or convert it: iconv -f "
-                           "WINDOWS-1252 -t UTF-8");
+                           "this letter is not UTF-8: save the file as UTF-8, or convert it: iconv -f " +
+                               declared_encoding() + " -t UTF-8");
+  }
+  /// The encoding that the first line states; without one that of Western computers.
+  std::string declared_encoding() const {
+    constexpr std::string_view kMark = "encoding=\"";
+    const std::string first = text_.substr(0, text_.find('\n'));
+    const auto at = first.find(kMark), end = first.find('"', at + kMark.size());
+    const std::string name = at == std::string::npos || end == std::string::npos
+                                 ? ""
+                                 : first.substr(at + kMark.size(), end - at - kMark.size());
+    const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
+    });
+    const bool utf8 = text::in_small_letters(name) == "utf-8" || text::in_small_letters(name) == "utf8";
+    return name.empty() || utf8 || !plain ? "WINDOWS-1252" : name;
   }
   void read_root(const pugi::xml_node& root) {
     if (!is(root, "machine") && !is(root, "EITransform"))

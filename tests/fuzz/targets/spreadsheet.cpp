@@ -2,6 +2,7 @@
 #include "tests/fuzz/target.h"
 #include "tools/format/csv_file.h"
 #include "tools/import/tables/sheet_columns.h"
+#include "tools/import/tables/sheet_table.h"
 #include "tools/import/tables/wide_sheet.h"
 
 namespace vernier::fuzz {

@@ -109,6 +109,20 @@ TEST(Latch, SaysWhyItHasNoPosition) {
   EXPECT_EQ(ring.seek(InstantNs(1'090'000'000)), LatchFault::kNotYet);
 }
 
+TEST(Latch, RefusesSamplesMoreThanASecondApart) {
+  const auto fault_of = [](std::int64_t gap_ns) {
+    LatchRing ring;
+    for (int i = 0; i < 4; ++i) {
+      LatchSample sample{};
+      sample.at = InstantNs(i * gap_ns);
+      ring.add(sample);
+    }
+    return ring.seek(InstantNs(gap_ns + 1));
+  };
+  EXPECT_EQ(fault_of(357'000'000), LatchFault::kNone);    // 3 gaps below 2^30 ns
+  EXPECT_EQ(fault_of(358'000'000), LatchFault::kUneven);  // and above
+}
+
 TEST(Latch, GoesThroughARolloverWithoutAJump) {
   LatchRing ring;
   for (int i = 0; i < 10; ++i) {

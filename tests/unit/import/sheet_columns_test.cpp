@@ -8,6 +8,7 @@
 
 #include "tools/import/tables/computed_rows.h"
 #include "tools/import/tables/sheet_import.h"
+#include "tools/import/tables/sheet_table.h"
 #include "tools/import/tables/wide_sheet.h"
 #include "tools/sheet/several_tables.h"
 #include "tools/text/files.h"
@@ -260,6 +261,8 @@ const Case kCases[] = {
      "refused: s.csv:1: nothing measured among the columns"},
     {"ReadingsBesideAConstantTarget", "Soll X [mm];Messwert X [um]\n300;0,4\n300;-1,2\n300;2,3\n",
      "X[mm],x[mm]\n300,300.0004\n300,299.9988\n300,300.0023\n"},
+    {"PositionOnlyInTheFirstRow", "X [mm];Y [mm];x [mm]\n0;400;1\n9;;10\n",
+     "refused: s.csv:3: \"Y\": the position of this axis is empty in a row with a reading"},
     {"OneReading", "Soll X [mm];Messwert X [um]\n100;2,5\n", "X[mm],x[mm]\n100,100.0025\n"},
     {"OneTypingErrorAmongDeviations",
      "Soll X [mm];Messwert X [um]\n0;0,4\n50;99999\n100;2,3\n150;3,1\n200;1\n",

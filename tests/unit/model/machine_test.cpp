@@ -138,10 +138,13 @@ TEST(MachineFile, OtherEncodingsThanUtf8AreRefused) {
       said("<machine\nname=\"Dr\xFC\x63ker\">" + body),
       "m.xml:2: \"?cker\"><transforms\": this letter is not UTF-8: save the file as UTF-8, or convert it: "
       "iconv -f WINDOWS-1252 -t UTF-8");
+  EXPECT_NE(said("<?xml version=\"1.0\" encoding=\"windows-1251\"?><machine name=\"\xD1\">" + body)
+                .find("iconv -f windows-1251 -t"),
+            std::string::npos);
   std::string wide = "\xFF\xFE";
   for (const char c : "<machine>" + body) wide += std::string{c, '\0'};
-  EXPECT_EQ(said(wide), "m.xml:1: the file is UTF-16, not UTF-8: save it as UTF-8");
-  EXPECT_EQ(said(wide.substr(2)), "m.xml:1: the file is UTF-16, not UTF-8: save it as UTF-8");
+  EXPECT_EQ(said(wide), "m.xml:1: the file is UTF-16 or UTF-32, not UTF-8: save it as UTF-8");
+  EXPECT_EQ(said(wide.substr(2)), "m.xml:1: the file is UTF-16 or UTF-32, not UTF-8: save it as UTF-8");
   EXPECT_EQ(said("<machine name=\"Dr\xC3\xBC\x63ker\">" + body), "accepted");
 }
 

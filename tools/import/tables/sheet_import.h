@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/import/tables/sheet_columns.h"
+#include "tools/import/tables/sheet_table.h"
 
 namespace vernier::importer {
 

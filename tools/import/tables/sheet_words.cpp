@@ -92,6 +92,11 @@ bool says_state_of_correction(const std::string& word) { return kStateOfCorrecti
 bool says_counting(const std::string& word) { return kCountingWords.contains(word); }
 bool says_deviation(const std::string& word) { return kDeviationWords.contains(word); }
 
+bool is_missing(const std::string& cell) {
+  static const WordSet kMarks = {"", "-", "--", "---", "n/a", "na", "#nv", "#n/a", "nan"};
+  return kMarks.contains(text::in_small_letters(cell));
+}
+
 int sense_said(std::string_view word) {
   const std::string small = text::in_small_letters(word);
   return kForthWords.contains(small) ? 1 : kBackWords.contains(small) ? -1 : 0;

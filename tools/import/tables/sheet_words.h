@@ -25,6 +25,9 @@ bool says_state_of_correction(const std::string& word);
 /// A column that counts or names the rows: "Nr".
 bool says_counting(const std::string& word);
 
+/// True for a cell without a value: empty, "-", "n/a" …
+bool is_missing(const std::string& cell);
+
 /// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no direction.
 int sense_said(std::string_view word);
 

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/tables/column_guess.h"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "tools/format/units.h"
+#include "tools/import/tables/sheet_words.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+namespace columns = format::columns;
+
+const std::string kSensePrefix = format::entry_of(format::AxisQuantity::kSense).prefix;
+
+/// Name of a column whose heading names no axis.
+std::string other(const sheet::Heading& heading) {
+  static const std::map<std::string, std::string> kNames = {{"zeit", columns::kTime},
+                                                            {"time", columns::kTime},
+                                                            {"vorschub", columns::kFeed},
+                                                            {"feedrate", columns::kFeed},
+                                                            {"feed rate", columns::kFeed},
+                                                            {"lauf", columns::kRun},
+                                                            {"pass", columns::kRun},
+                                                            {"durchgang", columns::kRun},
+                                                            {"messreihe", columns::kRun},
+                                                            {columns::kRun, columns::kRun},
+                                                            {"cycle", columns::kRun},
+                                                            {"zyklus", columns::kRun},
+                                                            {"unsicherheit", columns::kUncertainty},
+                                                            {"uncertainty", columns::kUncertainty},
+                                                            {"rolle", columns::kRole},
+                                                            {"richtung", kSensePrefix},
+                                                            {"direction", kSensePrefix},
+                                                            {"sense", kSensePrefix},
+                                                            {"länge", columns::kLength},
+                                                            {"laenge", columns::kLength},
+                                                            {kSensePrefix, kSensePrefix},
+                                                            {"dir.", kSensePrefix},
+                                                            {"richtg", kSensePrefix},
+                                                            {"richtg.", kSensePrefix},
+                                                            {"richt.", kSensePrefix},
+                                                            {"sinn", kSensePrefix},
+                                                            {"fahrtrichtung", kSensePrefix},
+                                                            {"anfahrrichtung", kSensePrefix},
+                                                            {"approach", kSensePrefix},
+                                                            {"motion", kSensePrefix}};
+  const auto found = kNames.find(text::in_small_letters(heading.name));
+  return found == kNames.end() ? sheet::name_from_words(heading.name) : found->second;
+}
+
+}  // namespace
+
+bool is_known_name(const std::string& name) {
+  const format::ColumnGroup* const column = format::find_column(name);
+  return column != nullptr && (!column->later || column->words);
+}
+bool is_label(const std::string& name) {
+  const format::ColumnGroup* const column = format::find_column(name);
+  return column != nullptr && column->words;
+}
+bool is_sense(const std::string& name) { return name.starts_with(kSensePrefix); }
+bool is_pure(const std::string& name) {
+  const format::ColumnGroup* const column = format::find_column(name);
+  return is_sense(name) || (column != nullptr && !column->words && *column->unit == '\0');
+}
+
+bool is_angle(const std::string& unit) {
+  const auto found = format::find_unit(unit);
+  return found && found->dimension == format::Dimension::kAngle;
+}
+
+bool wants_unit(const SheetColumn& column) {
+  return column.use != SheetColumn::Use::kLeft && !column.words && !is_label(column.name) &&
+         !is_pure(column.name);
+}
+
+std::optional<std::string> reading_of(const std::string& axis) {
+  if (axis == "X" || axis == "Y" || axis == "Z") return text::in_small_letters(axis);
+  return format::angle_about(axis);
+}
+
+bool names_correction(const sheet::Heading& heading) {
+  bool correction = false;
+  for (const std::string& word : heading_words(heading.name)) {
+    const std::string small = text::in_small_letters(word);
+    if (says_deviation(small) || says_measured(small) || says_state_of_correction(small)) return false;
+    correction |= says_correction(small);
+  }
+  return correction;
+}
+
+bool Guess::is_axis(const std::string& word) const {
+  if (!wishes_.axes.empty())
+    return std::find(wishes_.axes.begin(), wishes_.axes.end(), word) != wishes_.axes.end();
+  if (word.size() == 1) return std::string("XYZABCUVW").find(word) != std::string::npos;
+  return word.size() == 2 && (word[0] == 'J' || word[0] == 'A') &&
+         std::isdigit(static_cast<unsigned char>(word[1])) != 0;
+}
+
+SheetColumn Guess::column(const sheet::Heading& heading) const {
+  SheetColumn column{SheetColumn::Use::kColumn, heading.name, heading.unit, "by its heading"};
+  if (is_axis(heading.name) || is_known_name(heading.name) || is_motion(heading.name)) return column;
+  std::string axis;
+  bool target = false, measured = false, deviation = false;
+  const std::vector<std::string> words = heading_words(heading.name);
+  for (const std::string& word : words) {
+    const std::string small = text::in_small_letters(word);
+    target |= says_target(small);
+    measured |= says_measured(small);
+    deviation |= says_deviation(small);
+    // dX, ΔX: a deviation in one word.
+    const std::string tail = word.starts_with('d')        ? word.substr(1)
+                             : word.starts_with("\u0394") ? word.substr(2)
+                                                          : "";
+    if (is_axis(tail)) {
+      axis = tail;
+      deviation = true;
+    }
+    if (axis.empty() && is_axis(word)) axis = word;
+  }
+  deviation |= says_nominal_less_actual(heading.text, true) || says_nominal_less_actual(heading.name, true);
+  if (deviation) return {SheetColumn::Use::kDeviation, axis, heading.unit, "by its heading"};
+  if (!axis.empty() && measured) {
+    if (const auto reading = reading_of(axis)) {
+      column.name = *reading;
+    } else {
+      column.use = SheetColumn::Use::kLeft;
+      column.why = "no reading of a measurement file is along " + axis +
+                   ": state which one this is, --column \"x=" + heading.text + "\"";
+    }
+    return column;
+  }
+  if (!axis.empty() && (target || words.size() == 1)) {
+    column.name = axis;
+    return column;
+  }
+  column.name = other(heading);
+  return column;
+}
+
+Guess::Bare Guess::bare(const std::string& name) {
+  static const std::set<std::string> kActual = {"ist", "istwert", "istposition", "actual", "act"};
+  Bare found = Bare::kOther;
+  for (const std::string& word : heading_words(name)) {
+    const std::string small = text::in_small_letters(word);
+    if (kActual.contains(small))
+      found = Bare::kActual;
+    else if (!says_target(small))
+      return Bare::kOther;
+    else if (found == Bare::kOther)
+      found = Bare::kTarget;
+  }
+  return found;
+}
+
+}  // namespace vernier::importer

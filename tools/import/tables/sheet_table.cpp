@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/tables/sheet_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
+#include "tools/import/tables/column_guess.h"
+#include "tools/import/tables/sheet_words.h"
+#include "tools/sheet/dates.h"
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+using Words = std::set<std::string>;
+namespace columns = format::columns;
+
+bool is_linear(const std::string& axis) { return axis == "X" || axis == "Y" || axis == "Z"; }
+
+/// Suggested unit for a deviation without one: of a rotary axis arcsec.
+std::string unit_of_deviation(const std::vector<SheetColumn>& columns, const std::string& axis) {
+  const bool rotary = std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+    return one.use == SheetColumn::Use::kColumn && one.name == axis &&
+           (one.unit.empty() ? !is_linear(axis) : is_angle(one.unit));
+  });
+  return rotary ? "arcsec" : "um";
+}
+
+/// Suggested unit for a column without one: that of the format, for an axis mm or deg.
+std::string unit_to_say(const std::string& name, const std::vector<SheetColumn>& columns) {
+  const std::string unit = format::column_unit(name);
+  if (!unit.empty()) return unit;
+  const bool letter =
+      name.size() <= 2 && (name[0] == 'A' || name[0] == 'B' || name[0] == 'C' || name[0] == 'J');
+  const bool length = std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+    const auto found = format::find_unit(one.unit);
+    return one.use == SheetColumn::Use::kDeviation && one.name == name && found &&
+           found->dimension == format::Dimension::kLength && !one.unit.empty();
+  });
+  return letter && !length ? "deg" : "mm";
+}
+
+/// The quantities that a column of this role may hold; empty: any. A machine's axes are linear or rotary, and
+/// so are its deviations and uncertainties.
+std::vector<format::Dimension> quantities_of(const SheetColumn& column, const Guess& guess) {
+  using format::Dimension;
+  const std::string& name = column.name;
+  const std::vector<Dimension> either = {Dimension::kLength, Dimension::kAngle};
+  if (column.use == SheetColumn::Use::kDeviation) return either;
+  if (guess.may_be_no_axis(name)) return {};
+  if (guess.is_axis(name)) return either;
+  if (guess.is_motion(name)) {
+    const format::AxisQuantity quantity = guess.of_axis(name)->quantity;
+    const Dimension linear = format::dimension_of(quantity, false),
+                    rotary = format::dimension_of(quantity, true);
+    return linear == rotary ? std::vector{linear} : std::vector{linear, rotary};
+  }
+  const format::ColumnGroup* const known = format::find_column(name);
+  if (known == nullptr || known->later || known->words) return {};
+  std::vector<Dimension> list = {format::dimension_of(*known)};
+  if (const auto other = format::other_dimension_of(*known)) list.push_back(*other);
+  return list;
+}
+
+/// A length in bar, or an angle in seconds of time, is refused with the required unit.
+void check_quantity(const SheetColumn& column, const Guess& guess, const std::string& heading,
+                    const text::Place& place) {
+  if (column.use == SheetColumn::Use::kLeft || column.words || column.unit.empty()) return;
+  const std::vector<format::Dimension> allowed = quantities_of(column, guess);
+  const auto unit = format::find_unit(column.unit);
+  if (allowed.empty() || !unit) return;
+  if (std::find(allowed.begin(), allowed.end(), unit->dimension) != allowed.end()) return;
+  std::string needs;
+  for (const format::Dimension one : allowed)
+    needs += (needs.empty() ? "" : " or ") + std::string(format::base_unit(one));
+  const bool pure = needs.empty();
+  throw text::InputError(place, heading,
+                         fmt::format("[{}] is no unit of {}{}, which needs {}", column.unit,
+                                     column.use == SheetColumn::Use::kDeviation ? "a deviation of " : "",
+                                     column.name, pure ? "a pure number" : "a unit like " + needs));
+}
+
+/// Approach directions as numbers: 1 and -1, 0 without motion. In the heading of a user who counts 1 and 0,
+/// or 1 and 2, the second number is the other direction. `dirX` of the measurement file keeps its meaning.
+void settle_senses(const sheet::Sheet& sheet, const std::vector<std::size_t>& rows, bool own_name,
+                   std::vector<std::string>& cells) {
+  Words found(cells.begin(), cells.end());
+  found.erase("");
+  if (!own_name && (found == Words{"0", "1"} || found == Words{"1", "2"}))
+    for (std::string& cell : cells)
+      if (cell == "0" || cell == "2") cell = "-1";
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (const std::string& cell = cells[i]; !cell.empty() && cell != "0" && cell != "1" && cell != "-1")
+      throw text::InputError(
+          {sheet.file, rows[i]}, cell,
+          "an approach direction is 1 or -1 (0: no motion), or a word such as forward or back");
+}
+
+/// The angle that a rotary axis turns by, as the measurement file names it.
+std::string angle_of(const std::string& axis, const text::Place& place) {
+  if (auto angle = format::angle_about(axis)) return *angle;
+  throw text::InputError(
+      place, axis,
+      "this column is a deviation in degrees: state its direction, for example --column \"rz[deg]=HEADING\"");
+}
+
+/// Does a heading only count or name its rows?
+bool names_counting(const sheet::Heading& heading) {
+  const std::vector<std::string> words = heading_words(heading.name);
+  return !words.empty() && std::all_of(words.begin(), words.end(), [](const std::string& word) {
+    return says_counting(text::in_small_letters(word));
+  });
+}
+
+/// Assignments that read a table in which nothing was recognised as measured, with its own headings.
+std::string assignments_to_try(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
+                               const Guess& guess) {
+  const auto axis = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& column) {
+    return column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name);
+  });
+  std::string position, reading, unit;
+  bool actual = false, correction = false;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
+        guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name) ||
+        names_counting(table.headings[k]))
+      continue;
+    const Guess::Bare bare = Guess::bare(table.headings[k].name);
+    if (bare == Guess::Bare::kTarget && axis == columns.end() && position.empty()) {
+      position =
+          fmt::format("--column \"{}={}\" ", column.unit.empty() ? "X[mm]" : "X", table.headings[k].text);
+    } else if (reading.empty() || (bare == Guess::Bare::kActual && !actual)) {
+      reading = table.headings[k].text;
+      unit = column.unit;
+      actual = bare == Guess::Bare::kActual;
+      correction = names_correction(table.headings[k]);
+    }
+  }
+  const std::string name = axis == columns.end() ? "X" : axis->name;
+  if (reading.empty()) reading = "HEADING";
+  if (correction)
+    return fmt::format("{}--deviation \"{}{}={}\" (a correction is nominal - actual: its sign is reversed)",
+                       position, name, unit.empty() ? "[um]" : "", reading);
+  return fmt::format(
+      "{}--column \"{}{}={}\" for a measured position, or {}--deviation \"{}{}={}\" for a deviation",
+      position, reading_of(name).value_or("x"),
+      unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[mm]" : "[deg]") : "", reading,
+      position, name,
+      unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[um]" : "[arcsec]") : "", reading);
+}
+
+/// A row with a reading needs the position of every axis that has a column.
+void refuse_readings_without_position(const ImportTable& table, const Guess& guess) {
+  std::vector<SheetColumn> all;
+  for (const ImportTable::Column& column : table.columns)
+    all.push_back({SheetColumn::Use::kColumn, column.name, column.unit, ""});
+  const Readings readings(all);
+  for (const ImportTable::Column& axis : table.columns) {
+    if (!guess.is_axis(axis.name) || guess.may_be_no_axis(axis.name)) continue;
+    for (std::size_t row = 0; row < table.line.size(); ++row) {
+      if (!axis.cells[row].empty()) continue;
+      for (std::size_t k = 0; k < all.size(); ++k)
+        if (readings.contain(all[k]) && !table.columns[k].cells[row].empty())
+          throw text::InputError(
+              {table.file, table.line[row]}, axis.name,
+              "the position of this axis is empty in a row with a reading; if the value above "
+              "it applies, give --fill with the heading of the column");
+    }
+  }
+}
+
+/// The headings of readings whose cells are all empty: a template that was not filled in.
+std::string empty_readings(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns) {
+  std::vector<std::string> found;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const format::ColumnGroup* const known = format::find_column(table.headings[k].name);
+    const bool reading = known != nullptr && known->use == format::ColumnUse::kReading;
+    if (columns[k].use == SheetColumn::Use::kLeft && columns[k].why == "empty" && reading)
+      found.push_back(table.headings[k].text);
+  }
+  return text::joined(found, ", ");
+}
+
+/// One cell as the measurement file writes it.
+std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, const std::string& cell,
+                      std::size_t row) {
+  const text::Place place{sheet.file, sheet.line[row]};
+  if (column.words) return cell;
+  if (is_label(column.name)) {
+    const std::string small = text::in_small_letters(cell);
+    if (column.name != columns::kRole) return cell;
+    if (small == "kontrolle" || small == "prüfen") return format::kCheckRole;
+    if (format::is_role(small) || small.empty()) return small;
+    throw text::InputError(place, cell, format::kRoleRule);
+  }
+  if (is_missing(cell) && !is_sense(column.name)) return "";
+  if (cell.empty())
+    throw text::InputError(place, column.name,
+                           "the cell of the approach direction is empty; if the value above it applies, give "
+                           "--fill with the heading of this column");
+  if (is_sense(column.name))
+    if (const int sense = sense_said(cell); sense != 0) return std::to_string(sense);
+  if (const auto number = sheet::plain_number(cell, sheet.decimal_comma)) return *number;
+  if (sheet::is_date(cell))
+    throw text::InputError(place, cell,
+                           "a date or a time of day, not a number, for " + column.name +
+                               "; give the cells of this column the number format of the spreadsheet");
+  if (const auto both = sheet::number_and_unit(cell, sheet.decimal_comma))
+    throw text::InputError(place, cell,
+                           fmt::format("a number with the unit {}, for {}; write the unit in the heading "
+                                       "([{}]), numbers alone in the cells",
+                                       both->second, column.name, both->second));
+  const bool other_sign = sheet::plain_number(cell, !sheet.decimal_comma).has_value();
+  throw text::InputError(
+      place, cell,
+      "not a number, for " + column.name +
+          (other_sign
+               ? std::string("; a decimal ") + (sheet.decimal_comma ? "point" : "comma") +
+                     "? (give --decimal point or --decimal comma)"
+               : std::string("; write - in a cell without a value, or leave the column out (--leave)")));
+}
+
+}  // namespace
+
+ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                           const std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
+  ImportTable result{sheet.file, {}, {}};
+  const Guess guess(wishes);
+  const text::Place heading{sheet.file, sheet.line[table.heading_row]};
+  std::string without;
+  Words units;  // suggested for the columns without one
+  // The same value in every row (--set) is a column too.
+  std::vector<SheetColumn> all = columns;
+  for (const MappedColumn& constant : wishes.constants)
+    all.push_back({SheetColumn::Use::kColumn, constant.name, constant.unit, "as given"});
+  const Readings readings(all);
+  bool measured = std::any_of(all.begin() + static_cast<std::ptrdiff_t>(columns.size()), all.end(),
+                              [&](const SheetColumn& column) { return readings.contain(column); });
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    const bool geometry = guess.is_axis(column.name) ||
+                          ((is_known_name(column.name) || readings.contain(column)) && wants_unit(column));
+    const bool deviation = column.use == SheetColumn::Use::kDeviation;
+    if (wants_unit(column) && column.unit.empty() && (deviation || geometry)) {
+      const std::string unit =
+          deviation ? unit_of_deviation(columns, column.name) : unit_to_say(column.name, columns);
+      if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
+        throw text::InputError(heading, table.headings[k].text,
+                               "[" + unknown + "] is no known unit; known are " + format::known_units() +
+                                   "; convert the values to one of these units, and correct the heading");
+      units.insert(unit);
+      without += fmt::format(" {} \"{}[{}]={}\"", deviation ? "--deviation" : "--column", column.name, unit,
+                             table.headings[k].text);
+    }
+    if (column.use == SheetColumn::Use::kLeft) continue;
+    measured |= column.use == SheetColumn::Use::kDeviation || readings.contain(column);
+  }
+  if (!without.empty())
+    throw text::InputError(heading, "",
+                           "no unit: give it for " +
+                               (units.size() == 1 ? "all (--unit " + *units.begin() + ") or for " : "") +
+                               "each, such as" + without);
+  if (const std::string empty = measured ? "" : empty_readings(table, columns); !empty.empty())
+    throw text::InputError(heading, "",
+                           "the columns of readings are empty (" + empty +
+                               "): fill in the readings, then import the table again");
+  if (!measured)
+    throw text::InputError(heading, "",
+                           "nothing measured among the columns (" + format::reading_column_names() +
+                               ", or a deviation of an axis): assign one, such as " +
+                               assignments_to_try(table, columns, guess) +
+                               "; --preview shows what was understood");
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    check_quantity(columns[k], guess, table.headings[k].text, heading);
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto& cells = sheet.rows[row];
+    if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
+      continue;
+    result.line.push_back(sheet.line[row]);
+  }
+  const auto twice = [&](std::size_t k, const std::string& name) {
+    throw text::InputError(heading, table.headings[k].text,
+                           "this would be " + name +
+                               " a second time; leave one of the two columns out, such as "
+                               "--leave " +
+                               std::to_string(k + 1));
+  };
+  std::set<std::string> names;
+  std::map<std::string, std::size_t> axis_column;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (columns[k].use == SheetColumn::Use::kColumn) axis_column.emplace(columns[k].name, k);
+  const auto mm = [](const std::string& text, const std::string& unit) {
+    const format::Unit found = *format::find_unit(unit);
+    return *text::parse_number(text) * found.factor;
+  };
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    if (column.use == SheetColumn::Use::kLeft) continue;
+    const bool deviation = column.use == SheetColumn::Use::kDeviation;
+    ImportTable::Column made{
+        deviation ? text::in_small_letters(column.name) : column.name, deviation ? "mm" : column.unit, {}};
+    const std::string beside = column.to_target ? text::in_small_letters(column.name) : column.name;
+    const std::size_t base = deviation && axis_column.contains(beside) ? axis_column[beside] : columns.size();
+    const double sign = column.turned != column.to_target ? -1 : 1;
+    if (column.to_target) made.name = column.name;
+    if (deviation && base == columns.size())
+      throw text::InputError(heading, column.name, "this axis has no column");
+    if (deviation && is_angle(columns[base].unit)) {
+      made.name = angle_of(column.name, heading);
+      made.unit = "deg";
+      if (!is_angle(column.unit))
+        throw text::InputError(heading, table.headings[k].text,
+                               "a length, where " + column.name + " is an angle");
+    } else if (deviation && is_angle(column.unit)) {
+      throw text::InputError(heading, table.headings[k].text,
+                             "an angle, where " + column.name + " is a length");
+    }
+    if (deviation && !column.to_target && !reading_of(column.name))
+      throw text::InputError(heading, column.name,
+                             "no reading of a measurement file is along this axis; state the axis that it is "
+                             "parallel to, such as --deviation \"X=" +
+                                 table.headings[k].text + "\"");
+    if (!names.insert(made.name).second) twice(k, made.name);
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+      const auto& cells = sheet.rows[row];
+      if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
+        continue;
+      std::string text = cell_text(sheet, column, cells[k], row);
+      if (deviation && !text.empty()) {
+        const std::string at = cell_text(sheet, columns[base], cells[base], row);
+        if (at.empty())
+          throw text::InputError({sheet.file, sheet.line[row]}, column.name,
+                                 "a deviation without its position: the cell of \"" +
+                                     table.headings[base].text +
+                                     "\" is empty; if the value above it applies, give --fill \"" +
+                                     table.headings[base].text + "\"");
+        // Nine decimals are below every instrument: adding leaves no tail of binary digits.
+        text = text::fixed_text(mm(at, columns[base].unit) + sign * mm(text, column.unit), 9);
+      }
+      made.cells.push_back(std::move(text));
+    }
+    if (is_sense(made.name))
+      settle_senses(sheet, result.line, table.headings[k].text == made.name, made.cells);
+    result.columns.push_back(std::move(made));
+  }
+  for (const MappedColumn& constant : wishes.constants) {
+    if (result.find(constant.name) != nullptr)
+      throw text::InputError(heading, constant.name,
+                             "the table already has this column: omit --set, or exclude the column of the "
+                             "table (--leave HEADING)");
+    result.columns.push_back(
+        {constant.name, constant.unit,
+         std::vector<std::string>(result.line.size(), constant_cell(constant, sheet.decimal_comma))});
+  }
+  refuse_readings_without_position(result, guess);
+  return result;
+}
+
+}  // namespace vernier::importer
