@@ -195,7 +195,8 @@ bool find_disturbance(const FitResult& result, const model::Measurement& rows, c
                                         all.line[step.row])
                           : fmt::format("row {}", step.row + 1)));
   }
-  const double drift = result.noise.drift * unit.of_all();
+  // A drift of one kind alone is more often an error of the model in one direction.
+  const double drift = result.noise.drifts == 0 ? result.noise.drift * unit.of_all() : 0;
   offer(unit.angles_only ? drift / maths::kArcsecPerDeg * maths::kRadPerDeg * result.reach_mm : 1e-3 * drift,
         fmt::format("a drift of {:.3g} {}", drift, unit_name(unit.angles_only)));
   constexpr double kFarAbove = 5;  // times the noise

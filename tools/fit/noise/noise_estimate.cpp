@@ -73,13 +73,15 @@ struct NoiseParts {
   }
 };
 
-/// The sets of kinds that may drift: all (0), one alone, all but one.
-std::vector<std::uint32_t> sets_that_drift(const NoiseLayout& layout) {
+/// The sets of kinds that may drift: all (0), one alone, all but one. A kind alone needs enough readings:
+/// with few of them a drift fits any error.
+std::vector<std::uint32_t> sets_that_drift(const NoiseLayout& layout, const NoiseThresholds& limits) {
   std::vector<std::uint32_t> sets = {0};
   if (layout.series.size() < 2) return sets;
   std::uint32_t all = 0;
   for (const NoiseSeries& series : layout.series) all |= 1U << series.kind;
-  for (const NoiseSeries& series : layout.series) sets.push_back(1U << series.kind);
+  for (const NoiseSeries& series : layout.series)
+    if (series.reading.size() >= limits.least_freedom) sets.push_back(1U << series.kind);
   for (const NoiseSeries& series : layout.series)
     if (layout.series.size() > 2) sets.push_back(all & ~(1U << series.kind));
   return sets;
@@ -235,7 +237,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
     }
     if (!parts.drift) {
       constexpr double kTimeSteps = 1.2;  // of the logarithm of a time constant: a factor of 3.3
-      for (const std::uint32_t drifts : sets_that_drift(layout)) {
+      for (const std::uint32_t drifts : sets_that_drift(layout, limits)) {
         starts.clear();
         for (double time = least_log_time + kTimeSteps; time <= most_log_time; time += kTimeSteps)
           for (const double log : kLogRatios) {
