@@ -23,6 +23,9 @@ EQUIVALENT = [
     ("s.b >= e.lag_count", (">=", ">"), "a state that is not counted is refused at the end as well"),
     ("a.low > 0 ? a.low", ("<", "<="), "zero is its own opposite"),
     ("Feature::kPeakImpact, peak * per_mav, top < 0", ("<", "<="), "a peak of zero has no sign"),
+    ("if (count_ - begin_ > kSize)", (">", ">="), "the first sample is the same then"),
+    ("std::uint64_t before = count_ - 1", ("1", "2"), "neither of the two newest samples has two behind it"),
+    ("std::int64_t t[4], gap[3]", ("3", "4"), "a further place that nothing reads"),
     ("scale.rate_mHz < 1 ||", ("1", "2"), "a corner of at least 1 mHz needs a rate 64 times as high"),
     ("const std::int64_t p[4]", ("4", "5"), "a fifth place that nothing reads"),
 ]

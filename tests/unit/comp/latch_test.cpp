@@ -123,6 +123,26 @@ TEST(Latch, RefusesSamplesMoreThanASecondApart) {
   EXPECT_EQ(fault_of(358'000'000), LatchFault::kUneven);  // and above
 }
 
+TEST(Latch, IsExactAtTheFastestTravelAndRefusesMore) {
+  const auto latched_at = [](std::int64_t travel, LatchedPosition& latched) {
+    LatchRing ring;
+    for (int i = 0; i < 4; ++i) {
+      LatchSample sample{};
+      sample.at = InstantNs(i * 1'000'000);
+      sample.position[0] = AxisPosition(i * travel);
+      ring.add(sample);
+    }
+    EXPECT_EQ(ring.seek(InstantNs(1'500'000)), LatchFault::kNone);
+    return ring.position_of(0, false, InstantNs(0), latched);
+  };
+  // Positions count from the second sample: the last one is two steps of 2^34 away.
+  LatchedPosition latched;
+  ASSERT_EQ(latched_at((std::int64_t{1} << 34) - 2, latched), LatchFault::kNone);
+  EXPECT_EQ(latched.position.count, 3 * ((std::int64_t{1} << 33) - 1));
+  EXPECT_EQ(latched.truncation.count, 0);
+  EXPECT_EQ(latched_at(std::int64_t{1} << 34, latched), LatchFault::kTooFast);
+}
+
 TEST(Latch, GoesThroughARolloverWithoutAJump) {
   LatchRing ring;
   for (int i = 0; i < 10; ++i) {

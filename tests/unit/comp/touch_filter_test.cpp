@@ -45,6 +45,7 @@ TEST(TouchFilter, TakesTheFirstEdgeOfABouncingContact) {
   EXPECT_EQ(touches[0].kind, TouchKind::kTouch);
   EXPECT_EQ(touches[1].at, InstantNs(90'000'000));
   EXPECT_EQ(filter.counts().touches, 2u);
+  EXPECT_EQ(filter.counts().bounces, 6u);
   EXPECT_EQ(filter.counts().missing, 0u);
 }
 
