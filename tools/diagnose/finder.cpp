@@ -481,23 +481,13 @@ std::string Finder::too_large(std::size_t item) const {
     if (size > limit)
       return fmt::format("size: the term would reach {:.3g}, more than the largest plausible value {:g}",
                          size, limit);
-    // Touches of unknown objects agree as well if the axis does not move at all.
-    if (const double travel = travel_among_touches(candidate);
-        size > thresholds_.share_of_touched_travel * travel)
-      return fmt::format("size: the term would reach {:.3g}, and cancel the travel {:.3g} of its axis", size,
-                         travel);
   }
+  const double share =
+      evidence_.share_of_touch_error(candidate, pool_[item].scored.scanned, own_coefficients(item));
+  if (share > thresholds_.share_of_touch_error)
+    return fmt::format("size: the term is so steep that it repeats {:.2g} of the error of the touches",
+                       share);
   return {};
-}
-
-double Finder::travel_among_touches(const effects::Candidate& candidate) const {
-  const model::Machine& machine = evidence_.machine();
-  const auto axis = candidate.choice.axis;
-  const auto& place = candidate.choice.place;
-  const bool same_kind = axis && place && machine.axes[*axis].rotary == effects::is_angle(machine, *place);
-  if (evidence_.measurement().things.empty() || !same_kind) return std::numeric_limits<double>::infinity();
-  const Evidence::Range range = evidence_.range_of(*axis);
-  return range.high - range.low;
 }
 
 double Finder::extent_of(const effects::Candidate& candidate) const {

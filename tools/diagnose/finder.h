@@ -156,9 +156,6 @@ class Finder {
   /// Returns the reference for the size of a term. Angles: travel of the rotary axis that drives the angle,
   /// deg (0: no such axis); lengths: reach of the machine, mm.
   double extent_of(const effects::Candidate& candidate) const;
-  /// Range of the axis that drives a candidate, if its rows touch objects and the term is of the kind of the
-  /// axis (length or angle); else infinite.
-  double travel_among_touches(const effects::Candidate& candidate) const;
   /// Returns the largest value of a term with its linear unknown at 1, over the fit rows and along the axis
   /// that drives the term, mm or deg.
   double typical_size(const effects::Candidate& candidate, std::size_t linear, std::size_t item) const;

@@ -79,7 +79,7 @@ class Decision {
   std::string outliers() {
     is_noise_ = answer_.remaining.is_noise = down_to_noise();
     pieces_ = pieces_of_one_function(finder_.evidence(), pool_, accepted_);
-    if (is_noise_ || !pieces_.empty()) return {};
+    if (!pieces_.empty() || (is_noise_ && !exceeds_u())) return {};
     std::string blamed =
         outliers_to_blame(answer_.end.machine, rows_, answer_.end.residual, limits_).value_or("");
     if (!blamed.empty()) answer_.instrument = "outliers";
@@ -232,6 +232,14 @@ class Decision {
     }
     return std::none_of(shifted.begin(), shifted.end(),
                         [&](std::size_t set_up) { return others.contains(set_up); });
+  }
+
+  /// With u: is chi^2 larger than noise of this size explains? A single outlier among many readings raises it
+  /// without a structure.
+  bool exceeds_u() const {
+    const double freedom = std::max(1.0, answer_.end.freedom);
+    return fit::has_uncertainty(found_.measurement) &&
+           answer_.end.chi_square / freedom > 1 + limits_.noise_sigmas * std::sqrt(2 / freedom);
   }
 
   bool is_alone_in_noise() const { return accepted_.empty() && is_noise_; }

@@ -24,6 +24,8 @@ bool is_setpoint(const std::string& name) {
   const auto last = name.find_last_of("_-. ");
   if (last == std::string::npos) return false;
   const std::string end = name.substr(last + 1);
+  // T_sp is more often the temperature of a spindle; T_bed_sp is a set-point.
+  if (end == "sp" && name.find_first_of("_-. ") == last) return false;
   return std::find(kSetpoints.begin(), kSetpoints.end(), end) != kSetpoints.end();
 }
 

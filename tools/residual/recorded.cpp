@@ -8,6 +8,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/maths/factors.h"
+#include "tools/model/chain/touched_positions.h"
 
 namespace vernier::residual {
 namespace {
@@ -43,11 +44,9 @@ class Recorder {
   std::vector<RecordedColumn>& list_;
 };
 
-void add_motion(Recorder& recorder, const model::Machine& machine, const model::Measurement& m,
-                const std::set<std::size_t>& without) {
+void add_motion(Recorder& recorder, const model::Machine& machine, const model::Measurement& m) {
   const model::States& s = m.states;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    if (without.contains(i)) continue;
     const std::string& axis = machine.axes[i].name;
     const auto motion = [&](AxisQuantity quantity, ColumnKind kind, const model::Column& v) {
       const std::string name = format::axis_column(quantity, axis);
@@ -283,16 +282,15 @@ int pair_rank(const RecordedColumn& a, const RecordedColumn& b) {
 }  // namespace
 
 std::vector<RecordedColumn> recorded_columns(const model::Machine& machine, const model::Measurement& m,
-                                             const std::vector<std::size_t>& rows,
-                                             const std::set<std::size_t>& without) {
+                                             const std::vector<std::size_t>& rows) {
   std::vector<RecordedColumn> list;
   Recorder recorder(rows, list);
   const model::States& s = m.states;
+  const std::vector<model::Column> touched = model::touched_positions(machine, m);
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
-    if (!without.contains(i))
-      recorder.add(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", ColumnKind::kAxis,
-                   model::commanded(m, i), machine.axes[i].rotary);
-  add_motion(recorder, machine, m, without);
+    recorder.add(machine.axes[i].name, machine.axes[i].rotary ? "deg" : "mm", ColumnKind::kAxis,
+                 model::commanded(m, i) + touched[i] - s.axis[i], machine.axes[i].rotary);
+  add_motion(recorder, machine, m);
   if (m.has_recorded(columns::kTime))
     recorder.add(columns::kTime, format::column_unit(columns::kTime), ColumnKind::kTime, s.time);
   recorder.add(columns::kVisit, "", ColumnKind::kVisit, s.visit);

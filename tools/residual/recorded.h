@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -32,11 +31,10 @@ struct RecordedColumn {
 
 /// Returns the columns that vary over the rows `rows`: axes, recorded motion, t, visit, run,
 /// inputs, candidate inputs, normal.
-/// without: axes whose position and motion are left out.
+/// Positions of rows that touch an object are those on the object (model::touched_positions).
 std::vector<RecordedColumn> recorded_columns(const model::Machine& machine,
                                              const model::Measurement& measurement,
-                                             const std::vector<std::size_t>& rows,
-                                             const std::set<std::size_t>& without = {});
+                                             const std::vector<std::size_t>& rows);
 
 /// Columns of a Basis that belong together: the coefficients of one statement about the residual.
 struct BasisTerm {

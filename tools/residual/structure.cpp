@@ -6,7 +6,6 @@
 
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/maths/chance.h"
-#include "tools/model/chain/touching_axes.h"
 #include "tools/residual/cells.h"
 #include "tools/residual/findings.h"
 #include "tools/residual/omnibus.h"
@@ -49,26 +48,13 @@ void sort_by_strength(std::vector<Finding>& findings, const std::vector<KindSamp
                    [&](const Finding& a, const Finding& b) { return strength(a) > strength(b); });
 }
 
-/// rms of the residual of the fit rows' lengths, mm.
-double rms_of_lengths_mm(const model::Measurement& m, const Eigen::VectorXd& residual) {
-  double squares = 0, count = 0;
-  for (std::size_t i = 0; i < m.observations.size(); ++i) {
-    const model::Observation& o = m.observations[i];
-    if (model::is_rotation(o.kind) || m.check[o.row] != 0) continue;
-    squares += std::pow(residual[static_cast<Eigen::Index>(i)], 2);
-    ++count;
-  }
-  return std::sqrt(squares / std::max(1.0, count));
-}
-
 }  // namespace
 
 FailurePicture failure_picture(const model::Machine& machine, const model::Measurement& m,
                                const Eigen::VectorXd& residual, const StructureOptions& options) {
   FailurePicture picture;
   const std::vector<std::size_t> rows = fit_rows(m);
-  const std::vector<RecordedColumn> columns = recorded_columns(
-      machine, m, rows, model::touching_axes(machine, m, rows, rms_of_lengths_mm(m, residual)));
+  const std::vector<RecordedColumn> columns = recorded_columns(machine, m, rows);
   const std::vector<KindSample> samples = kind_samples(m, residual, columns, options);
   picture.chi_p = chi_tail(m, residual, options.fitted_parameters);
   if (samples.empty()) return picture;

@@ -274,7 +274,7 @@ class Enumerator {
                         form.place == effects::PlaceRule::kTurn || form.place == effects::PlaceRule::kJoint;
     if (form.place == effects::PlaceRule::kEachAxis || !driven) return with_place(choice);
     for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-      if (!own_[axis] || evidence_.follows_touches(axis)) continue;
+      if (!own_[axis]) continue;
       const bool turns =
           form.any([](const model::Expr& node) { return is_wave(node) && is_symbol(*node.args[0], "{q}"); });
       if (turns && !machine_.axes[axis].rotary) continue;  // degrees of a revolution, not millimetres

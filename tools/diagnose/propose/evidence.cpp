@@ -18,7 +18,7 @@
 #include "tools/maths/orthonormal.h"
 #include "tools/model/chain/evaluate.h"
 #include "tools/model/chain/prediction.h"
-#include "tools/model/chain/touching_axes.h"
+#include "tools/model/chain/touched_positions.h"
 
 namespace vernier::diagnose {
 namespace {
@@ -67,22 +67,30 @@ Evidence::Evidence(const model::Machine& fitted, const model::Measurement& measu
   raw_residual_ = residual_;
   absorb();
   raw_absorbed_ = absorbed_;
-  hold_axes_that_follow_touches();
+  take_touched_positions();
   split_blocks();
 }
 
-void Evidence::hold_axes_that_follow_touches() {
-  if (things_.cols() == 0) return;
-  double squares = 0, count = 0;
-  for (std::size_t i = 0; i < rows_.size(); ++i)
-    if (!model::is_rotation(measurement_.observations[observation_[i]].kind)) {
-      const auto at = static_cast<Eigen::Index>(i);
-      squares += std::pow(raw_residual_[at] / weight_[at], 2);
-      ++count;
-    }
-  following_ = model::touching_axes(machine_, measurement_, rows_, std::sqrt(squares / std::max(1.0, count)));
-  for (const std::size_t axis : following_) position_[axis].setConstant(range_of(axis).low);
+void Evidence::take_touched_positions() {
+  if (measurement_.things.empty()) return;
+  const std::vector<model::Column> touched = model::touched_positions(machine_, measurement_);
+  for (std::size_t axis = 0; axis < touched.size(); ++axis) {
+    position_[axis] += touched[axis] - measurement_.states.axis[axis];
+    recorded_.push_back(measurement_.states.axis[axis]);
+    measurement_.states.axis[axis] = touched[axis];
+  }
 }
+
+double Evidence::share_of_touch_error(const effects::Candidate& candidate, const std::vector<double>& scanned,
+                                      const Eigen::VectorXd& k) const {
+  if (recorded_.empty()) return 0;
+  model::States states = measurement_.states;
+  states.axis = recorded_;
+  ColumnMaker maker(*this);
+  const Eigen::MatrixXd change = maker.raw_at(candidate, scanned, states) - maker.raw(candidate, scanned);
+  return (change * k).norm() / std::max(raw_residual_.norm(), 1e-300);
+}
+
 void Evidence::take_inputs() {
   for (const model::CandidateInput& candidate : measurement_.candidates) {
     model::Input input;
@@ -167,7 +175,7 @@ void Evidence::find_reach(const Eigen::VectorXd& predicted) {
     range = {std::min(range.first, value), std::max(range.second, value)};
   }
   for (const auto& [kind, range] : ranges) reach_mm_ = std::hypot(reach_mm_, range.second - range.first);
-  if (things_.cols() == 0) return;
+  if (measurement_.things.empty()) return;
   // Readings of touches are 0: the points that were touched show the extent.
   reach_mm_ = std::max(reach_mm_, model::extent_of_points(machine_, measurement_, rows_));
 }
@@ -410,6 +418,11 @@ ColumnMaker::ColumnMaker(const Evidence& evidence)
     : evidence_(evidence), scratch_(evidence.machine()), own_statics_(scratch_.statics.size()) {}
 
 Eigen::MatrixXd ColumnMaker::raw(const effects::Candidate& candidate, const std::vector<double>& scanned) {
+  return raw_at(candidate, scanned, evidence_.measurement().states);
+}
+
+Eigen::MatrixXd ColumnMaker::raw_at(const effects::Candidate& candidate, const std::vector<double>& scanned,
+                                    const model::States& states) {
   scratch_.statics.resize(own_statics_);
   const std::vector<std::size_t> linear = effects::add_unknowns(scratch_, candidate, scanned);
   std::vector<char> active(scratch_.statics.size(), 0);
@@ -418,7 +431,7 @@ Eigen::MatrixXd ColumnMaker::raw(const effects::Candidate& candidate, const std:
   const std::vector<std::size_t>& rows = evidence_.rows();
   Eigen::MatrixXd result =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(linear.size()));
-  model::Evaluator evaluate(scratch_, evidence_.measurement().states, active);
+  model::Evaluator evaluate(scratch_, states, active);
   for (const effects::CandidateTerm& term : candidate.terms) {
     const model::ValueAndSlopes dual = evaluate(*model::parse_expression_for(scratch_, term.text));
     const auto answer = evidence_.response(evidence_.index_of(term.place));

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -110,8 +109,11 @@ class Evidence {
   /// Returns the approach direction of a row: as recorded, else from the rows before. The result is 0 if the
   /// approach direction is unknown.
   int sense_of(std::size_t axis, std::size_t row) const;
-  /// True if the positions of an axis are readings of touches, and not commands.
-  bool follows_touches(std::size_t axis) const { return following_.contains(axis); }
+  /// For touches: change of a term from the positions on the touched objects to the recorded positions, over
+  /// the residual of the given model. k: the linear unknowns. Recorded positions contain the error of the
+  /// touch: a steep term repeats it. 0 without touches.
+  double share_of_touch_error(const effects::Candidate& candidate, const std::vector<double>& scanned,
+                              const Eigen::VectorXd& k) const;
   /// Extent of the points that were read, mm; 0 if no lengths were read.
   double reach_mm() const { return reach_mm_; }
   Range time_range() const;
@@ -120,9 +122,8 @@ class Evidence {
   void take_inputs();
   void respond();
   void silence_rounding();
-  /// An axis that moved only until the tool touched, about as far as the error, has positions that follow the
-  /// error: they are readings and drive no effect. The search takes them for constant.
-  void hold_axes_that_follow_touches();
+  /// Moves the positions of rows that touch onto what they touched: recorded positions contain the error.
+  void take_touched_positions();
   /// Takes the columns of the unknown values of touched objects: the model absorbs them.
   void take_things(const model::HeldLinearisation& held);
   void find_reach(const Eigen::VectorXd& predicted);
@@ -151,7 +152,7 @@ class Evidence {
   std::vector<int> block_;
   std::vector<model::Column> position_;
   std::vector<std::vector<Eigen::Index>> poses_;  // observations that share an error
-  std::set<std::size_t> following_;               // axes whose positions are readings of touches
+  std::vector<model::Column> recorded_;           // positions of the axes, if they were moved onto objects
   std::vector<int> place_;                        // of each row of the measurement
   double pose_share_ = 0;
   bool noise_known_ = false, with_u_ = false;
@@ -170,6 +171,9 @@ class ColumnMaker {
  public:
   explicit ColumnMaker(const Evidence& evidence);
   Eigen::MatrixXd raw(const effects::Candidate& candidate, const std::vector<double>& scanned);
+  /// Returns the columns at other states of the rows.
+  Eigen::MatrixXd raw_at(const effects::Candidate& candidate, const std::vector<double>& scanned,
+                         const model::States& states);
   /// Returns the whitened columns of a candidate.
   Eigen::MatrixXd columns(const effects::Candidate& candidate, const std::vector<double>& scanned);
 

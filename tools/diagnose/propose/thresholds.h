@@ -287,9 +287,9 @@ struct AcceptanceThresholds {
   /// the eccentricity of a resolver, the sag of a long arm. Joints of humanoid robots yield by one degree in
   /// fifty.
   double size_share = 0.02;
-  /// For touches of unknown objects: share of the travel of an axis that a term of this axis may reach. A
-  /// term of -1 times the travel makes all touches agree.
-  double share_of_touched_travel = 0.3;
+  /// For touches: largest change of a term by the error of the touch in its positions, over that error: the
+  /// slope of the term. Errors of machines have slopes below a hundredth.
+  double share_of_touch_error = 0.2;
   /// A product of the search is rejected in two cases: fewer readings than this support it, or this share of
   /// its squares is in the span of failed effects.
   double witnesses = 10, copy_of_failed = 0.9;
@@ -318,7 +318,7 @@ struct AcceptanceThresholds {
     visit("acceptance.most_levels", most_levels);
     visit("acceptance.parts_of_sweep", parts_of_sweep);
     visit("acceptance.size_share", size_share);
-    visit("acceptance.share_of_touched_travel", share_of_touched_travel);
+    visit("acceptance.share_of_touch_error", share_of_touch_error);
     visit("acceptance.witnesses", witnesses);
     visit("acceptance.copy_of_failed", copy_of_failed);
     visit("acceptance.extended", extended);

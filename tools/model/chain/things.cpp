@@ -119,21 +119,26 @@ std::size_t Things::cluster_of(const Observation& o) const {
   return is_of_thing(o.kind) || between ? cluster_[measurement_.thing[o.row]] : kNoThing;
 }
 
-ThingsAt::ThingsAt(const Things& things, const Machine& machine, const ChainRows& chain)
-    : things_(things), machine_(machine) {
-  if (things.empty()) return;
-  const Measurement& m = things.measurement();
-  point_.assign(m.rows(), Vector3d::Zero());
+std::vector<Vector3d> points_at_things(const Machine& machine, const Measurement& m, const ChainRows& chain) {
+  std::vector<Vector3d> point(m.rows(), Vector3d::Zero());
   for (std::size_t row = 0; row < m.rows(); ++row) {
     if (m.thing[row] == kNoThing) continue;
-    point_[row] = chain.pose(row).origin;
+    point[row] = chain.pose(row).origin;
     if (!m.things[m.thing[row]].in_measuring_frame()) continue;
     const auto shift =
         base_shift_of(machine, m.states.names(m.states.setup)[m.states.of(m.states.setup, row)]);
     if (!shift) continue;
     const Frame base = sixdof_frame(machine.base_shifts[*shift].value);
-    point_[row] = base.rotation * point_[row] + base.origin;
+    point[row] = base.rotation * point[row] + base.origin;
   }
+  return point;
+}
+
+ThingsAt::ThingsAt(const Things& things, const Machine& machine, const ChainRows& chain)
+    : things_(things), machine_(machine) {
+  if (things.empty()) return;
+  const Measurement& m = things.measurement();
+  point_ = points_at_things(machine, m, chain);
   shapes_.resize(m.things.size());
   for (std::size_t cluster = 0; cluster < things.clusters(); ++cluster) estimate(cluster);
 }
@@ -141,6 +146,12 @@ ThingsAt::ThingsAt(const Things& things, const Machine& machine, const ChainRows
 double ThingsAt::tip(std::size_t thing) const {
   const std::size_t item = things_.tip_of(thing);
   return item == kNoThing ? 0 : machine_.statics[item].value;
+}
+
+TouchReading ThingsAt::read_at(const Observation& o, const Vector3d& point) const {
+  const std::size_t thing = things_.measurement().thing[o.row];
+  return touch(things_.measurement().things[thing].artefact, shapes_[thing], point, tip(thing),
+               format::component_of(o.kind));
 }
 
 ThingsAt::Reading ThingsAt::read(const Observation& o) const {
@@ -155,8 +166,7 @@ ThingsAt::Reading ThingsAt::read(const Observation& o) const {
     reading.by_unknown = {{things_.first_of(thing), along}, {things_.first_of(other), -along}};
     return reading;
   }
-  const TouchReading one = touch(m.things[thing].artefact, shapes_[thing], point_[o.row], tip(thing),
-                                 format::component_of(o.kind));
+  const TouchReading one = read_at(o, point_[o.row]);
   reading.predicted = one.value;
   reading.by_point = one.by_point;
   reading.by_tip = one.by_tip;

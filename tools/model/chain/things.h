@@ -64,6 +64,11 @@ class Things {
 /// scales).
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 
+/// Returns the tool point of each row that touched an object, in the frame of the object, mm; zero for other
+/// rows.
+std::vector<Eigen::Vector3d> points_at_things(const Machine& machine, const Measurement& measurement,
+                                              const ChainRows& chain);
+
 /// The touched objects of a measurement for one machine: every unknown value has its best estimate for this
 /// machine.
 class ThingsAt {
@@ -79,6 +84,9 @@ class ThingsAt {
   };
   /// Reading of a touched object (`same`, `on`), or a distance between two unknown points.
   Reading read(const Observation& observation) const;
+  /// Reading of a touched object with the tool point elsewhere (in the frame of the object, mm). The object
+  /// stays.
+  TouchReading read_at(const Observation& observation, const Eigen::Vector3d& point) const;
 
   const ThingShape& shape(std::size_t thing) const { return shapes_[thing]; }
   /// Sum over the readings of w^2 b b^T and of the precision of the known values: k x k.
