@@ -55,6 +55,19 @@ TEST_F(Roles, StatedOnesAreDeclaredInTheMachineFile) {
   EXPECT_EQ(class_of_input(parse_machine(more, "machine.xml").inputs.at(2)), InputClass::kSetpoint);
 }
 
+TEST(InputClass, OfANameThatMayBeASetPoint) {
+  const auto class_of = [](const char* name) {
+    Input input;
+    input.name = name;
+    input.unit = "degC";
+    return class_of_input(input);
+  };
+  EXPECT_EQ(class_of("T_bed_sp"), InputClass::kSetpoint);
+  EXPECT_EQ(class_of("T_bed_target"), InputClass::kSetpoint);
+  EXPECT_EQ(class_of("T_sp"), InputClass::kTemperature) << "a spindle";
+  EXPECT_EQ(class_of("T_set"), InputClass::kSetpoint);
+}
+
 TEST_F(Roles, IgnoredOnesAreAsIfTheyWereNotThere) {
   Measurement m = rows();
   const std::vector<ColumnRole> roles = {parse_column_role("T_stamp=ignore")};

@@ -135,6 +135,17 @@ TEST(FitOfThings, ATouchedPlaneIsInTheRecord) {
   EXPECT_NEAR(plane.place_mm[2], 2 + 0.001 * plane.place_mm[0] - 0.002 * plane.place_mm[1], 1e-6);
 }
 
+/// With the label of every second touch exchanged the arm agrees best without any length.
+TEST(FitOfThings, AnArmThatCollapsesIsNoResult) {
+  std::string rows = survey(false, 3);
+  for (std::size_t at = 0; (at = rows.find(",S", at)) != std::string::npos; ++at) rows[at + 2] = '0';
+  const FitResult result = fitted(rows);
+  EXPECT_NE(result.absurd.find("touches of unknown points agree best if the machine does not move"),
+            std::string::npos)
+      << result.absurd;
+  EXPECT_TRUE(fitted(survey(true, 3)).absurd.empty());
+}
+
 TEST(FitOfThings, ARobustLossIsRefusedByName) {
   FitOptions options;
   options.loss = Loss::kHuber;
