@@ -268,9 +268,8 @@ const Case kCases[] = {
      "Soll X [mm];Messwert X [um]\n0;0,4\n50;99999\n100;2,3\n150;3,1\n200;1\n",
      "X[mm],x[mm]\n0,0.0004\n50,149.999\n100,100.0023\n150,150.0031\n200,200.001\n"},
     {"ReadingsThatAreNeither", "Soll X [mm];Messwert X [um]\n0;8\n0,1;-24\n0,2;46\n0,3;62\n",
-     "refused: s.csv:1: \"Messwert X [um]\": the values neither follow X nor stay small beside it: state "
-     "what they "
-     "are, --column \"x[um]=Messwert X [um]\""},
+     "refused: s.csv:1: \"Messwert X [um]\": the values are neither positions of X nor small deviations from "
+     "them; state the meaning: --column \"x[um]=Messwert X [um]\""},
     {"ReadingAndDeviationOfOneAxis",
      "Position X [mm];Messwert X [um];Ist X [mm]\n0;0,4;0,0004\n50;-1,2;49,9988\n100;2,3;100,0023\n",
      "X[mm],x[mm]\n0,0.0004\n50,49.9988\n100,100.0023\n"},
@@ -289,14 +288,14 @@ const Case kCases[] = {
      "X[mm],x[mm]\n1,2.5\n2,3.5\n"},
     {"TablesSideBySideWithoutAnEmptyColumn",
      "X soll [mm];X Abw. [um];Y soll [mm];Y Abw. [um]\n0;1;0;4\n100;2;50;5\n200;3;100;6\n",
-     "refused: s.csv:1: X with its readings stands in the columns 1 to 2, Y in the columns 3 to 4"},
+     "refused: s.csv:1: X and its readings are in the columns 1 to 2, Y in the columns 3 to 4"},
     {"GridOfTwoAxes",
      "X soll [mm];X Abw. [um];Y soll [mm];Y Abw. [um]\n0;1;0;4\n100;2;0;5\n0;3;50;6\n100;4;50;7\n",
      "X[mm],x[mm],Y[mm],y[mm]\n0,0.001,0,0.004\n100,100.002,0,0.005\n0,0.003,50,50.006\n100,100.004,50,50."
      "007\n"},
     {"TablesSideBySide",
      "X soll [mm];X Abw. [um];;Y soll [mm];Y Abw. [um]\n0;1;;0;4\n100;2;;50;5\n200;3;;100;6\n",
-     "refused: s.csv:1: X with its readings stands in the columns 1 to 2, Y in the columns 4 to 5"},
+     "refused: s.csv:1: X and its readings are in the columns 1 to 2, Y in the columns 4 to 5"},
     {"AnEmptyColumnBetweenTargetsAndReadings",
      "X soll [mm];Y soll [mm];;X ist [mm];Y ist [mm]\n0;0;;0,1;0,1\n100;50;;100,1;50,2\n",
      "X[mm],Y[mm],x[mm],y[mm]\n0,0,0.1,0.1\n100,50,100.1,50.2\n"},
@@ -457,7 +456,7 @@ TEST(SheetNote, ARunThatOnlyItsFirstRowNamesAppliesToTheRowsBelow) {
   EXPECT_EQ(measurement_csv(table_of_sheet(read.sheet, read.table, read.columns, read.wishes)),
             "run,X[mm],x[mm]\na,0,1\na,9,10\nb,0,1\nb,9,11\n");
   ASSERT_EQ(read.sheet.notes.size(), 1u);
-  EXPECT_EQ(read.sheet.notes[0], "2 empty cells below \"Lauf\" have the value above them");
+  EXPECT_EQ(read.sheet.notes[0], "2 empty cells below \"Lauf\" get the value above them");
 }
 
 TEST(SheetNote, NamesEveryRowThatIsLeftOutOrShort) {

@@ -169,7 +169,8 @@ std::optional<Bed> bed_of(const model::Machine& machine, const ThreeAxes& axes, 
           {}};
   constexpr double kSteepest = 0.5;  // cosine of 60 deg: what is steeper is a wall
   if (std::abs(bed.normal.z()) < kSteepest)
-    throw text::InputError({machine.file, 0}, found->name, "this plane stands upright and is no bed");
+    throw text::InputError({machine.file, 0}, found->name,
+                           "this plane is nearly vertical: it cannot be the bed");
   for (std::size_t i = 0; i < 2; ++i) {
     bed.low[i] = axes.low[i], bed.high[i] = axes.high[i];
     for (const model::FitRecord::Range& range : machine.fitted->measured)

@@ -53,7 +53,7 @@ struct Bed {
 
 /// Returns the bed of this name from the fit record of a machine. An empty name: the only touched plane, or
 /// nullopt if the record has no plane. Throws InputError: no plane of this name, several planes without a
-/// name, a plane that stands nearly upright.
+/// name, a plane that is nearly vertical.
 std::optional<Bed> bed_of(const model::Machine& machine, const ThreeAxes& axes, const std::string& name);
 
 /// Returns the correction of a machine, by least squares over the working volume for skew and steps, and at

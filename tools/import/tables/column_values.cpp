@@ -212,8 +212,8 @@ void settle_reading(const sheet::Sheet& sheet, const sheet::SheetTable& table,
     if (!alone || pairs.target.size() < kEnough) return;
     throw text::InputError(
         place, heading.text,
-        fmt::format("the values neither follow {} nor stay small beside it: state what they "
-                    "are, {}",
+        fmt::format("the values are neither positions of {} nor small deviations from them; state the "
+                    "meaning: {}",
                     axis, ways_to_read(heading, axis, column)));
   }
   column.use = Use::kDeviation;
@@ -301,7 +301,7 @@ void refuse_tables_side_by_side(const sheet::Sheet& sheet, const sheet::SheetTab
       const std::string one = columns[blocks[i].target].name, other = columns[blocks[k].target].name;
       throw text::InputError(
           {sheet.file, sheet.line[table.heading_row]}, "",
-          fmt::format("{} with its readings stands in the columns {} to {}, {} in the columns {} to {}: if "
+          fmt::format("{} and its readings are in the columns {} to {}, {} in the columns {} to {}: if "
                       "these are two tables side by side, read each with --leave for the columns of the "
                       "other one; if the axes moved together, give --one-motion",
                       one, blocks[i].first + 1, blocks[i].last + 1, other, blocks[k].first + 1,

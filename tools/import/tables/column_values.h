@@ -6,11 +6,11 @@
 
 namespace vernier::importer {
 
-/// Decides by the values what a heading such as "Messwert X [um]" leaves open: the measured position, or its
-/// deviation from the target. A measured position follows the target; a deviation stays small while the axis
-/// moves. Readings are changed only if their heading gave their meaning. Throws InputError if the values
-/// contradict each reading: positions in a unit that is wrong by a factor, deviations that follow the axis
-/// (also if the user stated them), or values that are neither.
+/// A heading such as "Messwert X [um]" does not state whether the column has measured positions or deviations
+/// from the target. This function decides by the values. A measured position follows the target; a deviation
+/// stays small while the axis moves. Readings are changed only if their heading gave their meaning. Throws
+/// InputError if the values contradict each reading: positions in a unit that is wrong by a factor,
+/// deviations that follow the axis (also if the user stated them), or values that are neither.
 void settle_by_values(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                       std::vector<SheetColumn>& columns);
 

@@ -74,7 +74,7 @@ void fill_down(SheetReading& reading) {
       ++filled;
     }
     if (filled > 0)
-      sheet.notes.push_back(fmt::format("{} empty cells below \"{}\" have the value above them", filled,
+      sheet.notes.push_back(fmt::format("{} empty cells below \"{}\" get the value above them", filled,
                                         reading.table.headings[k].text));
   }
 }
