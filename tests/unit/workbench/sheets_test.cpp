@@ -59,6 +59,10 @@ TEST(Sheets, APreviewIsWhatTheImportDoes) {
 
 TEST(Sheets, WordsOfARequestAreTextsAndLists) {
   EXPECT_EQ(sheet_words(json{{"column", {"X[mm]=1"}}, {"skip", 2}}).skip, 2u);
+  const importer::SheetWords words = sheet_words(json{{"fill", {"T"}}, {"one-motion", true}});
+  EXPECT_EQ(words.fill, std::vector<std::string>{"T"});
+  EXPECT_TRUE(words.one_motion);
+  EXPECT_FALSE(sheet_words(json::object()).one_motion);
   EXPECT_THROW(sheet_words(json{{"column", "X[mm]=1"}}), InputError);
   EXPECT_THROW(sheet_words(json{{"unit", 3}}), InputError);
   EXPECT_THROW(sheet_words(json{{"set", {1}}}), InputError);

@@ -110,6 +110,9 @@ importer::SheetWords sheet_words(const nlohmann::json& request) {
   words.deviations = list_or_none(request, "deviation");
   words.left = list_or_none(request, "leave");
   words.constants = list_or_none(request, "set");
+  words.fill = list_or_none(request, "fill");
+  const auto motion = request.find("one-motion");
+  words.one_motion = motion != request.end() && motion->is_boolean() && motion->get<bool>();
   return words;
 }
 
