@@ -97,11 +97,25 @@ export class Page {
       `(() => { const one = document.querySelector(${JSON.stringify(selector)}); return one && !one.disabled && one.getClientRects().length > 0; })()`,
       selector,
     );
-    await this.evaluate(`document.querySelector(${JSON.stringify(selector)}).scrollIntoView({ block: 'center' })`);
-    const [x, y] = await this.evaluate(
-      `(() => { const box = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect(); return [box.left + box.width / 2, box.top + box.height / 2]; })()`,
-    );
-    await this.drag([x, y], [x, y]);
+    // The page may move while an answer arrives: press again where the element is now, until it has the click.
+    const one = `document.querySelector(${JSON.stringify(selector)})`;
+    for (let attempt = 0; attempt < 5; ++attempt) {
+      const [x, y] = await this.evaluate(
+        `(() => {
+          const one = ${one};
+          one.scrollIntoView({ block: 'center' });
+          window.wasClicked = false;
+          one.addEventListener('click', () => { window.wasClicked = true; }, { once: true, capture: true });
+          const box = one.getBoundingClientRect();
+          return [box.left + box.width / 2, box.top + box.height / 2];
+        })()`,
+      );
+      await this.drag([x, y], [x, y]);
+      // A click that leaves the page has no answer any more.
+      const clicked = await this.evaluate('window.wasClicked !== false');
+      if (clicked || !(await this.evaluate(`Boolean(${one}) && !${one}.disabled`))) return;
+    }
+    throw new Error(`${selector} was pressed five times and had no click`);
   }
   /** The mouse from one point to another with its button down. */
   async drag([x0, y0], [x1, y1]) {
