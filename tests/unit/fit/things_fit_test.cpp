@@ -135,11 +135,14 @@ TEST(FitOfThings, ATouchedPlaneIsInTheRecord) {
   EXPECT_NEAR(plane.place_mm[2], 2 + 0.001 * plane.place_mm[0] - 0.002 * plane.place_mm[1], 1e-6);
 }
 
-/// With the label of every second touch exchanged the arm agrees best without any length.
-TEST(FitOfThings, AnArmThatCollapsesIsNoResult) {
-  std::string rows = survey(false, 3);
-  for (std::size_t at = 0; (at = rows.find(",S", at)) != std::string::npos; ++at) rows[at + 2] = '0';
-  const FitResult result = fitted(rows);
+/// An arm without length meets every point: nothing is left of the readings, and it is no result.
+TEST(FitOfThings, AnArmThatCollapsedIsNoResult) {
+  std::string text = kArm;
+  for (const std::string length : {"<a value=\"300\"", "<b value=\"200\""})
+    text.replace(text.find(length), length.size(), length.substr(0, 2) + " Hide=\"true\" value=\"0.001\"");
+  const model::Machine arm = model::parse_machine(text, "arm.xml");
+  const FitResult result =
+      vernier::fit::fit(arm, model::parse_measurement(survey(false, 3), "s.csv", arm), {});
   EXPECT_NE(result.absurd.find("touches of unknown points agree best if the machine does not move"),
             std::string::npos)
       << result.absurd;
