@@ -189,8 +189,7 @@ void split(Sheet& sheet, const std::vector<Line>& lines) {
     if (sheet.separator == ' ' && cells.size() > width)
       if (std::vector<std::string> aligned = aligned_cells(line.text); aligned.size() <= width)
         cells = std::move(aligned);
-    if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
-      continue;
+    if (is_blank(cells)) continue;
     sheet.written.push_back(cells.size());
     sheet.rows.push_back(std::move(cells));
     sheet.line.push_back(line.number);
@@ -294,6 +293,10 @@ bool begins_with_error_value(const std::string& line) {
                            "#BEZUG!", "#WERT!", "#ZAHL!"})
     if (line.starts_with(word)) return true;
   return false;
+}
+
+bool is_blank(const std::vector<std::string>& row) {
+  return std::all_of(row.begin(), row.end(), [](const std::string& cell) { return cell.empty(); });
 }
 
 void remove_row(Sheet& sheet, std::size_t row) {

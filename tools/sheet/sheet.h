@@ -36,6 +36,9 @@ struct Sheet {
   std::vector<std::string> notes;              // what was left out, for the user
 };
 
+/// True if no cell of a row has a value.
+bool is_blank(const std::vector<std::string>& row);
+
 /// Removes one row with its line. row: index.
 void remove_row(Sheet& sheet, std::size_t row);
 

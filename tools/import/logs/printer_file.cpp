@@ -404,7 +404,7 @@ class ProbeLog {
     // Levelling of the gantry or the bed, and repeats at one place: no survey of the bed.
     if (has("gantry-relative") || has("making the following z") || has("probe accuracy results") ||
         has("z-tilt") || has("retries:"))
-      leave_out_from(series_.empty() ? 0 : series_.back());
+      leave_out_from(begin_of(series_.size()));
     if (has("mesh bed leveling complete") || has("mesh has been saved") || has("bed mesh generated"))
       end_series();
   }
@@ -415,9 +415,12 @@ class ProbeLog {
     first_of_point_ = first;
   }
 
+  /// Index of the first touch of a survey of the bed; after the last survey, of the touches of none.
+  std::size_t begin_of(std::size_t k) const { return k == 0 ? 0 : series_[k - 1]; }
+
   /// Ends a survey of the bed: later touches may be of another state of the bed.
   void end_series() {
-    if (touches_.size() > (series_.empty() ? 0 : series_.back())) series_.push_back(touches_.size());
+    if (touches_.size() > begin_of(series_.size())) series_.push_back(touches_.size());
     first_of_point_ = touches_.size();
   }
 
@@ -441,7 +444,7 @@ class ProbeLog {
     if (series_.size() < 2 && !options_.series) return touches_;
     std::string list;
     for (std::size_t k = 0; k < series_.size(); ++k) {
-      const std::size_t first = k == 0 ? 0 : series_[k - 1];
+      const std::size_t first = begin_of(k);
       list += fmt::format("{}{} ({} touches from line {})", k == 0 ? "" : ", ", k + 1, series_[k] - first,
                           touches_[first].line);
     }
@@ -452,7 +455,7 @@ class ProbeLog {
     if (*options_.series < 1 || *options_.series > series_.size())
       throw text::InputError({file_, 0}, std::to_string(*options_.series),
                              "no such survey of the bed: the log has " + (list.empty() ? "none" : list));
-    const std::size_t k = *options_.series - 1, first = k == 0 ? 0 : series_[k - 1];
+    const std::size_t k = *options_.series - 1, first = begin_of(k);
     return {touches_.begin() + static_cast<std::ptrdiff_t>(first),
             touches_.begin() + static_cast<std::ptrdiff_t>(series_[k])};
   }

@@ -13,9 +13,10 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/tables/column_guess.h"
+#include "tools/maths/median.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/numbers.h"
-#include "tools/text/words.h"
 
 namespace vernier::importer {
 namespace {
@@ -33,7 +34,7 @@ constexpr double kShareOfTravel = 0.02;
 /// within this share of such a ratio.
 constexpr double kSameRatio = 0.01;
 
-/// Axes with a reading along or about them.
+/// Axes with a reading along or about them, reading_of.
 constexpr std::array kAxes = {"X", "Y", "Z", "A", "B", "C"};
 
 /// Values of one cell pair after another: target, reading; mm if their units are known.
@@ -72,13 +73,6 @@ std::optional<std::size_t> column_named(const std::vector<SheetColumn>& columns,
   return std::nullopt;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double span_of(const std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -96,7 +90,7 @@ std::optional<double> slope_of(const Pairs& pairs) {
       if (const double moved = pairs.target[k] - pairs.target[i]; moved != 0)
         slopes.push_back((pairs.reading[k] - pairs.reading[i]) / moved);
   if (slopes.empty()) return std::nullopt;
-  return median_of(std::move(slopes));
+  return maths::median(std::move(slopes));
 }
 
 /// The ratio of two units of length that a slope is, if the readings follow the line; else empty.
@@ -106,9 +100,9 @@ std::string ratio_of_units(const Pairs& pairs, double slope) {
   std::vector<double> left;
   for (std::size_t i = 0; i < pairs.target.size(); ++i)
     left.push_back(pairs.reading[i] - slope * pairs.target[i]);
-  const double middle = median_of(left);
+  const double middle = maths::median(left);
   for (double& one : left) one = std::abs(one - middle);
-  if (median_of(left) > kSlope * std::abs(slope) * span_of(pairs.target)) return "";
+  if (maths::median(left) > kSlope * std::abs(slope) * span_of(pairs.target)) return "";
   for (const auto& [ratio, text] : kRatios)
     if (std::abs(slope / ratio - 1) < kSameRatio) return text;
   return "";
@@ -124,18 +118,14 @@ Nature nature_of(const Pairs& pairs) {
     reading.push_back(std::abs(pairs.reading[i]));
     apart.push_back(std::abs(pairs.reading[i] - pairs.target[i]));
   }
-  const double size = median_of(reading);
+  const double size = maths::median(reading);
   if (const auto slope = slope_of(pairs)) {
     if (std::abs(*slope - 1) < kSlope) return Nature::kPosition;
-    const bool small = size < kShareOfTravel * std::max(span_of(pairs.target), median_of(target));
+    const bool small = size < kShareOfTravel * std::max(span_of(pairs.target), maths::median(target));
     return std::abs(*slope) < kSlope && small ? Nature::kDeviation : Nature::kUnclear;
   }
-  if (median_of(apart) < kSmall * median_of(target)) return Nature::kPosition;
-  return size < kSmall * median_of(target) ? Nature::kDeviation : Nature::kUnclear;
-}
-
-std::string reading_name(const std::string& axis) {
-  return format::angle_about(axis).value_or(text::in_small_letters(axis));
+  if (maths::median(apart) < kSmall * maths::median(target)) return Nature::kPosition;
+  return size < kSmall * maths::median(target) ? Nature::kDeviation : Nature::kUnclear;
 }
 
 /// Does another component of the measured point follow this axis, and not its own one? Then the readings are
@@ -143,7 +133,7 @@ std::string reading_name(const std::string& axis) {
 bool is_turned_frame(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                      const std::vector<SheetColumn>& columns, std::size_t target, std::size_t reading) {
   for (const char* const axis : kAxes) {
-    const auto other = column_named(columns, reading_name(axis));
+    const auto other = column_named(columns, *reading_of(axis));
     if (!other || *other == reading || columns[*other].name == columns[reading].name) continue;
     if (const auto own = column_named(columns, axis))
       if (nature_of(pairs_of(sheet, table, columns, *own, *other)) != Nature::kUnclear) continue;
@@ -162,7 +152,7 @@ std::string ways_to_read(const sheet::Heading& heading, const std::string& axis,
   const std::string unit = column.unit.empty() ? "" : "[" + column.unit + "]";
   return fmt::format(
       "--column \"{}{}={}\" for a measured position, or --deviation \"{}{}={}\" for a deviation",
-      reading_name(axis), unit, heading.text, axis, unit, heading.text);
+      *reading_of(axis), unit, heading.text, axis, unit, heading.text);
 }
 
 void settle_reading(const sheet::Sheet& sheet, const sheet::SheetTable& table,
@@ -178,12 +168,12 @@ void settle_reading(const sheet::Sheet& sheet, const sheet::SheetTable& table,
   const std::string ratio = ratio_of_units(pairs, slope);
   const bool units_differ = !ratio.empty() && !column.unit.empty() && pairs.target.size() > 2;
   if (column.use == Use::kDeviation) {
-    if (nature == Nature::kPosition && !column.turned && slope != 0)
+    if (nature == Nature::kPosition && slope != 0)
       throw text::InputError(
           place, heading.text,
           fmt::format("the values follow {}, so they are positions and not deviations; give "
                       "--column \"{}{}={}\"",
-                      axis, reading_name(axis), column.unit.empty() ? "" : "[" + column.unit + "]",
+                      axis, *reading_of(axis), column.unit.empty() ? "" : "[" + column.unit + "]",
                       heading.text));
     if (units_differ && slope > 1)
       throw text::InputError(place, heading.text,
@@ -206,7 +196,7 @@ void settle_reading(const sheet::Sheet& sheet, const sheet::SheetTable& table,
     const bool alone = std::none_of(columns.begin(), columns.end(), [&](const SheetColumn& other) {
       return &other != &column && other.use == Use::kColumn && other.name != column.name &&
              std::any_of(kAxes.begin(), kAxes.end(),
-                         [&](const char* one) { return other.name == reading_name(one); });
+                         [&](const char* one) { return other.name == *reading_of(one); });
     });
     constexpr std::size_t kEnough = 3;  // fewer rows show nothing
     if (!alone || pairs.target.size() < kEnough) return;
@@ -238,7 +228,7 @@ void settle_by_values(const sheet::Sheet& sheet, const sheet::SheetTable& table,
     for (const char* const axis : kAxes) {
       const bool by_heading = columns[k].why == "by its heading";
       // A heading that is written as in the measurement file has its meaning.
-      const bool is_reading = columns[k].use == Use::kColumn && columns[k].name == reading_name(axis) &&
+      const bool is_reading = columns[k].use == Use::kColumn && columns[k].name == *reading_of(axis) &&
                               by_heading && table.headings[k].name != columns[k].name;
       const bool is_deviation = columns[k].use == Use::kDeviation && columns[k].name == axis;
       if (!is_reading && !is_deviation) continue;
@@ -284,7 +274,7 @@ void refuse_tables_side_by_side(const sheet::Sheet& sheet, const sheet::SheetTab
     if (!target) continue;
     AxisBlock block{*target, *target, *target, false};
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      const bool reading = (columns[k].use == Use::kColumn && columns[k].name == reading_name(axis)) ||
+      const bool reading = (columns[k].use == Use::kColumn && columns[k].name == *reading_of(axis)) ||
                            (columns[k].use == Use::kDeviation && columns[k].name == axis);
       if (!reading) continue;
       block.first = std::min(block.first, k);

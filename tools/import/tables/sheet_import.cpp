@@ -63,9 +63,7 @@ void fill_down(SheetReading& reading) {
     std::string above;
     for (std::size_t row = first; row < sheet.rows.size(); ++row) {
       std::vector<std::string>& cells = sheet.rows[row];
-      const bool blank =
-          std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.empty(); });
-      if (blank) continue;
+      if (sheet::is_blank(cells)) continue;
       if (!cells[k].empty()) {
         above = cells[k];
         continue;
@@ -87,7 +85,7 @@ void note_sparse_columns(SheetReading& reading) {
     std::size_t empty = 0, rows = 0;
     for (std::size_t row = reading.table.first_data; row < reading.sheet.rows.size(); ++row) {
       const std::vector<std::string>& cells = reading.sheet.rows[row];
-      if (std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.empty(); })) continue;
+      if (sheet::is_blank(cells)) continue;
       ++rows;
       empty += cells[k].empty() ? 1 : 0;
     }

@@ -282,8 +282,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     check_quantity(columns[k], guess, table.headings[k].text, heading);
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const auto& cells = sheet.rows[row];
-    if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
-      continue;
+    if (sheet::is_blank(cells)) continue;
     result.line.push_back(sheet.line[row]);
   }
   const auto twice = [&](std::size_t k, const std::string& name) {
@@ -331,8 +330,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     if (!names.insert(made.name).second) twice(k, made.name);
     for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
       const auto& cells = sheet.rows[row];
-      if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
-        continue;
+      if (sheet::is_blank(cells)) continue;
       std::string text = cell_text(sheet, column, cells[k], row);
       if (deviation && !text.empty()) {
         const std::string at = cell_text(sheet, columns[base], cells[base], row);
