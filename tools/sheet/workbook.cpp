@@ -255,12 +255,12 @@ class Reader {
   };
   static CellPlace place_of(std::string_view reference) {
     CellPlace place;
-    for (const char c : reference) {
-      if (c >= 'A' && c <= 'Z' && place.column <= kMostColumns)
-        place.column = 26 * place.column + static_cast<std::size_t>(c - 'A') + 1;
-      if (c >= '0' && c <= '9' && place.row <= kMostRows)
-        place.row = 10 * place.row + static_cast<std::size_t>(c - '0');
-    }
+    auto c = reference.begin();
+    for (; c != reference.end() && *c >= 'A' && *c <= 'Z'; ++c)
+      if (place.column <= kMostColumns)
+        place.column = 26 * place.column + static_cast<std::size_t>(*c - 'A') + 1;
+    for (; c != reference.end() && *c >= '0' && *c <= '9'; ++c)
+      if (place.row <= kMostRows) place.row = 10 * place.row + static_cast<std::size_t>(*c - '0');
     return place;
   }
 
@@ -297,12 +297,7 @@ class Reader {
 
   /// "AB12" is column 27. Without a reference it is the next column.
   static std::size_t column_of(const pugi::xml_node& cell, std::size_t next) {
-    const std::string_view reference = cell.attribute("r").value();
-    std::size_t column = 0;
-    for (const char c : reference) {
-      if (c < 'A' || c > 'Z' || column > kMostColumns) break;
-      column = 26 * column + static_cast<std::size_t>(c - 'A') + 1;
-    }
+    const std::size_t column = place_of(cell.attribute("r").value()).column;
     return column == 0 ? next : column - 1;
   }
 
