@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which conditions of `comp` and `tables` do their own tests decide alone (MC/DC)?
+"""Which conditions of `comp` and `tables`, or of `firmware/core`, do their own tests decide alone (MC/DC)?
 
-Needs clang-19 and llvm-19 (Debian packages). Builds the tests of both rooms with the coverage of clang, runs them,
+Needs clang-19 and llvm-19 (Debian packages). Builds the tests of the rooms with the coverage of clang, runs them,
 and prints a table: branches and conditions of each file, and how many the tests leave. Exit status 1 if a condition
 is left that is not in LEFT. tables/image_view.cpp and tables/codes.cpp are not here: their tests need the compiler.
-    mcdc.py [--build DIR]
+    mcdc.py [--rooms firmware] [--build DIR]
 """
 import argparse, json, os, sys, tempfile
-from programs import ROOT, compile_all, run, sources, tests
+from programs import ROOT, add_options, compile_all, rooms_of, run
 
 COVERAGE = ["-O1", "-fprofile-instr-generate", "-fcoverage-mapping", "-fcoverage-mcdc"]
 # File: conditions that no test decides alone, and why.
@@ -21,15 +21,18 @@ LEFT = {
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", default=os.path.join(tempfile.gettempdir(), "vernier_mcdc"))
-    build = parser.parse_args().build
-    objects = compile_all("clang++-19", sources(), os.path.join(build, "rooms"), COVERAGE)
-    objects += compile_all("clang++-19", tests(), os.path.join(build, "tests"), COVERAGE)
+    add_options(parser)
+    wanted = parser.parse_args()
+    build, rooms = wanted.build, rooms_of(wanted)
+    flags = [*COVERAGE, *rooms.flags]
+    objects = compile_all("clang++-19", rooms.sources, os.path.join(build, "rooms"), flags)
+    objects += compile_all("clang++-19", rooms.tests, os.path.join(build, "tests"), flags)
     program, raw, data = (os.path.join(build, name) for name in ("tests.bin", "raw", "data"))
-    run(["clang++-19", "-fprofile-instr-generate", *objects, "-lgtest", "-lgtest_main", "-o", program])
+    run(["clang++-19", "-fprofile-instr-generate", *objects, *rooms.libraries, "-o", program])
     run([program], env={**os.environ, "LLVM_PROFILE_FILE": raw})
     run(["llvm-profdata-19", "merge", raw, "-o", data])
     report = json.loads(
-        run(["llvm-cov-19", "export", "-summary-only", program, "-instr-profile", data, *(os.path.join(ROOT, r) for r in ("comp", "tables"))]))
+        run(["llvm-cov-19", "export", "-summary-only", program, "-instr-profile", data, *(os.path.join(ROOT, folder) for folder in rooms.folders)]))
     left = 0
     print(f"{'file':36} {'branches':>8} {'left':>5} {'conditions':>11} {'left':>5}")
     for one in sorted(report["data"][0]["files"], key=lambda f: f["filename"]):
