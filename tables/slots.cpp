@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "comp/fixed.h"
 #include "tables/checksum.h"
 
 namespace vernier {
@@ -20,7 +21,7 @@ SlotRecord upgraded(const SlotRecordV1& record) noexcept {
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&record);
   if (record.magic != kSlotMagicV1 || record.checksum != crc32c(bytes, offsetof(SlotRecordV1, checksum)))
     return {};
-  const std::uint64_t newest = record.issued > record.trial_issued ? record.issued : record.trial_issued;
+  const std::uint64_t newest = higher(record.issued, record.trial_issued);
   SlotRecord now{kSlotMagic, record.sequence,  record.issued, record.trial_issued, newest,
                  0,          record.confirmed, record.trial,  record.reserved,     0,
                  0};
@@ -60,8 +61,8 @@ SlotChange Slots::start_trial(std::uint64_t issued, std::uint32_t security) cons
   SlotRecord next = now_;
   next.trial = free_slot();
   next.trial_issued = issued;
-  next.newest_issued = issued > now_.newest_issued ? issued : now_.newest_issued;
-  next.security = security > now_.security ? security : now_.security;
+  next.newest_issued = higher(issued, now_.newest_issued);
+  next.security = higher(security, now_.security);
   return change_to(next);
 }
 

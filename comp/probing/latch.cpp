@@ -64,10 +64,10 @@ LatchFault LatchRing::seek(InstantNs when) noexcept {
   const std::int64_t at = (when - sample(first).at).count;
   first_ = first;
   for (int i = 0; i < 3; ++i) gap_[i] = gap[i];
-  r01_ = ratio(at - t[0], t[1] - t[0]), r12_ = ratio(at - t[1], t[2] - t[1]),
-  r23_ = ratio(at - t[2], t[3] - t[2]);
-  r02_ = ratio(at - t[0], t[2] - t[0]), r13_ = ratio(at - t[1], t[3] - t[1]),
-  r03_ = ratio(at - t[0], t[3] - t[0]);
+  // Times count from the first of the four samples: t[0] is zero.
+  r01_ = ratio(at, t[1]), r12_ = ratio(at - t[1], t[2] - t[1]), r23_ = ratio(at - t[2], t[3] - t[2]);
+  r02_ = ratio(at, t[2]), r13_ = ratio(at - t[1], t[3] - t[1]);
+  r03_ = ratio(at, t[3]);
   return LatchFault::kNone;
 }
 
