@@ -51,6 +51,8 @@ TEST(Compensator, HoldsTheEdgeOneCountBeyondTheRangeAndSaysSo) {
   Quarter machine;
   machine.outputs[0] = {0, 1, 0, 1, INT32_MAX, INT32_MAX};
   Compensator compensator(machine.program());
+  EXPECT_EQ(compensator.step(at(-1000000)).flags, 0u);
+  EXPECT_EQ(compensator.step(at(-1000001)).flags, std::uint32_t{kBeyondRange});
   EXPECT_EQ(compensator.step(at(2000000)).flags, 0u);
   const CycleOutput beyond = compensator.step(at(2000001));
   EXPECT_EQ(beyond.flags, std::uint32_t{kBeyondRange});
@@ -69,6 +71,15 @@ TEST(Compensator, LimitsMagnitudeThenSlew) {
   for (int tick = 1; tick < 6; ++tick) out = compensator.step(at(2000000));
   EXPECT_EQ(out.correction[0].counts, -300000);
   EXPECT_EQ(out.flags, std::uint32_t{kSaturated});
+}
+
+TEST(Compensator, CorrectionOfExactlyTheLimitIsNotHeldByIt) {
+  Quarter machine;
+  machine.outputs[0].slew = INT32_MAX;
+  Compensator compensator(machine.program());
+  EXPECT_EQ(compensator.step(at(1200000)).flags, 0u);
+  EXPECT_EQ(compensator.step(at(1200004)).flags, std::uint32_t{kSaturated});
+  EXPECT_EQ(compensator.step(at(1200004)).correction[0].counts, -300000);
 }
 
 TEST(Compensator, RampsByWeightAndStartsAgainFromZero) {
@@ -183,6 +194,31 @@ TEST(Compensator, PrintedFormStandsInForTheProgram) {
   Compensator slow(machine.program());
   slow.start_from(0, Correction{90});
   EXPECT_EQ(slow.step(at(0)).correction[0].counts, 80);
+}
+
+void two_deviations(const std::int32_t* channel, LagState*, bool, std::int32_t* deviation) noexcept {
+  deviation[0] = channel[0];
+  deviation[1] = 2 * channel[0];
+}
+
+TEST(Compensator, PrintedFormFillsEachOutput) {
+  const Channel channel{ChannelKind::kPosition, 0, 0, 0, 1, -1000, 1000, 0};
+  const Instruction steps[2] = {{OpCode::kLinear, 0, 0, 0, 0, 1, 0}, {OpCode::kLinear, 0, 0, 0, 0, 2, 0}};
+  const Output outputs[2] = {{1, 1, 0, 1, 1000, 1000}, {0, 2, 0, 1, 1000, 1000}};
+  Program p;
+  p.equation.channel_count = 1;
+  p.equation.instructions = {steps, 2};
+  p.equation.result_count = 2;
+  p.channels = {&channel, 1};
+  p.outputs = {outputs, 2};
+  p.axis_count = 2;
+  Compensator executed(p), printed(p);
+  printed.use_printed(two_deviations);
+  for (Compensator* compensator : {&executed, &printed}) {
+    const CycleOutput out = compensator->step(at(100));
+    EXPECT_EQ(out.correction[1].counts, -100);
+    EXPECT_EQ(out.correction[0].counts, -200);
+  }
 }
 
 TEST(Compensator, StateIsEmptyForMoreChannelsThanItHolds) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 #include <random>
+#include <vector>
 
 namespace vernier::displacement_test {
 namespace {
@@ -74,6 +75,20 @@ TEST(Displacement, RefusesSettingsItCannotKeepItsBoundsWith) {
         DisplacementScale{1, 1'000'000, 500, 250'001}, DisplacementScale{1, 1'000'000, 500, -1},
         DisplacementScale{INT32_MAX, 1'000, 10, 0}})
     EXPECT_FALSE(filter.start(bad));
+  EXPECT_TRUE(filter.start({1, 1'000'000, 500, 250'000})) << "exact at a quarter of the rate";
+  EXPECT_TRUE(filter.start({1, 131'072, 1, 0})) << "the lowest corner at a rate";
+  EXPECT_FALSE(filter.start({1, 131'073, 1, 0}));
+}
+
+// 2^14 nm of one LSB in one sample: the factor of the guard unit is a fraction below one.
+TEST(Displacement, RefusesAnLsbThatMovesMoreThanSixteenMicrometresInASample) {
+  const double rate_Hz = 100, gain = std::pow(1 - 2 * kPi * 0.01 / std::sqrt(2), 2);
+  const double limit = 16384 * rate_Hz * rate_Hz / gain;
+  const auto starts = [](double lsb_nm_s2) {
+    return Displacement{}.start({std::llround(lsb_nm_s2), 100'000, 1'000, 0});
+  };
+  EXPECT_TRUE(starts(limit * (1 - 1e-6)));
+  EXPECT_FALSE(starts(limit * (1 + 1e-6)));
 }
 
 TEST(Displacement, CountsSamplesBeyondItsLimit) {
@@ -132,6 +147,30 @@ TEST(Displacement, RoundingStaysBelowItsBound) {
         kSeed, static_cast<long long>(scale.corner_mHz), static_cast<long long>(scale.rate_mHz), worst,
         rounding_bound_nm(reference), coefficients);
   }
+}
+
+// Samples of full scale, each with the sign that its response has at the end: no other samples give a larger
+// displacement. The corner is the lowest that start() accepts.
+TEST(Displacement, LargestDisplacementOfTheLowestCornerFitsItsWidths) {
+  const DisplacementScale scale{100'000, 131'072'000, 1'000, 0};
+  Displacement filter;
+  ASSERT_TRUE(filter.start(scale));
+  InDouble impulse(scale), reference(scale);
+  std::vector<bool> up;
+  for (int i = 0; i < 300'000; ++i) up.push_back(impulse.step(i == 0 ? 1 : 0) >= 0);
+  double worst = 0, largest = 0;
+  for (auto sign = up.rbegin(); sign != up.rend(); ++sign) {
+    const std::int32_t sample = *sign ? Displacement::kLimit : -Displacement::kLimit;
+    const double expected = reference.step(sample);
+    worst = std::max(worst, std::fabs(filter.step(sample).count - expected));
+    largest = std::max(largest, std::fabs(expected));
+  }
+  const double w = 2 * kPi,
+               bound = 0.71 * Displacement::kLimit * static_cast<double>(scale.lsb_nm_s2) / (w * w);
+  EXPECT_LT(largest, bound);
+  EXPECT_GT(largest, 0.97 * bound);
+  EXPECT_EQ(filter.held(), 0u);
+  EXPECT_LT(worst, rounding_bound_nm(reference) + std::ldexp(largest, -28)) << "31 bits of the coefficients";
 }
 
 TEST(Displacement, IsRightFromTheBandsFootToTwoHundredHertz) {

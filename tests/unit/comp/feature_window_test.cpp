@@ -219,6 +219,7 @@ TEST(FeatureWindow, SaysWhatIsUndefinedAndWhatWasHeld) {
   EXPECT_FALSE(window.start({InputMicro((std::int64_t{1} << 30) + 1), InputMicro(1)}, weights));
   EXPECT_FALSE(window.start({InputMicro(1), InputMicro((std::int64_t{1} << 42) + 1)}, weights));
   EXPECT_TRUE(window.start({InputMicro(std::int64_t{1} << 30), InputMicro(std::int64_t{1} << 42)}, weights));
+  EXPECT_TRUE(window.start({InputMicro(1), InputMicro(1)}, weights));
   EXPECT_FALSE(window.start({}, SpectralWeights{}));
   ASSERT_TRUE(window.start({}, weights));
   for (int i = 0; i < 6; ++i) window.push(0);

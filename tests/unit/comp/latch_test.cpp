@@ -6,6 +6,9 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace vernier::latch_test {
 namespace {
@@ -109,18 +112,78 @@ TEST(Latch, SaysWhyItHasNoPosition) {
   EXPECT_EQ(ring.seek(InstantNs(1'090'000'000)), LatchFault::kNotYet);
 }
 
+// Four samples, one in a millisecond: only instants from the second to the third have two on each side.
+TEST(Latch, ReachesFromTheSecondSampleToTheLastButOne) {
+  LatchRing ring = sampled([](double t) { return 1e6 * t * t; }, 1, 4, 0, 1);
+  EXPECT_EQ(ring.seek(InstantNs(1'000'999'999)), LatchFault::kTooOld);
+  EXPECT_EQ(position_at(ring, 1.001), 1'002'001) << "the position of the second sample";
+  EXPECT_NEAR(position_at(ring, 1.001999999), 1'004'004, 1);
+  EXPECT_EQ(ring.seek(InstantNs(1'002'000'000)), LatchFault::kNotYet);
+}
+
+// Instant and position of each sample of a ring.
+LatchRing ring_of(const std::vector<std::pair<std::int64_t, std::int64_t>>& samples) {
+  LatchRing ring;
+  for (const auto& [at_ns, position] : samples) {
+    LatchSample sample{};
+    sample.at = InstantNs(at_ns);
+    sample.position[0] = AxisPosition(position);
+    ring.add(sample);
+  }
+  return ring;
+}
+
 TEST(Latch, RefusesSamplesMoreThanASecondApart) {
-  const auto fault_of = [](std::int64_t gap_ns) {
-    LatchRing ring;
-    for (int i = 0; i < 4; ++i) {
-      LatchSample sample{};
-      sample.at = InstantNs(i * gap_ns);
-      ring.add(sample);
-    }
-    return ring.seek(InstantNs(gap_ns + 1));
+  const auto fault_of = [](std::int64_t last_ns) {
+    return ring_of({{0, 0}, {357'913'941, 0}, {715'827'882, 0}, {last_ns, 0}}).seek(InstantNs(357'913'942));
   };
-  EXPECT_EQ(fault_of(357'000'000), LatchFault::kNone);    // 3 gaps below 2^30 ns
-  EXPECT_EQ(fault_of(358'000'000), LatchFault::kUneven);  // and above
+  EXPECT_EQ(fault_of((std::int64_t{1} << 30) - 1), LatchFault::kNone);
+  EXPECT_EQ(fault_of(std::int64_t{1} << 30), LatchFault::kUneven);
+}
+
+TEST(Latch, RefusesADistanceMoreThanEightTimesAnother) {
+  for (const int long_one : {0, 1, 2}) {
+    const auto fault_of = [&](std::int64_t most_ns) {
+      std::int64_t at[4] = {};
+      for (int i = 0; i < 3; ++i) at[i + 1] = at[i] + (i == long_one ? most_ns : 1'000'000);
+      return ring_of({{at[0], 0}, {at[1], 0}, {at[2], 0}, {at[3], 0}}).seek(InstantNs(at[1] + 1));
+    };
+    EXPECT_EQ(fault_of(8'000'000), LatchFault::kNone) << long_one;
+    EXPECT_EQ(fault_of(8'000'001), LatchFault::kUneven) << long_one;
+  }
+}
+
+TEST(Latch, NeedsTwoSamplesOnEachSideThatBelongTogether) {
+  LatchRing three = ring_of({{1'000'000, 0}, {2'000'000, 0}, {3'000'000, 0}});
+  EXPECT_EQ(three.seek(InstantNs(2'500'000)), LatchFault::kNotYet);
+  // The same instant twice: the samples before it are not followed by what comes now.
+  LatchRing again = ring_of({{0, 0}, {1'000'000, 0}, {2'000'000, 0}, {2'000'000, 0}, {3'000'000, 0}});
+  EXPECT_EQ(again.seek(InstantNs(2'500'000)), LatchFault::kNotYet);
+}
+
+TEST(Latch, KeepsTheNewestSamplesAndNoOlderOne) {
+  LatchRing ring = sampled([](double t) { return 1e6 * t; }, 0, 100, 0, 1);
+  const auto second_kept = std::int64_t{100 - LatchRing::kSize + 1} * 1'000'000;
+  EXPECT_EQ(ring.seek(InstantNs(second_kept)), LatchFault::kNone);
+  EXPECT_EQ(ring.seek(InstantNs(second_kept - 1)), LatchFault::kTooOld);
+}
+
+// The speed is highest before, at or behind the instant; the uncertainty of the instant acts with it.
+TEST(Latch, UncertaintyIsThatOfTheFastestOfTheThreeStretches) {
+  for (const auto& [a, b, c] : {std::tuple(300, 100, 200), std::tuple(100, 300, 200),
+                                std::tuple(200, -100, 300), std::tuple(-300, 100, 200)}) {
+    LatchRing ring = ring_of({{0, 0}, {1'000'000, a}, {2'000'000, a + b}, {3'000'000, a + b + c}});
+    ASSERT_EQ(ring.seek(InstantNs(1'000'000)), LatchFault::kNone);
+    LatchedPosition exact, blurred;
+    ASSERT_EQ(ring.position_of(0, false, InstantNs(0), exact), LatchFault::kNone);
+    EXPECT_EQ(exact.position.count, a);
+    ASSERT_EQ(ring.position_of(0, false, InstantNs(500'000), blurred), LatchFault::kNone);
+    // A remainder of the division is rounded up.
+    EXPECT_NEAR(static_cast<double>((blurred.uncertainty - exact.uncertainty).count), 150, 1);
+    EXPECT_GE((blurred.uncertainty - exact.uncertainty).count, 150);
+    ASSERT_EQ(ring.position_of(0, false, InstantNs(1'000'000'000), blurred), LatchFault::kNone);
+    EXPECT_EQ((blurred.uncertainty - exact.uncertainty).count, 15 * 300) << "at most fifteen distances";
+  }
 }
 
 TEST(Latch, IsExactAtTheFastestTravelAndRefusesMore) {
@@ -141,6 +204,9 @@ TEST(Latch, IsExactAtTheFastestTravelAndRefusesMore) {
   EXPECT_EQ(latched.position.count, 3 * ((std::int64_t{1} << 33) - 1));
   EXPECT_EQ(latched.truncation.count, 0);
   EXPECT_EQ(latched_at(std::int64_t{1} << 34, latched), LatchFault::kTooFast);
+  ASSERT_EQ(latched_at(-(std::int64_t{1} << 34) + 2, latched), LatchFault::kNone);
+  EXPECT_EQ(latched.position.count, -3 * ((std::int64_t{1} << 33) - 1));
+  EXPECT_EQ(latched_at(-(std::int64_t{1} << 34), latched), LatchFault::kTooFast);
 }
 
 TEST(Latch, GoesThroughARolloverWithoutAJump) {

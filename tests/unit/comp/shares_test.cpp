@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <utility>
+#include <vector>
 
 namespace vernier::shares_test {
 namespace {
@@ -79,6 +80,23 @@ TEST(VerifyShares, NamesEveryCause) {
   EXPECT_EQ(after([](Sample& s) { s.constants[0] = 1 << 20; }), ProgramFault::kOverflow);
 }
 
+TEST(VerifyShares, LargestProgramsAreAccepted) {
+  Sample s;
+  ASSERT_EQ(verify_program(s.program(), s.ranges), ProgramFault::kNone);
+  const std::vector<Share> shares(kMaxShares, {0, 3, 0, 1});
+  ShareProgram most = s.share_program();
+  most.shares = {shares.data(), kMaxShares};
+  EXPECT_EQ(verify_shares(most, s.program(), s.ranges), ProgramFault::kNone);
+  // Behind the three registers of the tick: constants, two sources and one result.
+  const std::uint32_t room = kMaxRegisters - 3 - 2 - 1;
+  const std::vector<std::int32_t> constants(room + 1, 2);
+  ShareProgram full = s.share_program();
+  full.equation.constants = {constants.data(), room};
+  EXPECT_EQ(verify_shares(full, s.program(), s.ranges), ProgramFault::kNone);
+  full.equation.constants.size = room + 1;
+  EXPECT_EQ(verify_shares(full, s.program(), s.ranges), ProgramFault::kTooLong);
+}
+
 TEST(VerifyShares, EachShareHasAnAxisASourceAndAFormat) {
   constexpr auto kOutput = ProgramFault::kOutput, kNone = ProgramFault::kNone;
   EXPECT_EQ(after([](Sample& s) { s.shares[1].axis = 1; }), kOutput);
@@ -118,6 +136,61 @@ TEST(RunShares, AreTheContributionsOfTheTick) {
   EXPECT_EQ(registers[2], 153);
   state.channel_count = 2;
   EXPECT_FALSE(run_shares(s.share_program(), program, state, registers, corrections)) << "of another program";
+}
+
+/// A program with two constants, two channels and two lags: 5 X and 7 Y, each delayed. Shares: 11 and 13
+/// times the two lags.
+struct TwoOfEach {
+  std::int32_t constants[2] = {5, 7};
+  Channel channels[2] = {{ChannelKind::kPosition, 0, 0, 0, 1, -1000, 1000, 0},
+                         {ChannelKind::kPosition, 1, 0, 0, 1, -1000, 1000, 0}};
+  Instruction steps[4] = {{OpCode::kMultiply, 0, 0, 2, 0, 0, 0},     // 4
+                          {OpCode::kMultiply, 0, 1, 3, 0, 0, 0},     // 5
+                          {OpCode::kLag, 31, 4, 0, 0, 1 << 30, 0},   // 6
+                          {OpCode::kLag, 31, 5, 1, 0, 1 << 30, 0}};  // 7
+  Output outputs[2] = {{0, 6, 0, 1, 100'000, 100'000}, {1, 7, 0, 1, 100'000, 100'000}};
+  std::int32_t own_constants[2] = {11, 13};
+  std::uint16_t sources[2] = {6, 7};
+  Instruction own[2] = {{OpCode::kMultiply, 0, 0, 2, 0, 0, 0}, {OpCode::kMultiply, 0, 1, 3, 0, 0, 0}};
+  Share shares[2] = {{0, 4, 0, 1}, {1, 5, 0, 1}};
+
+  Program program() {
+    Program p;
+    p.equation = {{constants, 2}, 2, {steps, 4}, {}, {}, {}, 2, 4};
+    p.channels = {channels, 2};
+    p.outputs = {outputs, 2};
+    p.axis_count = 2;
+    return p;
+  }
+  ShareProgram share_program() {
+    return {{{own_constants, 2}, 2, {own, 2}, {}, {}, {}, 0, 2}, {sources, 2}, {shares, 2}};
+  }
+};
+
+TEST(RunShares, RestoreEveryConstantChannelAndLagOfTheTick) {
+  TwoOfEach s;
+  const Program program = s.program();
+  ValueRange ranges[kMaxRegisters] = {};
+  ASSERT_EQ(verify_program(program, ranges), ProgramFault::kNone);
+  ASSERT_EQ(verify_shares(s.share_program(), program, ranges), ProgramFault::kNone);
+  EXPECT_EQ(ranges[8].low, 11);
+  EXPECT_EQ(ranges[9].high, 13);
+  EXPECT_EQ(ranges[12].high, 11 * 5 * 1000);
+  EXPECT_EQ(ranges[13].high, 13 * 7 * 1000);
+  Compensator compensator(program);
+  CycleInput input;
+  input.axis[0].position = AxisPosition(2), input.axis[1].position = AxisPosition(3);
+  compensator.step(input);
+  input.axis[0].position = AxisPosition(4), input.axis[1].position = AxisPosition(5);
+  compensator.step(input);
+  EquationState state;
+  compensator.state(state);
+  std::int32_t registers[kMaxRegisters] = {};
+  Correction corrections[2];
+  ASSERT_TRUE(run_shares(s.share_program(), program, state, registers, corrections));
+  // The lags go half of the way: from 10 to 20, and from 21 to 35.
+  EXPECT_EQ(corrections[0].counts, -11 * 15);
+  EXPECT_EQ(corrections[1].counts, -13 * 28);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <utility>
+#include <vector>
 
 #include "comp/sine.h"
 
@@ -288,6 +289,40 @@ TEST(VerifyProgram, SizesFitTheMemoryOfTheCycle) {
       << "a lag that nothing uses";
 }
 
+// A program as large as the memory of the cycle is sound: the limits are what is there, not one less.
+TEST(VerifyProgram, LargestProgramsAreAccepted) {
+  constexpr auto kNone = ProgramFault::kNone;
+  ValueRange ranges[kMaxRegisters];
+  const std::vector<std::int32_t> constants(kMaxRegisters, 3);
+  const std::vector<Channel> channels(kMaxRegisters, {ChannelKind::kTime, 0, 0, 0, 1, -1, 1, 0});
+  Program p;
+  p.equation.constants = {constants.data(), kMaxRegisters};
+  EXPECT_EQ(verify_program(p, ranges), kNone) << "constants alone";
+  p = {};
+  p.channels = {channels.data(), kMaxRegisters};
+  p.equation.channel_count = kMaxRegisters;
+  EXPECT_EQ(verify_program(p, ranges), kNone) << "channels alone";
+  std::vector<Instruction> lags;
+  for (std::uint32_t i = 0; i < kMaxLags; ++i)
+    lags.push_back({OpCode::kLag, 31, 0, static_cast<std::uint16_t>(i), 0, 1, 0});
+  p.equation.constants = {constants.data(), kMaxRegisters - kMaxLags};
+  p.equation.channel_count = p.channels.size = 0;
+  p.equation.instructions = {lags.data(), kMaxLags};
+  p.equation.lag_count = p.equation.result_count = kMaxLags;
+  EXPECT_EQ(verify_program(p, ranges), kNone) << "all lags, and constants in all other registers";
+  const Sample sample;
+  const std::vector<ErrorTable> tables(kMaxTables, {sample.linear, 2, 2, 1, 0, 0});
+  const std::vector<ProductTerm> terms(kMaxTerms, {0, 0, 0});
+  p.equation.tables = {tables.data(), kMaxTables};
+  p.equation.terms = {terms.data(), kMaxTerms};
+  EXPECT_EQ(verify_program(p, ranges), kNone) << "all tables and terms";
+  std::vector<std::int32_t> record(kSegmentWords + 2 * kMaxRegisters, 1);
+  record[0] = 0, record[1] = 256, record[2] = kHalf, record[3] = 9;
+  const ErrorTable widest{record.data(), 1, kMaxRegisters, 1, 0, 0};
+  p.equation.tables = {&widest, 1};
+  EXPECT_EQ(verify_program(p, ranges), kNone) << "a table of as many columns as there are registers";
+}
+
 TEST(VerifyProgram, ChannelsHaveASourceAndAFormat) {
   constexpr auto kChannel = ProgramFault::kChannel, kNone = ProgramFault::kNone;
   constexpr std::int64_t kFar = std::int64_t{1} << 60;
@@ -374,6 +409,11 @@ TEST(VerifyProgram, TablesAndPeriodsAreSoundAtEachLimit) {
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].reciprocal = 0; }), kWrap);
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].shift = kMaxShift + 1; }), kWrap);
   EXPECT_EQ(after([](Sample& s) { s.wraps[0] = {INT32_MIN, INT32_MAX, INT32_MAX, kMaxShift + 1}; }), kWrap);
+  EXPECT_EQ(after([](Sample& s) {
+              s.wraps[0] = {0, INT32_MAX, 1 << 30, kMaxShift};
+            }),
+            kNone)
+      << "the longest period needs the largest shift";
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].first = INT32_MAX - 1023; }), kNone);
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].first = INT32_MAX - 1022; }), kWrap);
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].reciprocal = (1 << 30) + 256; }), kNone)
@@ -420,6 +460,10 @@ TEST(WorkOf, CountsWhatATickDoes) {
                           3,    0, 0};  // records of 64 bytes: 8, 4, 2 pieces are further than a line
   const Instruction find{OpCode::kLookUp, 0, 0, 0, 0, 0, 0};
   EXPECT_EQ(lines_of({{}, 0, {&find, 1}, {}, {&search, 1}, {}, 0, 3}), 2u + 3u);
+  // A record of 80 bytes begins anywhere in a line: three lines. No step of a search comes to a single piece.
+  std::int32_t wider[8 * 20] = {};
+  const ErrorTable wide{wider, 8, 4, 3, 0, 0};
+  EXPECT_EQ(lines_of({{}, 0, {&find, 1}, {}, {&wide, 1}, {}, 0, 4}), 3u + 3u);
 }
 
 }  // namespace

@@ -42,6 +42,18 @@ TEST(SerialFrame, LongestMessageOfEscapesComesThrough) {
   }
 }
 
+// The sum of the frame is that of the message with the escape byte: only the unknown escape refuses it.
+TEST(SerialFrame, FrameWithAnUnknownEscapeIsNoMessage) {
+  const Bytes message = {0x01, kFrameEscape, 0x02};
+  Bytes frame = framed(message);
+  ASSERT_EQ(frame[3], kFrameEscapedEscape);
+  FrameReader reader;
+  EXPECT_EQ(messages_in(reader, frame), std::vector<Bytes>{message});
+  frame[3] = 0x55;
+  EXPECT_TRUE(messages_in(reader, frame).empty());
+  EXPECT_EQ(messages_in(reader, framed(message)), std::vector<Bytes>{message}) << "the next frame";
+}
+
 TEST(SerialFrame, TooLongAMessageIsNoneAndTheNextOneIs) {
   FrameReader reader;
   Bytes line(5000, 0x55);

@@ -109,6 +109,22 @@ TEST(Slots, NextChangeOverwritesTheOlderRecord) {
   }
 }
 
+// The sequence has 32 bits: its first number follows its last one.
+TEST(Slots, RecordWithTheFirstSequenceIsNewerThanTheOneWithTheLast) {
+  const auto record_of = [](std::uint32_t sequence, std::uint8_t confirmed) {
+    SlotRecord record = Slots{}.revert().record;
+    record.sequence = sequence, record.confirmed = confirmed;
+    record.checksum = crc32c(reinterpret_cast<const std::uint8_t*>(&record), offsetof(SlotRecord, checksum));
+    return record;
+  };
+  const SlotRecord last = record_of(UINT32_MAX, 0), first = record_of(0, 1);
+  for (const bool first_place : {false, true}) {
+    const Slots slots = first_place ? Slots::load(first, last) : Slots::load(last, first);
+    EXPECT_EQ(slots.confirmed(), 1);
+    EXPECT_EQ(slots.revert().place, first_place ? 1 : 0) << "the older record is overwritten";
+  }
+}
+
 TEST(Slots, ConfirmationWithoutATrialKeepsWhatIsConfirmed) {
   Slots slots;
   slots.stored(slots.start_trial(5, 0));
