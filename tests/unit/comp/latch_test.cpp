@@ -40,6 +40,18 @@ double position_at(LatchRing& ring, double when_s, double time_uncertainty_s = 0
   return static_cast<double>(latched.position.count);
 }
 
+// Instant and position of each sample of a ring.
+LatchRing ring_of(const std::vector<std::pair<std::int64_t, std::int64_t>>& samples) {
+  LatchRing ring;
+  for (const auto& [at_ns, position] : samples) {
+    LatchSample sample{};
+    sample.at = InstantNs(at_ns);
+    sample.position[0] = AxisPosition(position);
+    ring.add(sample);
+  }
+  return ring;
+}
+
 TEST(Latch, IsExactOnAnyCubicWhateverTheDistancesOfTheSamples) {
   const Motion cubic = [](double t) { return 5e9 + 4e7 * t - 3e8 * t * t + 2e9 * t * t * t; };
   LatchRing ring = sampled(cubic, 0.5, 40, 3e-4, 7);
@@ -95,6 +107,17 @@ TEST(Latch, SaysHowFarItsTwoParabolasAreApart) {
   EXPECT_EQ(latched.uncertainty.count, 250);
 }
 
+// One count in 256 us, and an instant that is uncertain by 1 us: the smallest part of a count is rounded up.
+TEST(Latch, UncertaintyOfAPartOfACountIsOneCount) {
+  LatchRing ring = ring_of({{0, 0}, {256'000, 1}, {512'000, 2}, {768'000, 3}});
+  ASSERT_EQ(ring.seek(InstantNs(256'000)), LatchFault::kNone);
+  LatchedPosition latched;
+  ASSERT_EQ(ring.position_of(0, false, InstantNs(1'000), latched), LatchFault::kNone);
+  EXPECT_EQ(latched.uncertainty.count, 1);
+  ASSERT_EQ(ring.position_of(0, false, InstantNs(0), latched), LatchFault::kNone);
+  EXPECT_EQ(latched.uncertainty.count, 0);
+}
+
 TEST(Latch, SaysWhyItHasNoPosition) {
   LatchRing ring;
   EXPECT_EQ(ring.seek(InstantNs(0)), LatchFault::kNotYet);
@@ -119,18 +142,6 @@ TEST(Latch, ReachesFromTheSecondSampleToTheLastButOne) {
   EXPECT_EQ(position_at(ring, 1.001), 1'002'001) << "the position of the second sample";
   EXPECT_NEAR(position_at(ring, 1.001999999), 1'004'004, 1);
   EXPECT_EQ(ring.seek(InstantNs(1'002'000'000)), LatchFault::kNotYet);
-}
-
-// Instant and position of each sample of a ring.
-LatchRing ring_of(const std::vector<std::pair<std::int64_t, std::int64_t>>& samples) {
-  LatchRing ring;
-  for (const auto& [at_ns, position] : samples) {
-    LatchSample sample{};
-    sample.at = InstantNs(at_ns);
-    sample.position[0] = AxisPosition(position);
-    ring.add(sample);
-  }
-  return ring;
 }
 
 TEST(Latch, RefusesSamplesMoreThanASecondApart) {

@@ -152,7 +152,7 @@ struct TwoOfEach {
   std::int32_t own_constants[2] = {11, 13};
   std::uint16_t sources[2] = {6, 7};
   Instruction own[2] = {{OpCode::kMultiply, 0, 0, 2, 0, 0, 0}, {OpCode::kMultiply, 0, 1, 3, 0, 0, 0}};
-  Share shares[2] = {{0, 4, 0, 1}, {1, 5, 0, 1}};
+  Share shares[3] = {{0, 4, 0, 1}, {1, 5, 0, 1}, {1, 5, 0, 1}};  // two are in use
 
   Program program() {
     Program p;
@@ -186,11 +186,12 @@ TEST(RunShares, RestoreEveryConstantChannelAndLagOfTheTick) {
   EquationState state;
   compensator.state(state);
   std::int32_t registers[kMaxRegisters] = {};
-  Correction corrections[2];
+  Correction corrections[3] = {{1}, {2}, {3}};
   ASSERT_TRUE(run_shares(s.share_program(), program, state, registers, corrections));
   // The lags go half of the way: from 10 to 20, and from 21 to 35.
   EXPECT_EQ(corrections[0].counts, -11 * 15);
   EXPECT_EQ(corrections[1].counts, -13 * 28);
+  EXPECT_EQ(corrections[2].counts, 3) << "behind the last share nothing is written";
 }
 
 }  // namespace

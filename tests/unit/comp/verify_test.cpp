@@ -277,6 +277,10 @@ TEST(VerifyProgram, SizesFitTheMemoryOfTheCycle) {
   EXPECT_EQ(with([](Program& p) { p.equation.instructions.size = kMaxRegisters + 1; }), kLong);
   EXPECT_EQ(with([](Program& p) { p.equation.result_count = kMaxRegisters + 1; }), kLong);
   EXPECT_EQ(with([](Program& p) { p.equation.result_count = kMaxRegisters - 2; }), kLong) << "together";
+  // One size alone, whose sum with the others begins at zero again.
+  EXPECT_EQ(with([](Program& p) { p.equation.constants.size = UINT32_MAX - 2; }), kLong);
+  EXPECT_EQ(with([](Program& p) { p.equation.channel_count = UINT32_MAX - 1; }), kLong);
+  EXPECT_EQ(with([](Program& p) { p.equation.result_count = UINT32_MAX - 2; }), kLong);
   EXPECT_EQ(with([](Program& p) { p.equation.lag_count = kMaxLags + 1; }), kLong);
   EXPECT_EQ(with([](Program& p) { p.axis_count = kMaxAxes + 1; }), kLong);
   EXPECT_EQ(with([](Program& p) { p.axis_count = kMaxAxes; }), kNone);

@@ -93,6 +93,27 @@ TEST(AxisMonitor, DerivesSpeedSenseAndTravelFromPositions) {
   EXPECT_EQ(bench.monitor.state().since, AxisTravel(400 * 10'000));
 }
 
+TEST(AxisMonitor, DerivesTheAccelerationFromPositions) {
+  Bench bench(false);
+  for (std::int64_t i = 0; i < 400; ++i) bench.take(500 * i * i);  // 1 m/s^2
+  EXPECT_NEAR(static_cast<double>(bench.monitor.state().acceleration.count), 1e9, 1e7);
+}
+
+// The board's clock and the controller's are not the same: each missing reading is a step that the axis may
+// have made, though less time has passed.
+TEST(AxisMonitor, EachMissingReadingIsAStepAlsoInLessTime) {
+  const auto fault_after = [](std::int64_t travel) {
+    Bench bench(true);
+    bench.take(0);
+    AxisReading reading;
+    for (int i = 0; i < 3; ++i) bench.monitor.take(false, {}, *bench.health, TicksQ8{128});
+    reading.position = AxisPosition(travel);
+    return bench.monitor.take(true, reading, *bench.health, TicksQ8{128});
+  };
+  EXPECT_EQ(fault_after(4 * 2'000'000), Fault::kNone);
+  EXPECT_EQ(fault_after(4 * 2'000'000 + 1), Fault::kPositionJump);
+}
+
 TEST(AxisMonitor, NoiseBelowTheDeadBandDoesNotTurnTheSense) {
   Bench bench(false);
   std::int64_t position = 0;

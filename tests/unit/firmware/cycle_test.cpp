@@ -229,6 +229,40 @@ TEST(Cycle, BoardsOwnLimitHoldsAndIsTold) {
   EXPECT_GT(rig.cycle().health().saturated, 0u);
 }
 
+TEST(Cycle, EachSaturatedTickIsCountedOnce) {
+  CycleLimits limits;
+  limits.axis[0].own = true;
+  limits.axis[0].limits = limits.linear;
+  limits.axis[0].largest = 10'000;
+  Rig rig({}, limits);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  const std::uint64_t before = rig.cycle().health().saturated;
+  std::uint64_t saturated = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const TickReport report = rig.tick();
+    const int held = (rig.cycle().limits(0) | rig.cycle().limits(1)) & (kAtBoardLimit | kAtOutputLimit);
+    saturated += (report.output.flags & kSaturated) != 0 || held != 0 ? 1 : 0;
+  }
+  EXPECT_GT(saturated, 0u);
+  EXPECT_EQ(rig.cycle().health().saturated - before, saturated);
+}
+
+TEST(Cycle, InputAtTheEndOfItsPlausibleRangeIsPlausible) {
+  Rig reference;
+  ASSERT_TRUE(reference.run_to(Mode::kReady));
+  const std::int64_t value = reference.cycle().input_value(0).count;
+  const auto implausible = [&](std::int64_t low, std::int64_t high) {
+    CycleLimits limits;
+    limits.input[0] = {low, high, 1'000'000};
+    Rig rig({}, limits);
+    rig.run_to(Mode::kReady, 300);
+    return rig.cycle().health().implausible != 0;
+  };
+  EXPECT_FALSE(implausible(value, value));
+  EXPECT_TRUE(implausible(value + 1, value + 2));
+  EXPECT_TRUE(implausible(value - 2, value - 1));
+}
+
 /// A plant whose drive takes 5 um at most.
 class ShortPlant : public SimPlant {
  public:

@@ -392,6 +392,24 @@ TEST(Challenges, OfOthersDoNotUseUpTheOperatorsOne) {
       << "of another connection";
 }
 
+// What touches the store is executed beside the links: exactly these requests, also without any payload.
+TEST(LinkRequests, EachIsExecutedWhereItMayTakeItsTime) {
+  const std::set<LinkOp> store = {LinkOp::kFinish, LinkOp::kConfirm, LinkOp::kRevert, LinkOp::kRead};
+  const std::set<LinkOp> may = {LinkOp::kFinish, LinkOp::kConfirm, LinkOp::kRevert, LinkOp::kRead,
+                                LinkOp::kBegin,  LinkOp::kData,    LinkOp::kSigned};
+  const std::set<LinkOp> setting = {LinkOp::kCommand, LinkOp::kWeight};
+  for (std::uint8_t i = 1; i < kLinkOpCount; ++i) {
+    const auto op = static_cast<LinkOp>(i);
+    const std::uint8_t request[kRequestHeaderBytes] = {i, 0};
+    EXPECT_EQ(Link::needs_store(request, kRequestHeaderBytes), store.contains(op)) << int{i};
+    EXPECT_EQ(Link::may_need_store(request, kRequestHeaderBytes), may.contains(op)) << int{i};
+    EXPECT_EQ(Link::is_setting(request, kRequestHeaderBytes), setting.contains(op)) << int{i};
+    EXPECT_FALSE(Link::needs_store(request, kRequestHeaderBytes - 1)) << "no request";
+    EXPECT_FALSE(Link::may_need_store(request, kRequestHeaderBytes - 1)) << "no request";
+    EXPECT_FALSE(Link::is_setting(request, kRequestHeaderBytes - 1)) << "no request";
+  }
+}
+
 TEST_F(LinkTest, RefusalTellsTheReason) {
   rig_.run(10);
   Client board = client();

@@ -23,6 +23,22 @@ ProbeSettings published_probe() {
   return probe;
 }
 
+// The root of the sum of the squares, rounded up to a nanosecond; a resolution has its twelfth.
+TEST(ProbeSettings, UncertaintyOfTheInstantIsThatOfItsThreeParts) {
+  const auto of = [](std::int64_t resolution, std::int64_t delay, std::int64_t age) {
+    ProbeSettings probe;
+    probe.delay_spread = InstantNs(delay), probe.age_spread = InstantNs(age);
+    return probe.time_uncertainty(InstantNs(resolution)).count;
+  };
+  EXPECT_EQ(of(0, 0, 0), 0);
+  EXPECT_EQ(of(0, 3, 4), 5);
+  EXPECT_EQ(of(0, 3, 5), 6);                // 5.83
+  EXPECT_EQ(of(6, 0, 0), 2);                // 1.73
+  EXPECT_EQ(of(1'000'000, 0, 0), 288'676);  // 288675.13
+  EXPECT_EQ(of(0, 500'000'000, 0), 500'000'000);
+  EXPECT_EQ(of(0, 500'000'001, -1), 500'000'000) << "limited";
+}
+
 TEST(Probing, FindsTheContactInAccelerationConstantFeedAndDeceleration) {
   for (const double feed : {25.4, 127.0, 508.0, 1270.0, 2540.0}) {
     const Profile profile{.feed_mm_s = feed / 60, .cruise_mm = 0.6};

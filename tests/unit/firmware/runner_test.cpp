@@ -77,6 +77,8 @@ TEST(Runner, EndingExactlyAtTheNextTickIsNoOverrun) {
   bench.clock.late = InstantNs(1'000'000);
   bench.step();
   EXPECT_EQ(bench.health().overruns, 0u);
+  EXPECT_EQ(bench.health().skipped, 0u);
+  EXPECT_EQ(bench.runner.due(), bench.clock.now()) << "the next tick begins now";
   bench.clock.late = InstantNs(1'000'001);
   bench.step();
   EXPECT_EQ(bench.health().overruns, 1u);

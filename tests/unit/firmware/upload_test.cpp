@@ -454,6 +454,53 @@ TEST_F(Upload, PiecesOutOfOrderAreRefusedAndARepeatedOneIsNot) {
   EXPECT_EQ(uploader.finish().fault, UploadFault::kNone);
 }
 
+TEST_F(Upload, FinishesOnce) {
+  UploadRig rig(store_, key_);
+  ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+  EXPECT_EQ(rig.uploader().finish().fault, UploadFault::kNoUpload);
+}
+
+TEST_F(Upload, ImageThatFillsTheStoreIsTaken) {
+  const std::vector<std::uint8_t> bytes = upload(2e-5);
+  SimSlotStore exact(static_cast<std::uint32_t>(bytes.size())),
+      less(static_cast<std::uint32_t>(bytes.size()) - 1);
+  UploadRig fits(exact, key_), too_small(less, key_);
+  EXPECT_EQ(fits.send(bytes).fault, UploadFault::kNone);
+  EXPECT_EQ(too_small.send(bytes).fault, UploadFault::kTooLarge);
+}
+
+TEST_F(Upload, LatestTimeOfIssueIsTakenAndNoLaterOne) {
+  UploadRig rig(store_, key_);
+  EXPECT_EQ(rig.send(upload(2e-5, kLatestIssued + 1)).fault, UploadFault::kAbsurdTime);
+  EXPECT_EQ(rig.send(upload(2e-5, kLatestIssued)).fault, UploadFault::kNone);
+}
+
+// An upload names one board, or a class of boards; no name at all names no board that has one.
+TEST_F(Upload, IsTakenByTheBoardOrTheClassThatItNames) {
+  const auto fault_of = [&](const char* own_class, const char* named) {
+    SimSlotStore store(1 << 16);
+    const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
+    Exchange exchange(16, 16);
+    Uploader::Options options;
+    options.identity = key_.public_part();
+    options.identity.board = "mill-1";
+    options.identity.board_class = own_class;
+    Uploader uploader(store, wiring, exchange, options);
+    const std::vector<std::uint8_t> bytes =
+        make_upload(small_image_bytes(2e-5), key_, kIssued, kSecurity, named);
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    EXPECT_EQ(uploader.begin(size).fault, UploadFault::kNone);
+    EXPECT_EQ(uploader.add(0, bytes.data(), size).fault, UploadFault::kNone);
+    return uploader.finish().fault;
+  };
+  EXPECT_EQ(fault_of("", "mill-1"), UploadFault::kNone);
+  EXPECT_EQ(fault_of("mills", "mill-1"), UploadFault::kNone);
+  EXPECT_EQ(fault_of("mills", "mills"), UploadFault::kNone);
+  EXPECT_EQ(fault_of("mills", "lathes"), UploadFault::kOtherBoard);
+  EXPECT_EQ(fault_of("mills", ""), UploadFault::kOtherBoard);
+  EXPECT_EQ(fault_of("", ""), UploadFault::kOtherBoard);
+}
+
 TEST_F(Upload, StoreWhoseRecordsAreBothSpoiledHasLostItsImage) {
   {
     UploadRig rig(store_, key_);
