@@ -46,7 +46,8 @@ bool hangs_alike(fit::NoiseModel a, const fit::NoiseModel& b, double share) {
 Finder::Finder(const model::Machine& fitted, const model::Measurement& measurement,
                const std::vector<effects::Effect>& effects, std::size_t most_effects,
                std::function<void(double, const std::string&)> progress, const DiagnoseThresholds& thresholds)
-    : most_effects_(most_effects),
+    : effects_(effects),
+      most_effects_(most_effects),
       progress_(std::move(progress)),
       evidence_(fitted, measurement, thresholds),
       thresholds_(evidence_.thresholds().acceptance),
@@ -58,6 +59,10 @@ void Finder::find() {
   search();
   share_poses();
   accept();
+  if (!linear_down_to_noise() && thermal_items() > 0) {
+    search_responses();
+    accept();
+  }
   if (!linear_down_to_noise()) {
     search_products();
     accept();
@@ -106,6 +111,25 @@ void Finder::scan_beside(const std::vector<std::size_t>& items, double from, dou
       first);
   for (Scored& fine : scanner_.scan_fine(beside, first)) scored.push_back(std::move(fine));
   pool_.add(scored, beside);
+}
+
+std::size_t Finder::thermal_items() const {
+  return static_cast<std::size_t>(std::count_if(chosen_.begin(), chosen_.end(), [this](std::size_t item) {
+    return depends_on_temperature(evidence_.machine(), pool_.candidate(item).choice);
+  }));
+}
+
+void Finder::search_responses() {
+  std::vector<std::size_t> others;
+  for (const std::size_t item : chosen_)
+    if (!depends_on_temperature(evidence_.machine(), pool_.candidate(item).choice)) others.push_back(item);
+  const std::size_t first = list_.size();
+  for (ScannedCandidate& item :
+       enumerate_responses(evidence_, effects_, maths::orthonormal(pool_.columns(others), 1e-6, nullptr)))
+    list_.push_back(std::move(item));
+  if (list_.size() == first) return;
+  scan_beside(others, 0.65, 0.7, first);
+  select_again();
 }
 
 void Finder::search_products() {

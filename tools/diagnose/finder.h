@@ -9,6 +9,7 @@
 #include "tools/diagnose/propose/evidence.h"
 #include "tools/diagnose/propose/pool.h"
 #include "tools/diagnose/propose/products.h"
+#include "tools/diagnose/propose/responses.h"
 #include "tools/diagnose/propose/scan.h"
 #include "tools/diagnose/propose/selection.h"
 
@@ -89,6 +90,10 @@ class Finder {
 
  private:
   void scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first = 0);
+  /// Searches the thermal responses of the structures (responses.h) beside the effects without temperature.
+  void search_responses();
+  /// Returns the number of accepted items that depend on a temperature.
+  std::size_t thermal_items() const;
   /// Searches beyond the catalogue: products of recorded quantities, first pairs, then a third factor on the
   /// best pairs.
   void search_products();
@@ -167,6 +172,7 @@ class Finder {
   double chance_of(std::size_t item, const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
                    double freedom) const;
 
+  const std::vector<effects::Effect>& effects_;
   std::size_t most_effects_;
   std::function<void(double, const std::string&)> progress_;
   Evidence evidence_;

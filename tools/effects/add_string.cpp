@@ -131,6 +131,13 @@ class AddReader {
     for (const Effect& effect : effects_)
       if (effect.id == id_) choice_.effect = &effect;
     if (choice_.effect == nullptr) fail(id_, "unknown effect (`vernier effects` lists them)");
+    if (!choice_.effect->has_found_terms()) return;
+    const auto term = take("term");
+    if (!term)
+      fail(id_,
+           "this effect needs term=DOF:EXPRESSION|DOF:EXPRESSION with the unknowns k1, k2, ... "
+           "(`vernier diagnose` finds it)");
+    choice_.term = *term;
   }
 
   void read_axes() {
@@ -142,7 +149,7 @@ class AddReader {
   }
 
   void read_inputs() {
-    for (const char* key : {"input", "input2", "input3"})
+    for (const char* key : {"input", "input2", "input3", "input4"})
       if (const auto name = take(key)) {
         if (!text::is_name(*name)) fail(*name, "not a name");
         if (model::is_reserved_word(*name)) fail(*name, "this name is reserved");
@@ -252,8 +259,8 @@ class AddReader {
 
   void choose_form() {
     const auto label = take("form");
-    if (choice_.effect == &custom_effect()) {
-      choice_.form = &custom_effect().forms[0];
+    if (choice_.effect == &custom_effect() || choice_.effect->has_found_terms()) {
+      choice_.form = &choice_.effect->forms.front();
       return;
     }
     for (const EffectForm& form : choice_.effect->forms) {
@@ -267,12 +274,18 @@ class AddReader {
 
   static bool acts_at_one(const EffectForm& form) {
     return form.place != PlaceRule::kEachAxis && form.place != PlaceRule::kPair &&
-           form.place != PlaceRule::kNormal;
+           form.place != PlaceRule::kNormal && form.place != PlaceRule::kSeveral;
   }
 
   void fill_place() {
     const bool needs_axis = choice_.form->asks_for("q") || choice_.form->asks_for("hats");
     if (needs_axis && !choice_.axis) choice_.axis = default_axis_;
+    if (choice_.form->place == PlaceRule::kSeveral) {
+      if (dof_) fail(*dof_, "the term names the degrees of freedom; do not give dof");
+      choice_.place = transform_;
+      if (!choice_.place) fail(id_, "the location of the effect is missing: give branch and transform");
+      return;
+    }
     if (!acts_at_one(*choice_.form)) {
       if (transform_ || dof_)
         fail(dof_.value_or("transform"), "this form acts at several degrees of freedom; do not give dof");
@@ -366,12 +379,13 @@ std::string add_string(const model::Machine& machine, const Choice& c) {
   if (c.place) {
     put("branch", c.place->workpiece ? "workpiece" : "tool");
     put("transform", std::to_string(transform_at(machine, *c.place).n));
-    put("dof", dof_name(machine, *c.place));
+    if (!c.effect->has_found_terms()) put("dof", dof_name(machine, *c.place));
   }
   if (c.reference) put("reference", text::number_text(*c.reference));
   for (std::size_t i = 0; i < c.units.size(); ++i)
     if (!c.units[i].empty()) put(numbered("unit", i), quote(c.units[i]));
-  if (!custom) put("form", c.form->label);
+  const bool found = custom || c.effect->has_found_terms();
+  if (!found) put("form", c.form->label);
   if (!custom && c.form->asks_for("sum")) put("sum", c.sum);
   if (c.toward) put("toward", std::string(1, "XYZ"[*c.toward]));
   if (c.mass && c.place)
@@ -382,7 +396,7 @@ std::string add_string(const model::Machine& machine, const Choice& c) {
   }
   if (!c.runs.empty()) put("runs", quoted_list(c.runs));
   for (const auto& [name, value] : c.start) put("start." + name, text::number_text(value));
-  if (custom) put("term", c.term);
+  if (found) put("term", c.term);
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 #include <set>
+#include <sstream>
 
 #include "tools/effects/gravity.h"
 #include "tools/effects/input_class.h"
@@ -102,13 +103,42 @@ class Maker {
   }
 
   std::vector<model::ExprPtr> trees() const {
-    if (!is_custom()) return choice_.form->trees;
+    return is_custom() ? std::vector{found_tree(choice_.term)} : choice_.form->trees;
+  }
+
+  model::ExprPtr found_tree(const std::string& term) const {
     try {
-      return {model::parse_expression(choice_.term)};
+      return model::parse_expression(term);
     } catch (const model::ExpressionError& error) {
       throw text::InputError(choice_.effect->id + ": \"" + error.word + "\": " + error.what() +
                              ", in its term");
     }
+  }
+
+  /// Reads the found terms of one transform: "X:k1*Z|Z:k2".
+  std::vector<TermAt> found_terms() const {
+    if (!choice_.place) missing("branch or transform");
+    const model::Transform& at = transform_at(machine_, *choice_.place);
+    std::vector<TermAt> terms;
+    std::istringstream parts(choice_.term);
+    for (std::string part; std::getline(parts, part, '|');) {
+      const auto colon = part.find(':');
+      if (colon == std::string::npos) missing("\"DOF:\" before a term");
+      const std::string name = text::trimmed(part.substr(0, colon));
+      std::optional<DofPlace> place;
+      for (std::size_t d = 0; d < at.dof_count(); ++d)
+        if (text::equal_no_case(at.dof_name(d), name))
+          place = DofPlace{choice_.place->workpiece, choice_.place->transform, d};
+      if (!place) missing("a degree of freedom of the transform named \"" + name + "\"");
+      terms.push_back({*place, found_tree(part.substr(colon + 1)), choice_.axis});
+    }
+    return terms;
+  }
+
+  /// True for k1, k2 … of found terms, which all follow the rule of k.
+  bool is_numbered(const std::string& name) const {
+    return choice_.effect->has_found_terms() && name.size() > 1 && name.front() == 'k' &&
+           name.find_first_not_of("0123456789", 1) == std::string::npos;
   }
 
   std::vector<TermAt> terms_to_fill() const {
@@ -137,6 +167,8 @@ class Maker {
               {base[i], form[0], std::nullopt, base[i].workpiece, format::columns::kNormal.at(i)});
         break;
       }
+      case PlaceRule::kSeveral:
+        return found_terms();
       case PlaceRule::kBend:
         if (!choice_.place || !choice_.toward) missing("transform or toward");
         if (transform_at(machine_, *choice_.place).kind != model::TransformKind::kSixDof)
@@ -280,7 +312,7 @@ class Maker {
     for (const TermAt& term : terms)
       model::walk(*term.tree, [&](const model::Expr& node) {
         if (node.op != model::Op::kSymbol) return;
-        if (choice_.effect->find_unknown(node.name) != nullptr) take(node.name);
+        if (choice_.effect->find_unknown(node.name) != nullptr || is_numbered(node.name)) take(node.name);
         if (node.name == "{runs}")
           for (const std::string& name : names_of_steps()) take(name);
         if (node.name.rfind("{hats", 0) == 0)
@@ -313,13 +345,21 @@ class Maker {
       for (int suffix = 2; !is_free(name); ++suffix) name = first + "_" + std::to_string(suffix);
       taken_.insert(name);
       final_name_[rule] = name;
-      result_.unknowns.push_back(unknown(rule, name, terms[0].place));
+      result_.unknowns.push_back(unknown(rule, name, first_place(terms, rule)));
     }
+  }
+
+  /// Returns the degree of freedom of the first term that contains an unknown.
+  static DofPlace first_place(const std::vector<TermAt>& terms, const std::string& unknown) {
+    const auto is = [&](const model::Expr& node) { return model::is_symbol(node, unknown); };
+    const auto found = std::find_if(terms.begin(), terms.end(),
+                                    [&](const TermAt& t) { return model::any_node(*t.tree, is); });
+    return found == terms.end() ? terms.front().place : found->place;  // a basis has no symbol of its own
   }
 
   CandidateUnknown unknown(const std::string& rule_name, const std::string& name, const DofPlace& at) const {
     const UnknownRule* rule = choice_.effect->find_unknown(rule_name);
-    if (rule == nullptr) rule = choice_.effect->find_unknown("h");
+    if (rule == nullptr) rule = choice_.effect->find_unknown(is_numbered(rule_name) ? "k" : "h");
     CandidateUnknown item{name, {}, rule_name, UnknownKind::kLinear, 0, 0, {}};
     if (rule != nullptr) {
       item.kind = rule->kind;
@@ -380,7 +420,7 @@ class Maker {
     if (choice_.axis) text += " of " + machine_.axes[*choice_.axis].name;
     if (choice_.axis2) text += " and " + machine_.axes[*choice_.axis2].name;
     for (std::size_t i = 0; i < choice_.inputs.size(); ++i)
-      text += (i ? " - " : " with ") + choice_.inputs[i];
+      text += (i == 0 ? " with " : choice_.effect->has_found_terms() ? " and " : " - ") + choice_.inputs[i];
     if (choice_.place && result_.terms.size() == 1)
       text +=
           fmt::format(" in {} of {}transform {}", dof_name(machine_, *choice_.place),

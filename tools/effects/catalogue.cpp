@@ -18,9 +18,9 @@ extern const char* const kBuiltInCatalogue;  // the text of catalogue.txt
 
 namespace {
 
-constexpr std::array<const char*, 14> kPlaceNames = {"own",  "cross",    "turn", "length", "angle",
+constexpr std::array<const char*, 15> kPlaceNames = {"own",  "cross",    "turn", "length", "angle",
                                                      "base", "baseturn", "sag",  "joint",  "link",
-                                                     "bend", "each",     "pair", "normal"};
+                                                     "bend", "each",     "pair", "normal", "several"};
 
 /// N of "hats N".
 std::optional<std::size_t> hats_of(const std::string& mark) {

@@ -30,6 +30,7 @@ enum class PlaceRule : std::uint8_t {
   kEachAxis,  // own degrees of freedom of all axes, together, with one coefficient
   kPair,      // own degrees of freedom of two linear axes, together
   kNormal,    // the three lengths of the measuring frame, together, along nx ny nz
+  kSeveral,   // degrees of freedom of one transform, together; a search finds the term of each
 };
 
 /// Method that finds the values of a form's unknowns.
@@ -111,6 +112,8 @@ struct Effect {
   std::vector<UnknownRule> unknowns;
 
   const UnknownRule* find_unknown(std::string_view name) const;
+  /// True if the terms are those of a search: each choice has its own (Choice::term).
+  bool has_found_terms() const { return !forms.empty() && forms.front().place == PlaceRule::kSeveral; }
 };
 
 /// Parses effects from a text in the format of tools/docs/effects.md. `file` is for messages.

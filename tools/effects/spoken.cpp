@@ -106,10 +106,12 @@ std::string spoken_name(const model::Machine& machine, const AxisPlaces& axes, c
   }
   std::string with;
   for (std::size_t i = 0; i < choice.inputs.size(); ++i)
-    with += (i == 0 ? ", by " : " - ") + choice.inputs[i];
+    with += (i == 0 ? ", by " : choice.effect->has_found_terms() ? " and " : " - ") + choice.inputs[i];
   if (choice.axis && choice.axis2)
     return fmt::format("{} and {}: {}{}", machine.axes[*choice.axis].name, machine.axes[*choice.axis2].name,
                        what, with);
+  if (choice.effect->has_found_terms())
+    return fmt::format("{}: {}{}", part_name(machine, axes, *choice.place), what, with);
   if (candidate.terms.size() != 1) return what + with;
   const DofPlace& place = candidate.terms.front().place;
   // If another axis than that of the part drives the effect, the name states that axis: the sag of

@@ -26,7 +26,9 @@ struct Choice {
   double from = 0, to = 0;            // {from} {to} {mid} {hats N}
   std::vector<std::string> runs;      // {runs}
   std::map<std::string, double> start;
-  std::string term;  // of a found expression (effect `custom`)
+  /// Of a term that a search found. Effect `custom`: an expression with the unknown k. PlaceRule::kSeveral:
+  /// an expression with the unknowns k1, k2 … for each degree of freedom, "X:k1*Z|Z:k2".
+  std::string term;
 };
 
 /// A term that an effect adds to one degree of freedom. The names are final.

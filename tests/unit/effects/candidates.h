@@ -101,6 +101,24 @@ inline bool set_gravity(const Machine& machine, Choice& choice) {
   return true;
 }
 
+/// A form of found terms: two terms, three unknowns, at each of some transforms.
+inline std::vector<Choice> found_choices(const Machine& machine, Choice base, std::size_t most) {
+  std::vector<Choice> list;
+  const std::vector<DofPlace> all = all_places(machine);
+  base.axis = 0;
+  for (std::size_t i = 0; i + 1 < all.size() && list.size() < most; i += 1 + all.size() / most) {
+    const std::size_t at = i - all[i].dof;  // its first degree of freedom
+    Choice one = base;
+    one.place = all[at];
+    const std::string& input = one.inputs.front();
+    one.term =
+        fmt::format("{0}:k1*{2}*(lag({3},300)-20)+k2*({3}-20)|{1}:k3*({3}-20)", dof_name(machine, all[at]),
+                    dof_name(machine, all[at + 1]), machine.axes[0].name, input);
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
 /// Choices of one form: each axis at each place; of more than `most` places every k-th, a different one for
 /// each axis.
 inline std::vector<Choice> choices_of(const Machine& machine, const Effect& effect, const EffectForm& form,
@@ -121,6 +139,7 @@ inline std::vector<Choice> choices_of(const Machine& machine, const Effect& effe
   if (asks("{runs}")) base.runs = {"a", "the second, |odd| one"};
   for (const UnknownRule& rule : effect.unknowns)
     if (rule.kind != UnknownKind::kLinear) base.start[rule.name] = 37.5;
+  if (form.place == PlaceRule::kSeveral) return found_choices(machine, base, most);
   const bool together = form.place == PlaceRule::kEachAxis || form.place == PlaceRule::kNormal;
   if (together) {
     if (form.place == PlaceRule::kNormal && base_places(machine).empty()) return {};

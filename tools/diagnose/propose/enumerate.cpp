@@ -113,6 +113,7 @@ class Enumerator {
  private:
   /// Touches are readings along a normal. Readings that a trigger takes have no second clock.
   bool goes_with_readings(const effects::Effect& effect, const effects::EffectForm& form) const {
+    if (form.place == effects::PlaceRule::kSeveral) return false;  // responses.h searches them
     if (effect.needs_touches) return has_normals_;
     return !(form.place == effects::PlaceRule::kEachAxis && has_normals_);
   }
@@ -388,6 +389,9 @@ class Enumerator {
       case effects::PlaceRule::kEachAxis:
       case effects::PlaceRule::kPair:
         with_sum(choice);
+        break;
+      case effects::PlaceRule::kSeveral:
+        break;
     }
   }
 

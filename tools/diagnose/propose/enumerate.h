@@ -15,6 +15,7 @@ struct ScannedCandidate {
   std::vector<std::vector<double>> grid;  // one list per unknown that is not a coefficient, increasing
   bool may_lose_columns = false;          // piecewise linear basis: the model may absorb a part of its span
   FinePeriods fine;                       // of a cyclic error: the periods below its grid
+  double penalty = 0;      // of a search before the scan: twice the logarithm of the number of tested sets
   double most_driven = 2;  // factor beyond the grid that still counts as inside the search range
 
   /// True if a fit moved a scanned unknown from its found value out of the range of its search.

@@ -207,8 +207,9 @@ void Evidence::absorb() {
   const Eigen::VectorXd& values = eigen.eigenvalues();
   const double limit = std::pow(thresholds_.evidence.absorb_cutoff, 2) * values[values.size() - 1];
   Eigen::Index lost = 0;
-  while (lost < values.size() && values[lost] < limit) ++lost;
+  while (lost < values.size() && values[lost] <= limit) ++lost;  // all of them if no reading depends on any
   const Eigen::Index rank = std::min(values.size() - lost, residual_.size());
+  if (rank == 0) return;
   const Eigen::MatrixXd seen = jacobian * (eigen.eigenvectors().rightCols(rank) *
                                            values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal());
   // A second factorisation: the eigenvectors give the weak directions with few digits.

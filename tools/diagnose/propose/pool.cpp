@@ -96,7 +96,7 @@ const effects::Candidate& Pool::candidate(std::size_t i) const {
 double Pool::penalty(const Scored& scored) const {
   const ScannedCandidate& item = scanner_.candidates()[scored.candidate];
   double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) +
-                rank_of(item.candidate, thresholds_.step_of_place);
+                rank_of(item.candidate, thresholds_.step_of_place) + item.penalty;
   // A jump between runs can follow any slow drift. It is named only if no continuous effect fits
   // as well.
   const effects::Choice& choice = item.candidate.choice;

@@ -78,6 +78,9 @@ struct CandidateThresholds {
   /// Number of time constants in that range, logarithmic: a factor of 1.5 apart, refined
   /// afterwards.
   std::size_t time_values = 16;
+  /// Largest number of summands of a thermal response. A column with two walls and four delays of its
+  /// thermometers, in three directions and by height, needs about ten. Source: experiment (finite elements).
+  std::size_t most_of_response = 12;
   /// Range of the searched decay lengths, as parts of the travel range.
   double travel_least_part = 500, travel_most_part = 2;
   std::size_t travel_values = 14;  // a factor of 1.6 apart, refined afterwards
@@ -128,6 +131,7 @@ struct CandidateThresholds {
     visit("candidates.time_least_part", time_least_part);
     visit("candidates.time_most", time_most);
     visit("candidates.time_values", time_values);
+    visit("candidates.most_of_response", most_of_response);
     visit("candidates.travel_least_part", travel_least_part);
     visit("candidates.travel_most_part", travel_most_part);
     visit("candidates.travel_values", travel_values);

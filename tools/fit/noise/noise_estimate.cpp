@@ -105,7 +105,7 @@ double descend(const Likelihood& likelihood, NoiseParts& parts, double best, dou
           trial.log[i] = std::clamp(trial.log[i] + sign, -kMostLogRatio, kMostLogRatio);
           trial.log[3] = std::clamp(trial.log[3], least_log_time, most_log_time);
           const double value = likelihood(trial.ratios());
-          if (value > best - 1e-3) continue;
+          if (!(value < best - 1e-3)) continue;  // also where it is not a number
           best = value;
           parts = trial;
           moved = true;
