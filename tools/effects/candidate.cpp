@@ -15,6 +15,7 @@
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
+#include "tools/text/xml_text.h"
 
 namespace vernier::effects {
 namespace {

@@ -99,7 +99,7 @@ Diagnosis diagnosed(const std::string& rows) {
 }
 
 TEST(Responses, OfAColumnIsOneCauseAndHoldsOnFreshDays) {
-  for (const std::uint64_t seed : {71, 72, 73}) {
+  for (const std::uint64_t seed : {71U, 72U, 73U}) {
     SCOPED_TRACE(seed);
     const Diagnosis answer = diagnosed(days(seed, 9));
     EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
@@ -128,7 +128,7 @@ TEST(Responses, AddStringBuildsTheSameTerms) {
 }
 
 TEST(Responses, NothingIsNamedInNoiseBesideATemperature) {
-  for (const std::uint64_t seed : {81, 82, 83})
+  for (const std::uint64_t seed : {81U, 82U, 83U})
     EXPECT_EQ(diagnosed(days(seed, 0)).verdict, Verdict::kConsistent);
 }
 
