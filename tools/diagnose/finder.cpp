@@ -59,7 +59,9 @@ void Finder::find() {
   search();
   share_poses();
   accept();
-  if (!linear_down_to_noise() && thermal_items() > 0) {
+  // Several thermal effects may be pieces of one response, also if they reach the noise together.
+  const std::size_t thermal = fit::has_uncertainty(evidence_.measurement()) ? thermal_items() : 0;
+  if (thermal > 1 || (thermal > 0 && !linear_down_to_noise())) {
     search_responses();
     accept();
   }
