@@ -149,19 +149,18 @@ class AddReader {
   }
 
   void read_inputs() {
-    for (const char* key : {"input", "input2", "input3", "input4"})
-      if (const auto name = take(key)) {
-        if (!text::is_name(*name)) fail(*name, "not a name");
-        if (model::is_reserved_word(*name)) fail(*name, "this name is reserved");
-        choice_.inputs.push_back(*name);
-        const auto known = machine_.find_input(*name);
-        if (!known && model::resolve_name(machine_, *name).kind != model::SymbolKind::kUnresolved)
-          fail(*name, "the machine file uses this name for something that is not an input");
-        choice_.units.push_back(known ? machine_.inputs[*known].unit : "");
-      }
+    while (const auto name = take(numbered("input", choice_.inputs.size()))) {
+      if (!text::is_name(*name)) fail(*name, "not a name");
+      if (model::is_reserved_word(*name)) fail(*name, "this name is reserved");
+      choice_.inputs.push_back(*name);
+      const auto known = machine_.find_input(*name);
+      if (!known && model::resolve_name(machine_, *name).kind != model::SymbolKind::kUnresolved)
+        fail(*name, "the machine file uses this name for something that is not an input");
+      choice_.units.push_back(known ? machine_.inputs[*known].unit : "");
+    }
     const auto unit = take("unit");
     for (std::size_t i = 0; i < choice_.units.size(); ++i) {
-      const auto own = i == 0 ? unit : take("unit" + std::to_string(i + 1));
+      const auto own = i == 0 ? unit : take(numbered("unit", i));
       if (choice_.units[i].empty()) choice_.units[i] = own.value_or(unit.value_or(""));
     }
   }

@@ -115,6 +115,18 @@ TEST(AddString, ACustomTermMayUseALoggedColumn) {
             "tool 2 X: custom_T_q_X2*(T_q-20)*X");
 }
 
+TEST(AddString, AResponseMayHaveFiveThermometers) {
+  const std::string add =
+      "thermal-response:axis=X,input=T1,input2=T2,input3=T3,input4=T4,input5=T5,branch=tool,transform=2,"
+      "reference=20,"
+      "unit=degC,unit2=degC,unit3=degC,unit4=degC,unit5=degC,term=X:k1*(T1-20)+k2*(lag(T2,60)-20)+k3*(T3-20)|"
+      "Y:k4*(T4-20)+k5*X*(T5-20)";
+  const Candidate one = candidate(add);
+  EXPECT_EQ(one.unknowns.size(), 5u);
+  EXPECT_EQ(one.choice.inputs.size(), 5u);
+  EXPECT_EQ(add_string(small(), one.choice), add);
+}
+
 TEST(AddString, StartsAreTakenFromItAlone) {
   const Candidate cyclic = candidate("cyclic-error:axis=X,form=plain,start.p=10");
   std::size_t periods = 0;
