@@ -117,14 +117,14 @@ void Finder::scan_beside(const std::vector<std::size_t>& items, double from, dou
 
 std::size_t Finder::thermal_items() const {
   return static_cast<std::size_t>(std::count_if(chosen_.begin(), chosen_.end(), [this](std::size_t item) {
-    return depends_on_temperature(evidence_.machine(), pool_.candidate(item).choice);
+    return has_input(item, effects::InputClass::kTemperature);
   }));
 }
 
 void Finder::search_responses() {
   std::vector<std::size_t> others;
   for (const std::size_t item : chosen_)
-    if (!depends_on_temperature(evidence_.machine(), pool_.candidate(item).choice)) others.push_back(item);
+    if (!has_input(item, effects::InputClass::kTemperature)) others.push_back(item);
   const std::size_t first = list_.size();
   for (ScannedCandidate& item :
        enumerate_responses(evidence_, effects_, maths::orthonormal(pool_.columns(others), 1e-6, nullptr)))
@@ -450,7 +450,7 @@ std::string Finder::failed_test(std::size_t item) const {
   for (const double cosine : with.agreement) agree += cosine > thresholds_.stable_cosine ? 1 : 0;
   if (static_cast<double>(agree) < thresholds_.stable_runs * static_cast<double>(with.agreement.size()))
     return "test `stability`: the coefficients of the effect change if the fit does not use one of the runs";
-  if (is_learned(item))
+  if (has_input(item, effects::InputClass::kFeature))
     for (const std::vector<int>& levels : level_blocks(evidence_))
       if (leave_blocks_out(evidence_, pool_.columns(others), 0, 0, levels).chi_square -
               leave_blocks_out(evidence_, pool_.columns(all), 0, count, levels).chi_square <
@@ -471,12 +471,12 @@ double Finder::held_out_evidence(std::size_t item) const {
   return (less - with) / (2 * std::max(variance, 1e-300));
 }
 
-bool Finder::is_learned(std::size_t item) const {
+bool Finder::has_input(std::size_t item, effects::InputClass wanted) const {
   const model::Machine& machine = evidence_.machine();
   const std::vector<std::string>& inputs = pool_.candidate(item).choice.inputs;
   return std::any_of(inputs.begin(), inputs.end(), [&](const std::string& name) {
     const auto input = machine.find_input(name);
-    return input && effects::class_of_input(machine.inputs[*input]) == effects::InputClass::kFeature;
+    return input && effects::class_of_input(machine.inputs[*input]) == wanted;
   });
 }
 

@@ -151,10 +151,10 @@ class Finder {
   void ban_hollow_products();
   /// Returns the first acceptance test that an accepted item fails; empty if the item passes all tests.
   std::string failed_test(std::size_t item) const;
-  /// is_learned: true if the term of an item contains an accelerometer feature. shows_in_one_block: true if
+  /// has_input: true if the term of an item contains an input of a class. shows_in_one_block: true if
   /// one run contains nearly all that an accepted item explains. In this case the other runs cannot confirm
   /// the item.
-  bool is_learned(std::size_t item) const;
+  bool has_input(std::size_t item, effects::InputClass wanted) const;
   bool shows_in_one_block(std::size_t item) const;
   /// Returns the reason why a term is larger than on any real machine; empty if it is not.
   std::string too_large(std::size_t item) const;

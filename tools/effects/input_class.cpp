@@ -67,8 +67,7 @@ InputClass class_of_input(const model::Input& input) {
 double usual_reference(const model::Input& input, double mean) {
   if (class_of_input(input) == InputClass::kTemperature) return standard_reference(input.unit);
   if (std::abs(mean) < 1e-9) return 0;
-  const double digit = std::pow(10, std::floor(std::log10(std::abs(mean))) - 1);
-  return maths::rounded_to(mean, digit);
+  return maths::to_two_digits(mean);
 }
 
 double standard_reference(std::string_view unit) {

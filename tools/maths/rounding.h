@@ -11,4 +11,12 @@ inline double rounded_to(double value, double digit) {
   return inverse >= 1 ? std::round(value * inverse) / inverse : std::round(value / digit) * digit;
 }
 
+/// Returns the largest power of ten that is not above a value > 0.
+inline double decade(double value) { return std::pow(10, std::floor(std::log10(value))); }
+
+/// Returns a value (not 0) rounded to two significant digits.
+inline double to_two_digits(double value) {
+  return rounded_to(value, std::pow(10, std::floor(std::log10(std::abs(value))) - 1));
+}
+
 }  // namespace vernier::maths

@@ -32,7 +32,7 @@ model::States offered_poses(const model::Machine& machine, std::size_t count, st
       if (end < 1.0 / 6) share = 0;
       if (end > 5.0 / 6) share = 1;
       const double value = (*range)[0] + share * ((*range)[1] - (*range)[0]);
-      const double digit = std::pow(10, std::floor(std::log10(((*range)[1] - (*range)[0]) / 500)));
+      const double digit = maths::decade(((*range)[1] - (*range)[0]) / 500);
       states.axis[axis][static_cast<Index>(i)] =
           std::clamp(maths::rounded_to(value, digit), (*range)[0], (*range)[1]);
       states.direction[axis][static_cast<Index>(i)] =

@@ -45,7 +45,7 @@ std::vector<double> uneven_positions(double low, double high, const std::vector<
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   const std::vector<Wave> there = window(distinct, low, span);
   // To a ten-thousandth of the range or so, so that they can be read and typed.
-  const double digit = std::pow(10, std::floor(std::log10(span / 5000)));
+  const double digit = maths::decade(span / 5000);
   std::mt19937_64 random(1);
   std::vector<double> best;
   double least = 0;

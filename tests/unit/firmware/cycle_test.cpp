@@ -209,13 +209,17 @@ TEST(Cycle, RefusedWriteIsRepeatedWithTheSameValue) {
   EXPECT_EQ(rig.cycle().health().failed_writes, 100u);
 }
 
-// The image may correct X by 30 um and says so; the board lets 10 um out, whatever the image says.
-TEST(Cycle, BoardsOwnLimitHoldsAndIsTold) {
+CycleLimits board_lets_10_um_out() {
   CycleLimits limits;
   limits.axis[0].own = true;
   limits.axis[0].limits = limits.linear;
   limits.axis[0].largest = 10'000;
-  Rig rig({}, limits);
+  return limits;
+}
+
+// The image may correct X by 30 um and says so; the board lets 10 um out, whatever the image says.
+TEST(Cycle, BoardsOwnLimitHoldsAndIsTold) {
+  Rig rig({}, board_lets_10_um_out());
   ASSERT_TRUE(rig.run_to(Mode::kActive));
   bool held = false;
   for (int i = 0; i < 8000; ++i) {
@@ -230,11 +234,7 @@ TEST(Cycle, BoardsOwnLimitHoldsAndIsTold) {
 }
 
 TEST(Cycle, EachSaturatedTickIsCountedOnce) {
-  CycleLimits limits;
-  limits.axis[0].own = true;
-  limits.axis[0].limits = limits.linear;
-  limits.axis[0].largest = 10'000;
-  Rig rig({}, limits);
+  Rig rig({}, board_lets_10_um_out());
   ASSERT_TRUE(rig.run_to(Mode::kActive));
   const std::uint64_t before = rig.cycle().health().saturated;
   std::uint64_t saturated = 0;

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 #include <string_view>
+#include <tuple>
 
 #include "tools/diagnose/propose/pulls.h"
 #include "tools/effects/probe.h"
@@ -220,7 +221,8 @@ class Enumerator {
     for (std::size_t i = 0; i < machine_.inputs.size(); ++i) {
       if (effects::class_of_input(machine_.inputs[i]) != wanted) continue;
       if (wanted == effects::InputClass::kOther && is_like_a_clock(i)) continue;
-      if (stands_still(i) && has_a_part_without_input(form)) continue;
+      const bool stands_still = !evidence_.varies(evidence_.measurement().states.input[i]);
+      if (stands_still && has_a_part_without_input(form)) continue;
       effects::Choice one = choice;
       one.inputs = {machine_.inputs[i].name};
       one.units = {machine_.inputs[i].unit};
@@ -237,11 +239,6 @@ class Enumerator {
         with_axis(two);
       }
     }
-  }
-
-  bool stands_still(std::size_t input) const {
-    const model::Column& value = evidence_.measurement().states.input[input];
-    return value(evidence_.rows()).maxCoeff() <= value(evidence_.rows()).minCoeff();
   }
 
   /// Example: growth with an own reference, k*(T-20)+c. If the input stands still, the constant part alone
@@ -312,11 +309,7 @@ class Enumerator {
   /// A piecewise linear basis uses the measured range. A wave uses the declared range if that was
   /// measured too.
   void set_range(effects::Choice& choice, std::size_t axis) const {
-    // Rounded outwards to a thousandth of the range, so that the term is readable.
-    const double span = range_[axis].high - range_[axis].low;
-    const double digit = span > 0 ? std::pow(10, std::floor(std::log10(span / 1000))) : 1;
-    choice.from = std::floor(range_[axis].low / digit) * digit;
-    choice.to = std::ceil(range_[axis].high / digit) * digit;
+    std::tie(choice.from, choice.to) = range_[axis].outwards();
     const model::Axis& item = machine_.axes[axis];
     if (choice.form->asks_for("hats") || !item.min || !item.max) return;
     if (choice.to - choice.from < thresholds_.declared_range_share * (*item.max - *item.min)) return;

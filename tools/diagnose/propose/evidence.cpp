@@ -16,6 +16,7 @@
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/orthonormal.h"
+#include "tools/maths/rounding.h"
 #include "tools/model/chain/evaluate.h"
 #include "tools/model/chain/prediction.h"
 #include "tools/model/chain/touched_positions.h"
@@ -464,6 +465,15 @@ Eigen::MatrixXd Evidence::raw_columns(const effects::Candidate& candidate,
 Eigen::MatrixXd Evidence::columns(const effects::Candidate& candidate,
                                   const std::vector<double>& scanned) const {
   return ColumnMaker(*this).columns(candidate, scanned);
+}
+
+bool Evidence::varies(const model::Column& column) const {
+  return column(rows_).maxCoeff() > column(rows_).minCoeff();
+}
+
+std::pair<double, double> Evidence::Range::outwards() const {
+  const double digit = high > low ? maths::decade((high - low) / 1000) : 1;
+  return {std::floor(low / digit) * digit, std::ceil(high / digit) * digit};
 }
 
 Evidence::Range Evidence::range_of(std::size_t axis) const {

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/diagnose/propose/thresholds.h"
@@ -101,8 +102,12 @@ class Evidence {
   struct Range {
     double low = 0, high = 0, step = 0;
     bool even = true;  // the steps are multiples of one step, or nearly so
+    /// Returns low and high, rounded outwards to a thousandth of the range: a term is then readable.
+    std::pair<double, double> outwards() const;
   };
   Range range_of(std::size_t axis) const;
+  /// True if a column of the measurement has several values over the fit rows.
+  bool varies(const model::Column& column) const;
   /// Returns the positions at which an axis was read, increasing. Positions with a distance of at most
   /// `apart` count once. sense: +1 or -1 for the rows with this approach direction, 0 for all rows.
   std::vector<double> places_read(std::size_t axis, int sense, double apart) const;

@@ -183,8 +183,10 @@ SelectionProblem Pool::problem(std::vector<std::size_t>& items) const {
 }
 
 SelectionProblem Pool::problem_of(const std::vector<std::size_t>& items) const {
-  SelectionProblem p;
   Eigen::MatrixXd all = columns(items);
+  // Unit columns keep the pivots comparable.
+  for (Eigen::Index j = 0; j < all.cols(); ++j) all.col(j).normalize();
+  SelectionProblem p = selection_problem(all, evidence_.residual());
   std::map<std::string, std::size_t> causes;
   Eigen::Index at = 0;
   for (const std::size_t i : items) {
@@ -198,12 +200,6 @@ SelectionProblem Pool::problem_of(const std::vector<std::size_t>& items) const {
     at += entry.count;
     p.entries.push_back(entry);
   }
-  // Unit columns keep the pivots comparable.
-  for (Eigen::Index j = 0; j < all.cols(); ++j) all.col(j).normalize();
-  p.gram = all.transpose() * all;
-  p.moment = all.transpose() * evidence_.residual();
-  p.chi_square = evidence_.chi_square();
-  p.observations = static_cast<double>(evidence_.residual().size());
   p.freedom = evidence_.freedom();
   p.noise_known = evidence_.noise_known();
   p.least_pivot = thresholds_.least_pivot;

@@ -16,12 +16,6 @@ struct ProductFactor {
   bool is_sense = false;    // +1 or -1
 };
 
-bool varies(const model::Column& column, const std::vector<std::size_t>& rows) {
-  for (const std::size_t row : rows)
-    if (column[static_cast<Eigen::Index>(row)] != column[static_cast<Eigen::Index>(rows[0])]) return true;
-  return false;
-}
-
 /// An input minus its reference.
 ProductFactor input_factor(const Evidence& evidence, std::size_t index) {
   const model::Input& input = evidence.machine().inputs[index];
@@ -34,7 +28,7 @@ std::vector<ProductFactor> factors_of(const Evidence& evidence) {
   const model::States& s = evidence.measurement().states;
   std::vector<ProductFactor> list;
   const auto take = [&](const model::ExprPtr& value, const model::Column& column) {
-    if (varies(column, evidence.rows())) list.push_back({value, {}, {}, false});
+    if (evidence.varies(column)) list.push_back({value, {}, {}, false});
   };
   const auto take_named = [&](const std::string& name, const model::Column& column) {
     take(model::make_symbol(name), column);
@@ -47,7 +41,7 @@ std::vector<ProductFactor> factors_of(const Evidence& evidence) {
     } else {
       take_named(name, evidence.position(i));
     }
-    if (varies(s.direction[i], evidence.rows()))
+    if (evidence.varies(s.direction[i]))
       list.push_back(
           {model::make_symbol(format::axis_column(format::AxisQuantity::kSense, name)), {}, {}, true});
     take_named(format::axis_column(format::AxisQuantity::kSpeed, name), s.velocity[i]);
@@ -58,7 +52,7 @@ std::vector<ProductFactor> factors_of(const Evidence& evidence) {
   take_named(format::columns::kTime, s.time);
   take_named(format::columns::kVisit, s.visit);
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
-    if (varies(s.input[i], evidence.rows()) &&
+    if (evidence.varies(s.input[i]) &&
         effects::class_of_input(machine.inputs[i]) != effects::InputClass::kSetpoint)
       list.push_back(input_factor(evidence, i));
   return list;

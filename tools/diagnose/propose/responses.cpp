@@ -12,6 +12,7 @@
 
 #include "tools/diagnose/propose/selection.h"
 #include "tools/effects/input_class.h"
+#include "tools/maths/rounding.h"
 #include "tools/text/numbers.h"
 
 namespace vernier::diagnose {
@@ -64,13 +65,11 @@ class Structure {
  private:
   void find_position() {
     const Evidence::Range range = evidence_.range_of(axis_);
-    if (range.step <= 0 || machine_.axes[axis_].rotary) return;
-    const double span = range.high - range.low;
-    const double digit = std::pow(10, std::floor(std::log10(span / 1000)));
-    const double low = std::floor(range.low / digit) * digit, high = std::ceil(range.high / digit) * digit;
+    if (range.step <= 0) return;
+    const auto [low, high] = range.outwards();
     position_.text = fmt::format("(({}-{})/{})", machine_.axes[axis_].name,
                                  text::number_text((low + high) / 2), text::number_text((high - low) / 2));
-    const double places = span / range.step + 1;
+    const double places = (range.high - range.low) / range.step + 1;
     position_.most_power = static_cast<int>(std::min(places - 1, 2.0));
   }
 
@@ -91,17 +90,8 @@ class Structure {
     constexpr double kShortest = 128;  // of the longest run
     const double rows = static_cast<double>(evidence_.rows().size()) / static_cast<double>(ends.size());
     const double shortest = std::max(longest / kShortest, thresholds_.time_least_steps * longest / rows);
-    for (double delay = longest; delay >= shortest; delay /= kFactor) delays_.push_back(rounded(delay));
-  }
-
-  static double rounded(double value) {
-    const double digit = std::pow(10, std::floor(std::log10(value)) - 1);  // two digits
-    return std::round(value / digit) * digit;
-  }
-
-  bool varies(std::size_t input) const {
-    const model::Column& value = evidence_.measurement().states.input[input];
-    return value(evidence_.rows()).maxCoeff() > value(evidence_.rows()).minCoeff();
+    for (double delay = longest; delay >= shortest; delay /= kFactor)
+      delays_.push_back(maths::to_two_digits(delay));
   }
 
   /// Degrees of freedom of the transform that the readings show.
@@ -118,7 +108,7 @@ class Structure {
     const std::vector<effects::DofPlace> at = places();
     for (std::size_t input = 0; input < machine_.inputs.size(); ++input) {
       if (effects::class_of_input(machine_.inputs[input]) != effects::InputClass::kTemperature) continue;
-      if (!varies(input)) continue;
+      if (!evidence_.varies(evidence_.measurement().states.input[input])) continue;
       for (const double delay : delays_)
         for (const effects::DofPlace& place : at)
           for (int power = 0; power <= position_.most_power; ++power)
@@ -186,11 +176,7 @@ class Structure {
     const Eigen::MatrixXd all = columns(beside);
     const Eigen::VectorXd residual =
         evidence_.residual() - beside * (beside.transpose() * evidence_.residual());
-    SelectionProblem p;
-    p.gram = all.transpose() * all;
-    p.moment = all.transpose() * residual;
-    p.chi_square = residual.squaredNorm();
-    p.observations = static_cast<double>(residual.size());
+    SelectionProblem p = selection_problem(all, residual);
     p.freedom = std::max(1.0, evidence_.freedom() - static_cast<double>(beside.cols()));
     p.noise_known = evidence_.noise_known();
     p.least_pivot = pool_.least_pivot;
@@ -229,13 +215,6 @@ std::vector<ScannedCandidate> enumerate_responses(const Evidence& evidence,
       list.push_back(std::move(*item));
   }
   return list;
-}
-
-bool depends_on_temperature(const model::Machine& machine, const effects::Choice& choice) {
-  return std::any_of(choice.inputs.begin(), choice.inputs.end(), [&](const std::string& name) {
-    const auto input = machine.find_input(name);
-    return input && effects::class_of_input(machine.inputs[*input]) == effects::InputClass::kTemperature;
-  });
 }
 
 }  // namespace vernier::diagnose

@@ -145,6 +145,15 @@ void order(const SelectionProblem& p, Selection& selection) {
 
 }  // namespace
 
+SelectionProblem selection_problem(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual) {
+  SelectionProblem p;
+  p.gram = columns.transpose() * columns;
+  p.moment = columns.transpose() * residual;
+  p.chi_square = residual.squaredNorm();
+  p.observations = static_cast<double>(residual.size());
+  return p;
+}
+
 double likelihood_part(const SelectionProblem& p, double chi_square) {
   const double freedom = std::max(p.freedom, 1.0);
   const double reduced = chi_square / freedom;

@@ -35,6 +35,10 @@ struct Selection {
   double chi_square = 0;
 };
 
+/// Poses the selection among columns of unit length (a column of zeros is never selected). The entries are
+/// left to the caller.
+SelectionProblem selection_problem(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual);
+
 /// Returns the extended BIC of a set of entries (Schwarz 1978; Chen and Chen 2008). The likelihood uses the
 /// noise with the best fit, but never below the given uncertainty. The BIC is infinite if the columns are
 /// linearly dependent.

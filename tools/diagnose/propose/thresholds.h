@@ -79,7 +79,8 @@ struct CandidateThresholds {
   /// afterwards.
   std::size_t time_values = 16;
   /// Largest number of summands of a thermal response. A column with two walls and four delays of its
-  /// thermometers, in three directions and by height, needs about ten. Source: experiment (finite elements).
+  /// thermometers, in three directions and by height, needs about ten. Source: experiment (columns in finite
+  /// differences: 8 to 10).
   std::size_t most_of_response = 12;
   /// Range of the searched decay lengths, as parts of the travel range.
   double travel_least_part = 500, travel_most_part = 2;
