@@ -64,9 +64,7 @@ std::vector<Decision> decisions_of(const FitResult& result, std::size_t most) {
     while (head.contains(name) && head[name] != name) name = head[name];
     return name;
   };
-  const auto is_set_up = [&](std::size_t i) {
-    return result.parameters[i].kind == model::ParameterKind::kBaseShift;
-  };
+  const auto is_set_up = [&](std::size_t i) { return model::is_set_up(result.parameters[i].kind); };
   for (const auto& parts : result.observability.unidentifiable) {
     std::string first;
     for (const std::size_t i : parts) {
