@@ -9,12 +9,12 @@
 #include <limits>
 #include <memory>
 
-#include "tools/fit/blame.h"
 #include "tools/fit/convention.h"
 #include "tools/fit/coverage/alternatives.h"
 #include "tools/fit/coverage/moved.h"
 #include "tools/fit/coverage/unmeasured.h"
 #include "tools/fit/coverage/unseen_turns.h"
+#include "tools/fit/decisions.h"
 #include "tools/fit/estimates_of_things.h"
 #include "tools/fit/findings.h"
 #include "tools/fit/least_squares/problem.h"
@@ -191,8 +191,9 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
   if (result.converged && !misses && mistake.empty()) return;
   if (!likely.one_reading) result.mistake = mistake;
   result.absurd =
-      !result.converged ? fmt::format("the fit did not converge in {} iterations: {}", result.iterations,
-                                      blame_of(result, end, readings))
+      !result.converged
+          ? fmt::format("the fit did not converge in {} iterations: {}", result.iterations,
+                        blame_of(result, end.converged ? Eigen::VectorXd() : end.last_step, readings))
       : misses ? fmt::format("the residual of the fit is {:.3g} mm in a measured box of +- {:.3g} mm",
                              left_mm(result), result.reach_mm)
                : fmt::format("the nominal machine is off by {:.3g} mm in a measured box of +- {:.3g} mm",
