@@ -127,8 +127,7 @@ class Collector {
     const MatrixXd jacobian(linear.jacobian);
     std::vector<Index> shifts, others;
     for (std::size_t i = 0; i < parameters.size(); ++i)
-      (parameters[i].kind == model::ParameterKind::kBaseShift ? shifts : others)
-          .push_back(static_cast<Index>(i));
+      (model::is_set_up(parameters[i].kind) ? shifts : others).push_back(static_cast<Index>(i));
     raw_set_up_ = weight_.asDiagonal() * jacobian(Eigen::all, shifts);
     MatrixXd whitened = raw_set_up_;
     if (!layout_.series.empty()) fit::whiten(layout_, noise_, whitened);

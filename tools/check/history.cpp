@@ -43,7 +43,8 @@ std::string identity_of(const model::Machine& machine) {
   std::string text = machine.name;
   for (std::size_t i = 0; i < machine.fitted->parameters.size(); ++i) {
     const std::string& name = machine.fitted->parameters[i];
-    if (name.starts_with("BaseShift")) continue;  // a parameter of a set-up, not of the machine
+    if (name.starts_with("BaseShift") || name.starts_with("ToolShift"))
+      continue;  // a parameter of a set-up, not of the machine
     text += " " + name + "=" + text::number_text(machine.fitted->values[static_cast<Index>(i)]);
   }
   return text;

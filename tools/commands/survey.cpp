@@ -36,9 +36,12 @@ Survey read_survey(const SurveyArguments& arguments,
                                           simulate::corrections_of_images(arguments.images));
   };
   read();
-  const model::SetUpsOfFiles own = model::with_set_ups_of_files(survey.text, survey.machine, survey.rows);
-  if (!own.notes.empty()) {
-    survey.text = own.text;
+  std::vector<std::string> notes;
+  for (const auto with_set_ups : {model::with_set_ups_of_files, model::with_camera_mountings}) {
+    model::SetUpsOfFiles own = with_set_ups(survey.text, survey.machine, survey.rows);
+    if (own.notes.empty()) continue;
+    survey.text = std::move(own.text);
+    notes.insert(notes.end(), own.notes.begin(), own.notes.end());
     read();
   }
   if (!arguments.columns.empty()) {
@@ -49,7 +52,7 @@ Survey read_survey(const SurveyArguments& arguments,
     read();
     effects::leave_out(survey.rows, roles);
   }
-  survey.machine.notes.insert(survey.machine.notes.end(), own.notes.begin(), own.notes.end());
+  survey.machine.notes.insert(survey.machine.notes.end(), notes.begin(), notes.end());
   return survey;
 }
 

@@ -17,6 +17,7 @@
 #include "tools/maths/factors.h"
 #include "tools/model/chain/chain_rows.h"
 #include "tools/model/chain/evaluate.h"
+#include "tools/model/chain/things.h"
 
 namespace vernier::fit {
 namespace {
@@ -73,6 +74,26 @@ struct Misfit {
   double length_mm = 0, turn_rad = 0;
 };
 
+/// Rms of the known values of touched objects minus their estimates, mm. An object of uncertain place follows
+/// the tool points: an error of the machine is then in its place, and not in the residual. 0: no uncertain
+/// value.
+double moved_things_mm(const model::Machine& machine, const model::Measurement& m) {
+  if (m.things.empty()) return 0;
+  const model::ChainRows chain(machine, m.states);
+  const model::Things things(machine, m);
+  const model::ThingsAt at(things, machine, chain);
+  double squares = 0, count = 0;
+  for (std::size_t cluster = 0; cluster < things.clusters(); ++cluster) {
+    const model::ThingsAt::Known known = at.known(cluster);
+    for (Eigen::Index k = 0; k < known.off.size(); ++k) {
+      if (known.precision[k] == 0) continue;
+      squares += known.off[k] * known.off[k];
+      ++count;
+    }
+  }
+  return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
 Misfit misfit_of(const model::Machine& machine, const model::Measurement& m) {
   const Eigen::VectorXd residual = residuals(machine, m);
   Misfit misfit;
@@ -90,6 +111,7 @@ Misfit misfit_of(const model::Machine& machine, const model::Measurement& m) {
     }
   }
   misfit.length_mm = lengths > 0 ? std::sqrt(misfit.length_mm / lengths) : 0;
+  misfit.length_mm = std::hypot(misfit.length_mm, moved_things_mm(machine, m));
   misfit.turn_rad = turns > 0 ? std::sqrt(misfit.turn_rad / turns) : 0;
   return misfit;
 }
@@ -250,7 +272,7 @@ Convention convention_of(const model::Machine& machine, const model::Measurement
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const model::Parameter& p = parameters[i];
     double& scale = result.scale[static_cast<Eigen::Index>(i)];
-    if (p.kind == model::ParameterKind::kBaseShift) {
+    if (model::is_set_up(p.kind)) {
       // An instrument that measures one line is aligned to that line. Only its own cosine error
       // shows the quality of the alignment.
       scale = p.column < 3 ? kAnywhere_mm : result.unseen_turn[i] ? angle_deg : kAnyTurn_deg;

@@ -14,6 +14,7 @@
 #include "tools/fit/coverage/moved.h"
 #include "tools/fit/coverage/unmeasured.h"
 #include "tools/fit/coverage/unseen_turns.h"
+#include "tools/fit/decisions.h"
 #include "tools/fit/estimates_of_things.h"
 #include "tools/fit/findings.h"
 #include "tools/fit/least_squares/problem.h"
@@ -173,7 +174,8 @@ std::string collapse_of(const FitResult& result, const model::Measurement& measu
       fitted_mm, nominal_mm);
 }
 
-void judge(FitResult& result, const model::Machine& machine, const model::Measurement& measurement) {
+void judge(FitResult& result, const model::Machine& machine, const model::Measurement& measurement,
+           const Settled& end, std::size_t readings) {
   result.absurd = collapse_of(result, measurement);
   result.worst = worst_reading(measurement, result.residual, false);
   result.worst_check = worst_reading(measurement, result.residual, true);
@@ -189,7 +191,9 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
   if (result.converged && !misses && mistake.empty()) return;
   if (!likely.one_reading) result.mistake = mistake;
   result.absurd =
-      !result.converged ? fmt::format("the fit did not converge in {} iterations", result.iterations)
+      !result.converged
+          ? fmt::format("the fit did not converge in {} iterations: {}", result.iterations,
+                        blame_of(result, end.converged ? Eigen::VectorXd() : end.last_step, readings))
       : misses ? fmt::format("the residual of the fit is {:.3g} mm in a measured box of +- {:.3g} mm",
                              left_mm(result), result.reach_mm)
                : fmt::format("the nominal machine is off by {:.3g} mm in a measured box of +- {:.3g} mm",
@@ -500,7 +504,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   result.check = role_statistics(measurement, result.residual, true);
   estimate(result, end);
   result.things = estimates_of_things(result, measurement);
-  judge(result, machine, measurement);
+  judge(result, machine, measurement, end, readings);
   result.check_ratio = check_ratio(result, convention.centre, measurement);
   result.prediction_variance = prediction_variance(result, measurement);
   remember(result, rows, measurement, convention, options.loss != Loss::kSquared);

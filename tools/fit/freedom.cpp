@@ -18,7 +18,7 @@ void set_freedom(model::Machine& machine, const std::string& pattern, bool free)
   if (!found)
     throw text::InputError(
         "\"" + pattern +
-        "\": no static, table column (table.X.rY), BaseShift or scalefactor.X has this name");
+        "\": no static, table column (table.X.rY), BaseShift, ToolShift or scalefactor.X has this name");
 }
 
 }  // namespace

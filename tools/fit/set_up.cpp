@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "tools/fit/coverage/unseen_turns.h"
 #include "tools/fit/least_squares/levenberg.h"
@@ -14,6 +16,7 @@
 #include "tools/fit/selection.h"
 #include "tools/maths/alignment.h"
 #include "tools/maths/factors.h"
+#include "tools/maths/hand_eye.h"
 #include "tools/model/chain/chain_rows.h"
 #include "tools/model/chain/prediction.h"
 
@@ -44,7 +47,7 @@ SetUp fitted_set_up(const model::Machine& machine, const model::ParameterSet& sh
   return result;
 }
 
-/// The free BaseShifts of a machine as a problem of their own.
+/// The free BaseShifts and ToolShifts of a machine as a problem of their own.
 struct SetUpProblem {
   model::Machine rigid, at_zero;
   model::ParameterSet shifts;
@@ -52,7 +55,7 @@ struct SetUpProblem {
 
   SetUpProblem(const model::Machine& machine, const model::Measurement& rows) : rigid(machine) {
     for (model::Freedom& one : model::freedoms_of(rigid))
-      if (one.kind() != model::ParameterKind::kBaseShift) one.set_free(false);
+      if (!model::is_set_up(one.kind())) one.set_free(false);
     shifts = model::ParameterSet(rigid, setups_of_fit_rows(rows));
     none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shifts.size()));
     at_zero = rigid;
@@ -79,16 +82,29 @@ void add_known_places(const SetUpProblem& problem, const model::Measurement& row
   if (std::none_of(rows.things.begin(), rows.things.end(),
                    [](const model::Thing& one) { return one.in_measuring_frame(); }))
     return;
+  const auto shift_of = [&](std::size_t row) {
+    return model::base_shift_of(problem.rigid,
+                                rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)]);
+  };
+  // Without its known place an object is in workpiece coordinates, elsewhere in each set-up.
   model::Measurement unknown = rows;
-  for (model::Thing& thing : unknown.things) thing.artefact.place.reset();
+  unknown.things.clear();
+  std::map<std::pair<std::size_t, std::optional<std::size_t>>, std::size_t> number;
+  std::vector<std::pair<std::size_t, std::optional<std::size_t>>> source;
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
+    if (rows.thing[row] == model::kNoThing) continue;
+    const std::pair key(rows.thing[row], shift_of(row));
+    const auto [at, fresh] = number.try_emplace(key, unknown.things.size());
+    unknown.thing[row] = at->second;
+    if (!fresh) continue;
+    unknown.things.push_back(rows.things[key.first]);
+    unknown.things.back().artefact.place.reset();
+    source.push_back(key);
+  }
   for (const model::EstimatedThing& one : model::estimate_things(problem.at_zero, unknown, {})) {
-    const model::Thing& thing = rows.things[one.thing];
-    if (!thing.in_measuring_frame() || thing.artefact.has_direction()) continue;
-    const auto row = static_cast<std::size_t>(std::find(rows.thing.begin(), rows.thing.end(), one.thing) -
-                                              rows.thing.begin());
-    const auto shift = model::base_shift_of(
-        problem.rigid, rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)]);
-    if (!shift) continue;
+    const auto& [thing_number, shift] = source[one.thing];
+    const model::Thing& thing = rows.things[thing_number];
+    if (!shift || !thing.in_measuring_frame() || thing.artefact.has_direction()) continue;
     const std::array<double, 3>& place = *thing.artefact.place;
     pairs[*shift].from.push_back(one.shape.point);
     pairs[*shift].to.emplace_back(place[0], place[1], place[2]);
@@ -130,9 +146,100 @@ Eigen::VectorXd aligned_start(const SetUpProblem& problem, const model::Measurem
     Eigen::Matrix<double, 6, 1> six;
     six << motion.translation, angles_of(motion.rotation);
     for (std::size_t i = 0; i < problem.shifts.size(); ++i)
-      if (problem.shifts[i].item == shift)
+      if (problem.shifts[i].kind == model::ParameterKind::kBaseShift && problem.shifts[i].item == shift)
         start[static_cast<Eigen::Index>(i)] = six[static_cast<Eigen::Index>(problem.shifts[i].column)];
   }
+  return start;
+}
+
+Eigen::Vector3d read_vector(const model::Observation* three) {
+  return {three[0].value, three[1].value, three[2].value};
+}
+
+/// Returns what the instrument saw in one row as the pose of the measured object, or of the camera, in the
+/// measuring frame; nullopt: the row has no complete pose. first, last: the observations of the row.
+std::optional<maths::RigidMotion> seen_pose(const model::Observation* first, const model::Observation* last) {
+  using Kind = model::ObservationKind;
+  const auto three = [&](Kind kind) -> const model::Observation* {
+    const auto* const found =
+        std::find_if(first, last, [&](const model::Observation& o) { return o.kind == kind; });
+    const auto whole = [&](int k) {
+      return static_cast<int>(found[k].kind) == static_cast<int>(kind) + k;  // the kinds are in order
+    };
+    return last - found >= 3 && whole(1) && whole(2) ? found : nullptr;
+  };
+  const auto motion = [](const model::Observation* point, const model::Observation* turn) {
+    const Eigen::Vector3d vector = read_vector(turn) / maths::kDegPerRad;
+    const double angle = vector.norm();
+    maths::RigidMotion seen{Eigen::Matrix3d::Identity(), read_vector(point)};
+    if (angle > 0) seen.rotation = Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
+    return seen;
+  };
+  if (const auto* point = three(Kind::kBoardX), *turn = three(Kind::kBoardRx); point && turn)
+    return maths::inverse_of(motion(point, turn));
+  if (const auto* point = three(Kind::kX), *turn = three(Kind::kRx); point && turn)
+    return motion(point, turn);
+  return std::nullopt;
+}
+
+/// Stands for the index of a shift that the machine file does not have.
+constexpr std::size_t kNoShift = static_cast<std::size_t>(-1);
+/// Complete poses of the fit rows, by the ToolShift of their set-up; their group is the BaseShift.
+using PosesOfToolShift = std::map<std::size_t, std::vector<maths::SeenPose>>;
+
+PosesOfToolShift seen_poses(const SetUpProblem& problem, const model::Measurement& rows) {
+  PosesOfToolShift poses;
+  const model::ChainRows chain(problem.rigid, rows.states);
+  const auto* const end = rows.observations.data() + rows.observations.size();
+  for (const auto* first = rows.observations.data(); first != end;) {
+    const std::size_t row = first->row;
+    const auto* const last =
+        std::find_if(first, end, [&](const model::Observation& o) { return o.row != row; });
+    if (const auto seen = rows.check[row] == 0 ? seen_pose(first, last) : std::nullopt) {
+      const std::string& name = rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)];
+      const model::Frame pose = chain.pose(row);
+      poses[model::tool_shift_of(problem.rigid, name).value_or(kNoShift)].push_back(
+          {{pose.rotation, pose.origin},
+           *seen,
+           model::base_shift_of(problem.rigid, name).value_or(kNoShift)});
+    }
+    first = last;
+  }
+  return poses;
+}
+
+/// Returns the set-ups from complete poses in closed form: first each mounting (ToolShift), then each place
+/// (BaseShift). nullopt: no mounting is unknown and no camera is on the tool, so that no such start is
+/// needed.
+std::optional<Eigen::VectorXd> posed_start(const SetUpProblem& problem, const model::Measurement& rows) {
+  const bool camera = std::any_of(rows.observations.begin(), rows.observations.end(),
+                                  [](const auto& o) { return format::is_of_board(o.kind); });
+  const bool unknown = std::any_of(problem.shifts.begin(), problem.shifts.end(),
+                                   [](const auto& p) { return p.kind == model::ParameterKind::kToolShift; });
+  if (!camera && !unknown) return std::nullopt;
+  Eigen::VectorXd start = problem.shifts.get(problem.rigid);
+  const auto set = [&](model::ParameterKind kind, std::size_t item, const maths::RigidMotion& motion) {
+    Eigen::Matrix<double, 6, 1> six;
+    six << motion.translation, angles_of(motion.rotation);
+    for (std::size_t i = 0; i < problem.shifts.size(); ++i)
+      if (problem.shifts[i].kind == kind && problem.shifts[i].item == item)
+        start[static_cast<Eigen::Index>(i)] = six[static_cast<Eigen::Index>(problem.shifts[i].column)];
+  };
+  std::map<std::size_t, std::vector<maths::SeenPose>> by_place;
+  for (const auto& [tool, poses] : seen_poses(problem, rows)) {
+    maths::RigidMotion mounting;
+    if (tool != kNoShift) {
+      const model::BaseShift& given = problem.rigid.tool_shifts[tool];
+      const model::Frame frame = model::sixdof_frame(given.value);
+      mounting = {frame.rotation, frame.origin};
+      if (!given.hidden) mounting = maths::mounting_of(poses).value_or(mounting);
+      set(model::ParameterKind::kToolShift, tool, mounting);
+    }
+    for (const maths::SeenPose& one : poses)
+      by_place[one.group].push_back({one.pose * mounting, one.seen, one.group});
+  }
+  for (const auto& [place, poses] : by_place)
+    if (place != kNoShift) set(model::ParameterKind::kBaseShift, place, maths::place_of(poses, {}));
   return start;
 }
 
@@ -143,7 +250,7 @@ std::vector<Eigen::VectorXd> quarter_turns(const SetUpProblem& problem) {
   const auto add = [&](const Eigen::Vector3d& angles) {
     Eigen::VectorXd start = problem.none;
     for (std::size_t i = 0; i < problem.shifts.size(); ++i)
-      if (problem.shifts[i].column >= 3)
+      if (problem.shifts[i].kind == model::ParameterKind::kBaseShift && problem.shifts[i].column >= 3)
         start[static_cast<Eigen::Index>(i)] = angles[static_cast<Eigen::Index>(problem.shifts[i].column) - 3];
     starts.push_back(start);
   };
@@ -189,6 +296,13 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
     hold_at(problem, unseen_turns(there, rows, own.shifts, reach_of(there, rows)), start);
     SetUp aligned = fitted_set_up(machine, own.shifts, problem, start);
     if (aligned.cost < (1 - kSetUpGain) * plain.cost) plain = std::move(aligned);
+  }
+  if (const auto start = posed_start(own, rows)) {
+    model::Machine there = own.rigid;
+    own.shifts.set(there, *start);
+    hold_at(problem, unseen_turns(there, rows, own.shifts, reach_of(there, rows)), *start);
+    SetUp posed = fitted_set_up(machine, own.shifts, problem, *start);
+    if (posed.cost < (1 - kSetUpGain) * plain.cost) plain = std::move(posed);
   }
   return given.cost < (1 - kSetUpGain) * plain.cost ? std::move(given.machine) : std::move(plain.machine);
 }

@@ -12,8 +12,9 @@ namespace vernier::fit {
 /// points by the lever reach_of().
 double reach_of(const model::Machine& machine, const model::Measurement& rows);
 
-/// Returns the machine with its free BaseShifts fitted to the fit rows. The function changes no other value
-/// of the machine.
+/// Returns the machine with its free BaseShifts and ToolShifts fitted to the fit rows. The function changes
+/// no other value of the machine. For complete poses with an unknown mounting the start is computed in closed
+/// form (tools/maths/hand_eye.h), so that no value near the mounting is needed.
 model::Machine set_up(const model::Machine& machine, const model::Measurement& rows);
 
 /// Fits the BaseShifts of the machine to all rows, for any orientation of the instrument. Start values are

@@ -203,6 +203,7 @@ class Settler {
       MatrixXd damped = normal;
       damped.diagonal() *= 1 + damping;
       const VectorXd step = solution_of(damped, gradient);
+      if (damping == 0) result_.last_step = step.cwiseQuotient(scale_);
       result_.point = from + step;
       try {
         linearise();

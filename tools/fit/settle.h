@@ -28,6 +28,8 @@ struct Settled {
   double freedom = 0;          // readings minus what was fitted: trace of F (2 - F), F the share from data
   NoiseModel noise;            // correlation of the errors of the readings: included in the covariance
   Eigen::MatrixXd normal;      // J^T W^2 J of the readings and stated priors
+  /// The last step towards the minimum, in units of each parameter's scale; empty: no step was made.
+  Eigen::VectorXd last_step;
   bool converged = false;
   int iterations = 0;
 };

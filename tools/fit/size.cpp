@@ -80,6 +80,7 @@ std::optional<SizeDirection> size_direction(const model::Machine& machine, const
   model::Machine there = machine;
   parameters.set(there, point);
   there.base_shifts.clear();
+  there.tool_shifts.clear();
   const model::ParameterSet own(there, {});  // the set-ups are the last of `parameters`
   const auto n = static_cast<Index>(own.size());
   const std::vector<std::size_t> some = some_fit_rows(rows);

@@ -116,6 +116,12 @@ constexpr std::array kGroups = {
     thing(columns::kOn, ReadingForm::kOn,
           "name of the `<artefact>` that the tool point touched in this row; `u` is the uncertainty of the "
           "touch"),
+    readings(columns::kBoard, 3, "mm", ReadingForm::kBoard, true,
+             "measured position of a board in the frame of the camera that the tool carries; all three "
+             "columns"),
+    readings(columns::kBoardRotation, 3, "deg", ReadingForm::kBoardRotation, true,
+             "measured rotation of the board in the frame of this camera, as a rotation vector; all three "
+             "columns"),
     beside(columns::kCentre, "mm", ReadingForm::kLength, "the fixed centre, in the measuring frame"),
     normal(),
     beside(columns::kNominalPoint, "mm", ReadingForm::kDeviation,

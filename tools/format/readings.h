@@ -31,7 +31,13 @@ enum class ReadingKind : std::uint8_t {
   kSameZ,
   kOn1,
   kOn2,
-  kOn3
+  kOn3,
+  kBoardX,
+  kBoardY,
+  kBoardZ,
+  kBoardRx,
+  kBoardRy,
+  kBoardRz
 };
 
 /// Form of a reading: the quantity that the instrument reads. Readings of one form share their columns and
@@ -45,7 +51,9 @@ enum class ReadingForm : std::uint8_t {
   kDistance,
   kInclination,
   kSame,
-  kOn
+  kOn,
+  kBoard,
+  kBoardRotation
 };
 
 /// One form of reading. The columns of the form are in columns.h: the columns with the reading, and the
@@ -82,6 +90,11 @@ inline constexpr std::array kReadingForms = {
                      "The tool point met an unknown point that other rows met too."},
     ReadingFormEntry{ReadingForm::kOn, false, false, true, false, "distance from the artefact",
                      "The tool point touched an artefact of the machine file."},
+    ReadingFormEntry{ReadingForm::kBoard, false, false, true, false, "% error of the board",
+                     "Position of a board in the frame of the camera that the tool carries."},
+    ReadingFormEntry{ReadingForm::kBoardRotation, true, false, true, false,
+                     "rotation error of the board about %",
+                     "Rotation of a board in the frame of the camera that the tool carries."},
 };
 
 constexpr const ReadingFormEntry& entry_of(ReadingForm form) {
@@ -138,6 +151,18 @@ inline constexpr std::array kReadingKinds = {
     ReadingKindEntry{ReadingKind::kOn2, "on_2", ReadingForm::kOn, 1,
                      "The second component from a point or across a line."},
     ReadingKindEntry{ReadingKind::kOn3, "on_3", ReadingForm::kOn, 2, "The third component from a point."},
+    ReadingKindEntry{ReadingKind::kBoardX, "bx", ReadingForm::kBoard, 0,
+                     "The x coordinate of the board in the frame of the camera on the tool."},
+    ReadingKindEntry{ReadingKind::kBoardY, "by", ReadingForm::kBoard, 1,
+                     "The y coordinate of the board in the frame of the camera on the tool."},
+    ReadingKindEntry{ReadingKind::kBoardZ, "bz", ReadingForm::kBoard, 2,
+                     "The z coordinate of the board in the frame of the camera on the tool."},
+    ReadingKindEntry{ReadingKind::kBoardRx, "brx", ReadingForm::kBoardRotation, 0,
+                     "The rotation of the board about x of the camera on the tool."},
+    ReadingKindEntry{ReadingKind::kBoardRy, "bry", ReadingForm::kBoardRotation, 1,
+                     "The rotation of the board about y of the camera on the tool."},
+    ReadingKindEntry{ReadingKind::kBoardRz, "brz", ReadingForm::kBoardRotation, 2,
+                     "The rotation of the board about z of the camera on the tool."},
 };
 inline constexpr std::size_t kReadingKindCount = kReadingKinds.size();
 
@@ -158,6 +183,10 @@ constexpr const char* report_unit_of(ReadingKind kind) { return is_rotation(kind
 /// The set-up of the instrument does not change the reading.
 constexpr bool is_free_of_setup(ReadingKind kind) { return entry_of(form_of(kind)).free_of_set_up; }
 constexpr bool is_direction(ReadingKind kind) { return form_of(kind) == ReadingForm::kDirection; }
+/// The reading is the place of a board (the measuring frame) as a camera on the tool sees it.
+constexpr bool is_of_board(ReadingKind kind) {
+  return form_of(kind) == ReadingForm::kBoard || form_of(kind) == ReadingForm::kBoardRotation;
+}
 constexpr bool is_inclination(ReadingKind kind) { return form_of(kind) == ReadingForm::kInclination; }
 /// The reading is 0: the tool point touched an object (an unknown point or an artefact) whose unknown values
 /// a fit eliminates.
@@ -197,6 +226,13 @@ inline constexpr std::array kSurveyReadings = {
     SurveyReading{"inclination", {ReadingForm::kInclination}, 1, "electronic level on the tool"},
     SurveyReading{"same", {ReadingForm::kSame}, 1, "socket, cone or tip met from many poses"},
     SurveyReading{"on", {ReadingForm::kOn}, 1, "touch probe on a sphere, plane or ring of unknown place"},
+    SurveyReading{"board", {ReadingForm::kBoard}, 1, "camera on the tool, place of a board"},
+    SurveyReading{
+        "board-rotation", {ReadingForm::kBoardRotation}, 1, "camera on the tool, rotation of a board"},
+    SurveyReading{"board-pose",
+                  {ReadingForm::kBoard, ReadingForm::kBoardRotation},
+                  2,
+                  "camera on the tool, place and rotation of a board (hand-eye calibration)"},
 };
 
 /// Finds a survey reading by its word; nullptr: no survey reading has the word.

@@ -192,8 +192,8 @@ std::string meaning_of(const Problem& problem, const std::string& text) {
   }
   if (has(problem.what, "unknown element")) {
     static const std::vector<std::string> kElements = {
-        "variables",  "static", "machineaxes", "inputs",    "comptables", "table",  "station",
-        "transforms", "sixdof", "DH",          "BaseShift", "tools",      "volume", "instrument"};
+        "variables", "static", "machineaxes", "inputs",    "comptables", "table",  "station",   "transforms",
+        "sixdof",    "DH",     "BaseShift",   "ToolShift", "tools",      "volume", "instrument"};
     if (const auto meant = text::word_meant(problem.word, kElements)) return "did you mean " + *meant + "?";
   }
   if (has(problem.what, "stations must increase"))

@@ -107,4 +107,63 @@ SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& mach
   return result;
 }
 
+namespace {
+
+/// Set-ups of the rows with readings of a board and without a ToolShift, and of the rows with other readings.
+struct BoardUse {
+  std::set<std::string> of_board, of_others;
+};
+
+BoardUse board_use(const Machine& machine, const Measurement& rows) {
+  BoardUse use;
+  for (const Observation& o : rows.observations) {
+    if (is_free_of_set_up(rows, o)) continue;
+    const std::string& name = rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, o.row)];
+    if (!format::is_of_board(o.kind))
+      use.of_others.insert(name);
+    else if (!tool_shift_of(machine, name))
+      use.of_board.insert(name);
+  }
+  return use;
+}
+
+}  // namespace
+
+SetUpsOfFiles with_camera_mountings(const std::string& text, const Machine& machine,
+                                    const Measurement& rows) {
+  SetUpsOfFiles result{text, {}};
+  const auto [of_board, of_others] = board_use(machine, rows);
+  if (of_board.empty()) return result;
+  constexpr const char* kZero = R"(X="0" Y="0" Z="0" rX="0" rY="0" rZ="0"/>)";
+  std::string elements;
+  for (const std::string& name : of_others.empty() ? std::set<std::string>{""} : of_board) {
+    if (!of_others.empty() && (name.empty() || of_others.contains(name)))
+      throw text::InputError(
+          {machine.file, 0}, name.empty() ? format::columns::kBoard.front() : name,
+          "the readings of the camera and of another instrument have one set-up: give their "
+          "rows different words in a column \"setup\"");
+    const std::string setup =
+        of_others.empty() ? "" : fmt::format("setup=\"{}\" ", text::escape_attribute(name));
+    elements += fmt::format("<ToolShift {}{}\n      ", setup, kZero);
+    result.notes.push_back(fmt::format("the mounting of the camera on the tool is unknown: {} is fitted",
+                                       setup.empty() ? "ToolShift" : "ToolShift[" + name + "]"));
+  }
+  if (machine.base_shifts.empty()) {
+    elements += fmt::format("<BaseShift {}\n      ", kZero);
+    result.notes.emplace_back("the place of the board is unknown: BaseShift is fitted");
+  }
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  const pugi::xml_node list = document.find_node(
+      [](const pugi::xml_node& node) { return text::equal_no_case(node.name(), "static"); });
+  const pugi::xml_node first =
+      list.find_child([](const pugi::xml_node& node) { return node.type() == pugi::node_element; });
+  if (!first)
+    throw text::InputError({machine.file, 0}, "static",
+                           "the mounting of the camera has no place in this file: write <static><ToolShift/>"
+                           "<BaseShift/></static> under <variables>");
+  result.text = text::apply_edits(text, {{static_cast<std::size_t>(first.offset_debug()) - 1, 0, elements}});
+  return result;
+}
+
 }  // namespace vernier::model

@@ -25,4 +25,11 @@ struct SetUpsOfFiles {
 /// of `machine`. The rows must be read again with the new text.
 SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& machine, const Measurement& rows);
 
+/// Adds a ToolShift for the unknown mounting of a camera: for the set-ups that have readings of a board (bx
+/// by bz brx bry brz) and no ToolShift in the machine file. If all readings are of boards, the ToolShift has
+/// no `setup`; else one ToolShift is added for each of these set-ups. A BaseShift is added if the file has
+/// none: it is the place of the board. Throws InputError if other readings have the same set-up: their tool
+/// is not the camera. text and rows as for with_set_ups_of_files().
+SetUpsOfFiles with_camera_mountings(const std::string& text, const Machine& machine, const Measurement& rows);
+
 }  // namespace vernier::model

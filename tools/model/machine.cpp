@@ -187,6 +187,7 @@ Machine nominal_machine(const Machine& machine) {
   for (Table& table : nominal.tables)
     for (Station& station : table.stations) station.value.fill(0);
   nominal.base_shifts.clear();
+  nominal.tool_shifts.clear();
   return nominal;
 }
 

@@ -76,6 +76,8 @@ struct Table {
   std::size_t line = 0;
 };
 
+/// Place of an instrument. In Machine::base_shifts: chain base in the measuring frame. In
+/// Machine::tool_shifts: the measured object or the camera, in the frame of the tool.
 struct BaseShift {
   std::optional<std::string> run;  // label of its set-up; no value: the plain BaseShift
   bool of_setup = false;           // the file says setup=, not run=
@@ -124,6 +126,9 @@ struct Machine {
   std::vector<Input> inputs;
   std::vector<Table> tables;
   std::vector<BaseShift> base_shifts;
+  /// Mounting of what the tool carries for a measurement: a camera, a board, a reflector. It is part of the
+  /// set-up of the instrument and not of the chain.
+  std::vector<BaseShift> tool_shifts;
   std::vector<Transform> tool, workpiece;
   std::vector<Tool> tools;                       // in addition to the tool of the file
   std::vector<Artefact> artefacts;               // what a tool point may touch: column `on`

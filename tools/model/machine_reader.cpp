@@ -464,7 +464,11 @@ class Reader {
     for (const pugi::xml_node node : children(list)) {
       no_children(node);
       if (is(node, "BaseShift")) {
-        read_base_shift(node);
+        read_shift(node, machine_.base_shifts, true);
+        continue;
+      }
+      if (is(node, "ToolShift")) {
+        read_shift(node, machine_.tool_shifts, false);
         continue;
       }
       check_attributes(node, {"value", "nominal", "unit", "note", "Hide", "scale"});
@@ -488,11 +492,16 @@ class Reader {
     }
   }
 
-  void read_base_shift(const pugi::xml_node& node) {
-    check_attributes(node, {"X", "Y", "Z", "rX", "rY", "rZ", "run", "setup", "Hide", "note"});
+  /// A BaseShift, or a ToolShift, which has no attribute `run`.
+  void read_shift(const pugi::xml_node& node, std::vector<BaseShift>& shifts, bool with_run) {
+    const std::string kind = with_run ? "BaseShift" : "ToolShift";
+    if (with_run)
+      check_attributes(node, {"X", "Y", "Z", "rX", "rY", "rZ", "run", "setup", "Hide", "note"});
+    else
+      check_attributes(node, {"X", "Y", "Z", "rX", "rY", "rZ", "setup", "Hide", "note"});
     BaseShift shift;
     shift.line = line(node);
-    shift.run = attribute(node, "run");
+    if (with_run) shift.run = attribute(node, "run");
     if (const auto setup = attribute(node, "setup")) {
       if (shift.run) fail(node, "setup", "a BaseShift is of a run or of a set-up, not of both");
       shift.run = setup;
@@ -500,11 +509,11 @@ class Reader {
     }
     for (std::size_t i = 0; i < 6; ++i) shift.value[i] = number(node, kSixDofNames[i], 0);
     shift.hidden = boolean(node, "Hide", false);
-    for (const BaseShift& other : machine_.base_shifts)
+    for (const BaseShift& other : shifts)
       if (other.run == shift.run)
-        fail(node, shift.run.value_or("BaseShift"),
-             "a second BaseShift of the same " + std::string(shift.of_setup ? "set-up" : "run"));
-    machine_.base_shifts.push_back(shift);
+        fail(node, shift.run.value_or(kind),
+             "a second " + kind + " of the same " + (shift.of_setup || !with_run ? "set-up" : "run"));
+    shifts.push_back(shift);
   }
 
   void read_correct(const pugi::xml_node& list) {

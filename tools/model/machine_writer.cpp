@@ -39,12 +39,13 @@ class Writer {
   }
 
   void edit_static(const pugi::xml_node& node) {
-    if (text::equal_no_case(node.name(), "BaseShift")) {
+    const bool at_tool = text::equal_no_case(node.name(), "ToolShift");
+    if (at_tool || text::equal_no_case(node.name(), "BaseShift")) {
       std::optional<std::string> run;
       for (const pugi::xml_attribute item : node.attributes())
         if (text::equal_no_case(item.name(), "run") || text::equal_no_case(item.name(), "setup"))
           run = item.value();
-      for (const BaseShift& shift : machine_.base_shifts)
+      for (const BaseShift& shift : at_tool ? machine_.tool_shifts : machine_.base_shifts)
         if (shift.run == run) set_six(node, shift.value);
       return;
     }

@@ -294,14 +294,15 @@ class Builder {
     return setups;
   }
 
-  /// Returns the name of the BaseShift that the machine file has for this file; empty without such a
-  /// BaseShift.
+  /// Returns the name of the BaseShift or ToolShift that the machine file has for this file; empty without
+  /// one.
   std::string set_up_of_this_file() const {
     const std::string &file = result_.files.front(), in_folder = set_up_of_file(file, true);
     for (const std::string& name : {in_folder, set_up_of_file(file)})
-      if (std::any_of(machine_.base_shifts.begin(), machine_.base_shifts.end(),
-                      [&](const BaseShift& shift) { return shift.of_setup && shift.run == name; }))
-        return name;
+      for (const auto* shifts : {&machine_.base_shifts, &machine_.tool_shifts})
+        if (std::any_of(shifts->begin(), shifts->end(),
+                        [&](const BaseShift& shift) { return shift.of_setup && shift.run == name; }))
+          return name;
     return {};
   }
 
@@ -409,11 +410,10 @@ class Builder {
         throw text::InputError(reader_.place(row), words[row],
                                "the columns same and on both have a label in this row: a touch belongs to an "
                                "unknown point (same) or to an artefact (on); empty one of the two cells");
-      const auto [at, fresh] = known.try_emplace({words[row], set_up_of_thing(row)}, result_.things.size());
-      if (fresh) {
-        result_.things.push_back(make(row, words[row]));
-        result_.things.back().setup = at->first.second;
-      }
+      Thing thing = make(row, words[row]);
+      thing.setup = thing.is_in_every_set_up() ? "" : set_up_of_thing(row);
+      const auto [at, fresh] = known.try_emplace({words[row], thing.setup}, result_.things.size());
+      if (fresh) result_.things.push_back(std::move(thing));
       result_.thing[row] = at->second;
     }
   }
@@ -576,6 +576,12 @@ class Builder {
     if (kind == ObservationKind::kDistance && result_.other_end[row] == kNoRow)
       throw text::InputError(reader_.place(row), columns::kFrom,
                              "this cell must not be empty: give the row at the other end of the distance");
+    if (format::is_of_board(kind)) {
+      const format::ColumnGroup& group = format::reading_columns(format::form_of(kind));
+      for (const char* const name : group.list())
+        if (reader_.cell(name, row).empty())
+          throw text::InputError(reader_.place(row), name, all_needed(group.names));
+    }
     if (is_inclination(kind) && !machine_.workpiece.empty())
       throw text::InputError(
           reader_.header(), format::name_of(kind),

@@ -44,7 +44,8 @@ inline constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
 
 /// An object that the tool point touched: an unknown point (`same`; an artefact of type point without known
 /// values), or an artefact of the machine file. Each touched object has separate unknown values in each
-/// set-up.
+/// set-up. An exception is an artefact with a stated position and without a stated set-up: it is one body
+/// that stands in several set-ups, each with its own BaseShift, and it has the same values in all of them.
 struct Thing {
   format::ReadingForm form = format::ReadingForm::kSame;
   std::string label, setup;  // setup: empty if rows state none
@@ -54,6 +55,8 @@ struct Thing {
   /// True if the object is in the measuring frame of its set-up; false if the object is in workpiece
   /// coordinates.
   bool in_measuring_frame() const { return artefact.place.has_value(); }
+  /// True if the object has the same values in all set-ups.
+  bool is_in_every_set_up() const { return in_measuring_frame() && !artefact.setup; }
   /// True if both are the same object, in two measurements of one machine.
   bool is(const Thing& other) const {
     return form == other.form && label == other.label && setup == other.setup;

@@ -14,21 +14,47 @@ double& slot(Machine& machine, const Parameter& p) {
       return machine.axes[p.item].scale_factor;
     case ParameterKind::kStation:
       return machine.tables[p.item].stations[p.station].value[p.column];
+    case ParameterKind::kToolShift:
+      return machine.tool_shifts[p.item].value[p.column];
     case ParameterKind::kBaseShift:
       break;
   }
   return machine.base_shifts[p.item].value[p.column];
 }
 
+std::optional<std::size_t> shift_of(const std::vector<BaseShift>& shifts, const std::string& run) {
+  std::optional<std::size_t> plain;
+  for (std::size_t i = 0; i < shifts.size(); ++i) {
+    if (shifts[i].run == run) return i;
+    if (!shifts[i].run) plain = i;
+  }
+  return plain;
+}
+
+/// "BaseShift", "ToolShift[s2]".
+std::string name_of(ParameterKind kind, const BaseShift& shift) {
+  const std::string word = kind == ParameterKind::kBaseShift ? "BaseShift" : "ToolShift";
+  return shift.run ? word + "[" + *shift.run + "]" : word;
+}
+
 }  // namespace
 
 std::optional<std::size_t> base_shift_of(const Machine& machine, const std::string& run) {
-  std::optional<std::size_t> plain;
-  for (std::size_t i = 0; i < machine.base_shifts.size(); ++i) {
-    if (machine.base_shifts[i].run == run) return i;
-    if (!machine.base_shifts[i].run) plain = i;
+  return shift_of(machine.base_shifts, run);
+}
+
+std::optional<std::size_t> tool_shift_of(const Machine& machine, const std::string& run) {
+  return shift_of(machine.tool_shifts, run);
+}
+
+std::vector<SetUpOfRow> set_ups_of(const Machine& machine, const std::vector<std::string>& names) {
+  std::vector<SetUpOfRow> list;
+  for (const std::string& name : names) {
+    const auto base = base_shift_of(machine, name), tool = tool_shift_of(machine, name);
+    list.push_back(
+        {base ? &machine.base_shifts[*base] : nullptr, tool ? &machine.tool_shifts[*tool] : nullptr});
   }
-  return plain;
+  return list;
 }
 
 std::vector<Freedom> freedoms_of(Machine& machine) {
@@ -41,8 +67,9 @@ std::vector<Freedom> freedoms_of(Machine& machine) {
       all.emplace_back(ParameterKind::kStation,
                        "table." + machine.axes[table.axis].name + "." + kSixDofNames[c], table.free[c]);
   for (BaseShift& shift : machine.base_shifts)
-    all.emplace_back(ParameterKind::kBaseShift, shift.run ? "BaseShift[" + *shift.run + "]" : "BaseShift",
-                     shift.hidden);
+    all.emplace_back(ParameterKind::kBaseShift, name_of(ParameterKind::kBaseShift, shift), shift.hidden);
+  for (BaseShift& shift : machine.tool_shifts)
+    all.emplace_back(ParameterKind::kToolShift, name_of(ParameterKind::kToolShift, shift), shift.hidden);
   return all;
 }
 
@@ -64,15 +91,17 @@ ParameterSet::ParameterSet(const Machine& machine, const std::vector<std::string
                          c < 3 ? "mm" : "deg", ParameterKind::kStation, i, s, c});
       }
   }
-  std::set<std::size_t> used;
-  for (const std::string& run : runs)
-    if (const auto shift = base_shift_of(machine, run)) used.insert(*shift);
-  for (const std::size_t i : used) {
-    const BaseShift& shift = machine.base_shifts[i];
-    const std::string label = shift.run ? "BaseShift[" + *shift.run + "]." : "BaseShift.";
-    for (std::size_t c = 0; !shift.hidden && c < 6; ++c)
-      list_.push_back({label + kSixDofNames[c], c < 3 ? "mm" : "deg", ParameterKind::kBaseShift, i, 0, c});
-  }
+  const auto add = [&](ParameterKind kind, const std::vector<BaseShift>& shifts) {
+    std::set<std::size_t> used;
+    for (const std::string& run : runs)
+      if (const auto shift = shift_of(shifts, run)) used.insert(*shift);
+    for (const std::size_t i : used)
+      for (std::size_t c = 0; !shifts[i].hidden && c < 6; ++c)
+        list_.push_back(
+            {name_of(kind, shifts[i]) + "." + kSixDofNames[c], c < 3 ? "mm" : "deg", kind, i, 0, c});
+  };
+  add(ParameterKind::kBaseShift, machine.base_shifts);
+  add(ParameterKind::kToolShift, machine.tool_shifts);
 }
 
 Eigen::VectorXd ParameterSet::get(const Machine& machine) const {

@@ -8,34 +8,39 @@
 
 namespace vernier::model {
 
-enum class ParameterKind : std::uint8_t { kStatic, kScaleFactor, kStation, kBaseShift };
+enum class ParameterKind : std::uint8_t { kStatic, kScaleFactor, kStation, kBaseShift, kToolShift };
+
+/// True for parameters of the set-up of an instrument: they are no errors of the machine.
+constexpr bool is_set_up(ParameterKind kind) {
+  return kind == ParameterKind::kBaseShift || kind == ParameterKind::kToolShift;
+}
 
 /// One number of a machine that a fit may change.
 struct Parameter {
   std::string name,
       unit;  // as in the JSON result: `alpha`, `scalefactor.X`, `table.X[100].rY`, `BaseShift[s2].rZ`
   ParameterKind kind = ParameterKind::kStatic;
-  std::size_t item = 0;     // index of the static, axis, table or BaseShift
+  std::size_t item = 0;     // index of the static, axis, table, BaseShift or ToolShift
   std::size_t station = 0;  // kStation
-  std::size_t column = 0;   // kStation, kBaseShift: 0..5 = X Y Z rX rY rZ
+  std::size_t column = 0;   // kStation, kBaseShift, kToolShift: 0..5 = X Y Z rX rY rZ
 };
 
 /// A group of parameters that a fit frees or fixes together: a constant (static), a scale factor, a column of
-/// a table, a BaseShift.
+/// a table, a BaseShift, a ToolShift.
 class Freedom {
  public:
   Freedom(ParameterKind kind, std::string name, bool& flag)
       : kind_(kind), name_(std::move(name)), flag_(flag) {}
 
   ParameterKind kind() const { return kind_; }
-  /// `alpha`, `scalefactor.X`, `table.X.rY`, `BaseShift`, `BaseShift[s2]`.
+  /// `alpha`, `scalefactor.X`, `table.X.rY`, `BaseShift`, `BaseShift[s2]`, `ToolShift`.
   const std::string& name() const { return name_; }
   /// Statics and BaseShifts store whether they are hidden; the other units store whether they are free.
   bool is_free() const { return flag_ != says_hidden(); }
   void set_free(bool free) { flag_ = free != says_hidden(); }
 
  private:
-  bool says_hidden() const { return kind_ == ParameterKind::kStatic || kind_ == ParameterKind::kBaseShift; }
+  bool says_hidden() const { return kind_ == ParameterKind::kStatic || is_set_up(kind_); }
 
   ParameterKind kind_;
   std::string name_;
@@ -46,7 +51,8 @@ class Freedom {
 /// such units. The entries point into the machine.
 std::vector<Freedom> freedoms_of(Machine& machine);
 
-/// The free parameters of a machine, in a fixed order: statics, scale factors, stations, BaseShifts.
+/// The free parameters of a machine, in a fixed order: statics, scale factors, stations, BaseShifts,
+/// ToolShifts.
 class ParameterSet {
  public:
   ParameterSet() = default;
@@ -71,5 +77,15 @@ class ParameterSet {
 /// Returns the BaseShift of a run: the BaseShift for this run, or else the BaseShift without `run` and
 /// `setup`, or else nullopt (identity).
 std::optional<std::size_t> base_shift_of(const Machine& machine, const std::string& run);
+/// Returns the ToolShift of a set-up, as base_shift_of() returns its BaseShift.
+std::optional<std::size_t> tool_shift_of(const Machine& machine, const std::string& run);
+
+/// The two places of an instrument in the set-up of a row; null: identity.
+struct SetUpOfRow {
+  const BaseShift* base = nullptr;
+  const BaseShift* tool = nullptr;
+};
+/// Returns the places for each set-up name. The pointers point into the machine.
+std::vector<SetUpOfRow> set_ups_of(const Machine& machine, const std::vector<std::string>& names);
 
 }  // namespace vernier::model

@@ -180,8 +180,7 @@ PlannedParameters planned_parameters(const model::Machine& machine, double expec
   PlannedParameters planned{model::ParameterSet(machine, {""}),  {}, {}, {},
                             offered_poses(machine, kOffered, 0), {}, {}};
   for (std::size_t i = 0; i < planned.all.size(); ++i)
-    (planned.all[i].kind == model::ParameterKind::kBaseShift ? planned.set_up : planned.own)
-        .push_back(static_cast<Index>(i));
+    (model::is_set_up(planned.all[i].kind) ? planned.set_up : planned.own).push_back(static_cast<Index>(i));
   if (planned.own.empty())
     throw text::InputError({machine.file, 0}, machine.name,
                            "no reading can determine a free parameter of the machine file");

@@ -363,6 +363,7 @@ Eigen::VectorXd errors_as_commanded(const model::Machine& machine, const model::
   const model::Measurement rows = as_commanded(measurement);
   model::Machine nominal = model::nominal_machine(machine);
   nominal.base_shifts = machine.base_shifts;
+  nominal.tool_shifts = machine.tool_shifts;
   return fit::residuals(fit::set_up(nominal, rows), rows);
 }
 

@@ -147,6 +147,7 @@ ReplayResult replay(const compile::LoadedImage& image, const model::Measurement&
   }
   model::Machine nominal = model::nominal_machine(image.machine);
   nominal.base_shifts = image.machine.base_shifts;
+  nominal.tool_shifts = image.machine.tool_shifts;
   const Eigen::VectorXd as_commanded = model::predict(nominal, m),
                         as_moved = model::predict(nominal, corrected);
   result.before.resize(as_commanded.size());

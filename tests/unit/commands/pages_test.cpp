@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -147,7 +148,7 @@ TEST_F(Pages, TouchRunsAsPrinted) {
   for (const std::string& block : blocks(text, "sh")) script += block;
   ASSERT_EQ(run(script), 0) << said_;
   const auto printed = blocks(text, "text");
-  ASSERT_EQ(printed.size(), 3u);
+  ASSERT_EQ(printed.size(), 4u);
   for (const std::string& lines : printed)
     EXPECT_NE(said_.find(lines), std::string::npos) << lines << "is not in\n" << said_;
   // The truth (tests/data/touch/make.py), within the uncertainties that the fits state.
@@ -159,11 +160,32 @@ TEST_F(Pages, TouchRunsAsPrinted) {
               {"printer", "sag", -0.15, 0.0042},
               {"mill", "squareness", -0.0034, 0.0002},
               {"mill", "scaleX", 40, 11},
-              {"mill", "scaleY", -25, 11}};
+              {"mill", "scaleY", -25, 11},
+              {"square", "C0Y", 60e-6, 5.8e-7}};
   for (const auto& row : rows) {
     const model::Machine machine = model::read_machine(folder_ + "/build/touch/" + row.machine + ".xml");
     EXPECT_NEAR(machine.statics[*machine.find_static(row.name)].value, row.truth, 2.5 * row.std) << row.name;
   }
+}
+
+TEST_F(Pages, CameraRunsAsPrinted) {
+  const std::string text = page("tools/docs/camera.md");
+  std::string script;
+  for (const std::string& block : blocks(text, "sh")) script += block;
+  ASSERT_EQ(run(script), 0) << said_;
+  const auto printed = blocks(text, "text");
+  ASSERT_EQ(printed.size(), 1u);
+  std::istringstream lines(printed[0]);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_NE(said_.find(line + "\n"), std::string::npos) << line << " is not in\n" << said_;
+  EXPECT_NE(said_.find("verdict: consistent"), std::string::npos) << said_;
+  // The truth (tests/data/camera/make.py), within the uncertainties that the fit states.
+  const model::Machine machine = model::read_machine(folder_ + "/build/camera/robot.xml");
+  ASSERT_EQ(machine.tool_shifts.size(), 1u);
+  const std::array<double, 6> truth = {62, -18, -95, 4, -7, 91},
+                              std = {0.037, 0.076, 0.34, 0.0081, 0.0049, 0.064};
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_NEAR(machine.tool_shifts[0].value[i], truth[i], 2.5 * std[i]) << i;
 }
 
 TEST_F(Pages, ReadmeRunsAsPrinted) {

@@ -96,7 +96,9 @@ class ReadingKinds : public testing::TestWithParam<ReadingKind> {
         for (std::size_t k = 0; k < group->count; ++k)
           survey.cell(row, group->names[k]) = beside(*group, row, k);
       for (const char* const name : format::reading_columns(form).list()) survey.cell(row, name) = "1";
-      if (format::entry_of(form).together)
+      if (format::is_of_board(GetParam()))
+        for (const char* const name : format::reading_columns(form).list()) survey.cell(row, name) = "0";
+      else if (format::entry_of(form).together)
         for (std::size_t k = 0; k < 3; ++k)
           survey.cell(row, format::reading_columns(form).names[k]) = k == 2 ? "1" : "0";
     }
@@ -106,7 +108,7 @@ class ReadingKinds : public testing::TestWithParam<ReadingKind> {
     const std::vector<Eigen::Matrix3d> rotation = model::forward(machine, rows.states).rotation;
     for (std::size_t i = 0; i < rows.observations.size(); ++i) {
       const model::Observation& o = rows.observations[i];
-      if (format::entry_of(form).together) {
+      if (form == format::ReadingForm::kDirection) {
         // The measured direction is the tool axis, with noise across it: once a row, though it is two
         // readings.
         if (i > 0 && rows.observations[i - 1].row == o.row) continue;

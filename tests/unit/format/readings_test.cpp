@@ -25,11 +25,11 @@ TEST(ReadingKinds, AreFoundByTheirNames) {
 }
 
 // A kind is read from the column of its name. A direction is read from all its columns together, and its two
-// angles have no column.
+// angles have no column. A touch is read from a label.
 TEST(ReadingKinds, HaveTheColumnsOfTheirForm) {
   for (const ReadingKindEntry& entry : kReadingKinds) {
     const ColumnGroup& group = reading_columns(entry.form);
-    if (entry_of(entry.form).together) {
+    if (is_direction(entry.kind) || is_of_thing(entry.kind)) {
       EXPECT_EQ(find_column(entry.name), nullptr) << entry.name;
       continue;
     }
@@ -48,10 +48,12 @@ TEST(ReadingKinds, FormsHaveOneGroupOfReadingColumnsEach) {
     const auto kinds = std::count_if(kReadingKinds.begin(), kReadingKinds.end(),
                                      [&](const ReadingKindEntry& kind) { return kind.form == form.form; });
     EXPECT_GT(kinds, 0) << form.meaning;
-    // Columns taken together are the coordinates of a unit vector: pure numbers, whatever the reading is.
-    const Dimension wanted = form.together   ? Dimension::kNone
-                             : form.rotation ? Dimension::kAngle
-                                             : Dimension::kLength;
+    // Columns taken together are the coordinates of a unit vector or a label: pure numbers, whatever the
+    // reading is. The pose of a board has its units.
+    const bool board = form.form == ReadingForm::kBoard || form.form == ReadingForm::kBoardRotation;
+    const Dimension wanted = form.together && !board ? Dimension::kNone
+                             : form.rotation         ? Dimension::kAngle
+                                                     : Dimension::kLength;
     EXPECT_EQ(dimension_of(reading_columns(form.form)), wanted) << form.meaning;
   }
 }
@@ -66,7 +68,9 @@ TEST(ReadingKinds, OfEveryFormCanBeSurveyed) {
   EXPECT_EQ(survey_reading("pose")->list().size(), 2u);
   EXPECT_EQ(survey_reading("glance"), nullptr);
   EXPECT_EQ(survey_words("or"),
-            "point, length, touch, pose, rotation, direction, distance, inclination, same or on");
+            "point, length, touch, pose, rotation, direction, distance, inclination, same, on, board, "
+            "board-rotation "
+            "or board-pose");
 }
 
 TEST(ReadingKinds, SayWhatTheyAre) {

@@ -111,6 +111,27 @@ TEST(Tracker, OrientationsBecomeTheRotationVectorOfTheChain) {
   EXPECT_NEAR(table.numbers("rz")[0], 0.5, 1e-2);
 }
 
+TEST(Camera, PosesOfABoardKeepTheirFrame) {
+  const std::string map =
+      "column 1 = X[mm]\ncolumn 2 = x[m]\ncolumn 3 = y[m]\ncolumn 4 = z[m]\ncolumn 5 = rx[rad]\n"
+      "column 6 = ry[rad]\ncolumn 7 = rz[rad]\nset Y[mm] = 0\nset ua[mrad] = 0.2\n";
+  const std::string text = "10,0.1,-0.2,0.5,3,0.1,-0.2\n";
+  const Machine machine = parse_machine(kMachine, "machine.xml");
+  for (const bool on_tool : {true, false}) {
+    ImportTable table = mapped_table(text, "data.txt", map_of(map));
+    finish_camera(table, on_tool);
+    const Measurement m = parse_measurement(measurement_csv(table), "out.csv", machine);
+    ASSERT_EQ(m.observations.size(), 6u);
+    EXPECT_EQ(m.observations[0].kind, on_tool ? ObservationKind::kBoardX : ObservationKind::kX);
+    EXPECT_EQ(m.observations[5].kind, on_tool ? ObservationKind::kBoardRz : ObservationKind::kRz);
+    EXPECT_DOUBLE_EQ(m.observations[1].value, -200);
+    EXPECT_NEAR(m.observations[3].value, 3 * kDeg, 1e-9);
+    EXPECT_NEAR(m.angle_uncertainty[0], 2e-4 * kDeg, 1e-12);
+  }
+  ImportTable half = mapped_table("10,0.1\n", "data.txt", map_of("column 1 = X[mm]\ncolumn 2 = x[m]\n"));
+  EXPECT_THROW(finish_camera(half, true), InputError);
+}
+
 TEST(Tracker, ErrorsNameFileLineAndWord) {
   const std::string map = "column 1 = X[mm]\ncolumn 2 = x[mm]\n";
   const auto has = [](const std::string& text, const std::string& part) {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <numbers>
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -57,6 +60,49 @@ TEST(Chain, DerivativesOfEveryObservationAgreeWithDifferences) {
   const ParameterSet parameters(machine, {"a", "b"});
   ASSERT_EQ(parameters.size(), 5U + 18 + 8 + 6 + 12);
   support::expect_derivatives(machine, m, parameters);
+}
+
+/// A wrist with a ToolShift that carries a camera, a board, or a reflector.
+constexpr const char* kWrist =
+    R"XML(<machine><variables><static><a value="310" unit="mm"/><zero value="3" unit="deg"/>
+  <BaseShift X="20" Y="-700" Z="90" rX="100" rY="-30" rZ="15"/>
+  <ToolShift X="40" Y="-25" Z="60" rX="-70" rY="20" rZ="130"/></static>
+  <machineaxes><A rotary="true"/><B rotary="true"/><C rotary="true"/></machineaxes></variables>
+  <transforms><sixdof n="1" rZ="A+zero"/><sixdof n="2" X="a" rY="B"/><sixdof n="3" X="120" rX="C"/></transforms>
+  </machine>)XML";
+
+TEST(Chain, DerivativesWithAToolShiftAgreeWithDifferences) {
+  const Machine machine = parse_machine(kWrist, "wrist.xml");
+  const ParameterSet parameters(machine, {""});
+  ASSERT_EQ(parameters.size(), 2U + 6 + 6);
+  EXPECT_EQ(parameters[8].name, "ToolShift.X");
+  const Measurement m = parse_measurement(
+      "A[deg],B[deg],C[deg],bx[mm],by[mm],bz[mm],brx[deg],bry[deg],brz[deg],x[mm],y[mm],z[mm],rx[deg],ry[deg]"
+      ","
+      "rz[deg],length[mm],cx[mm],cy[mm],cz[mm],ax,ay,az,distance[mm],from\n"
+      "10,20,30,1,2,3,10,-20,30,1,2,3,10,20,30,100,5,6,7,0,0.6,0.8,,\n"
+      "-50,70,-110,1,2,3,170,5,9,1,2,3,-60,20,30,100,5,6,7,0.6,0,0.8,50,1\n",
+      "m.csv", machine);
+  support::expect_derivatives(machine, m, parameters);
+}
+
+// The board is the measuring frame: the reading is the inverse of what a six-degree tracker would read.
+TEST(Chain, ABoardIsSeenWhereTheInverseOfTheToolIs) {
+  const Machine machine = parse_machine(kWrist, "wrist.xml");
+  const Measurement m = parse_measurement(
+      "A[deg],B[deg],C[deg],x[mm],y[mm],z[mm],rx[deg],ry[deg],rz[deg],bx[mm],by[mm],bz[mm],brx[deg],bry[deg],"
+      "brz[deg]\n10,20,30,0,0,0,0,0,0,0,0,0,0,0,0\n-80,5,140,0,0,0,0,0,0,0,0,0,0,0,0\n",
+      "m.csv", machine);
+  const Eigen::VectorXd p = predict(machine, m);
+  for (Eigen::Index row = 0; row < 2; ++row) {
+    const auto motion = [&](Eigen::Index at) {
+      const Eigen::Vector3d vector = p.segment<3>(12 * row + at + 3) * std::numbers::pi / 180;
+      Eigen::Isometry3d t(Eigen::AngleAxisd(vector.norm(), vector.normalized()));
+      t.pretranslate(p.segment<3>(12 * row + at).eval());
+      return t;
+    };
+    EXPECT_LT(((motion(0) * motion(6)).matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-9);
+  }
 }
 
 TEST(Chain, RotationVectorFollowsTheMeasuredBranchAcrossHalfATurn) {

@@ -82,5 +82,35 @@ TEST(FileSetUps, HiddenBaseShiftStaysTheOnlyOne) {
             hidden);
 }
 
+/// A file of a camera on the tool, and what is added to the machine file for it.
+const std::string kBoardHead = "X[mm],bx[mm],by[mm],bz[mm],brx[deg],bry[deg],brz[deg]";
+SetUpsOfFiles mountings(const std::vector<File>& files, const std::string& text = kMachine) {
+  const Machine machine = parse_machine(text, "m.xml");
+  return with_camera_mountings(text, machine, read(files, machine));
+}
+
+TEST(CameraMountings, ACameraHasAToolShiftOfItsOwn) {
+  const File camera = {"cam.csv", kBoardHead + "\n1,0,0,500,1,2,3\n"};
+  const SetUpsOfFiles own = mountings({camera});
+  ASSERT_EQ(own.notes.size(), 1U);
+  const Machine machine = parse_machine(own.text, "m.xml");
+  ASSERT_EQ(machine.tool_shifts.size(), 1U);
+  EXPECT_FALSE(machine.tool_shifts[0].run);
+  EXPECT_EQ(machine.base_shifts.size(), 1U);
+  EXPECT_EQ(mountings({camera}, own.text).text, own.text);
+  EXPECT_EQ(mountings({{"one.csv", "X[mm],x[mm]\n1,1\n"}}).text, kMachine);
+}
+
+// The reflector of a tracker is not at the place of the camera.
+TEST(CameraMountings, BesideATrackerTheToolShiftIsOfTheSetUpOfTheCamera) {
+  const File tracker = {"one.csv", "X[mm],x[mm]\n1,1\n"};
+  const SetUpsOfFiles own = mountings({tracker, {"cam.csv", kBoardHead + ",setup\n1,0,0,500,1,2,3,cam\n"}});
+  const Machine machine = parse_machine(own.text, "m.xml");
+  ASSERT_EQ(machine.tool_shifts.size(), 1U);
+  EXPECT_EQ(machine.tool_shifts[0].run, "cam");
+  EXPECT_FALSE(tool_shift_of(machine, ""));
+  EXPECT_THROW(mountings({tracker, {"cam.csv", kBoardHead + "\n1,0,0,500,1,2,3\n"}}), text::InputError);
+}
+
 }  // namespace
 }  // namespace vernier::model

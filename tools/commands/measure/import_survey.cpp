@@ -27,7 +27,7 @@ struct SurveyArguments {
   double radius_mm = 0;
   std::string log;  // of the machine, tracker only
   importer::LogOptions log_options;
-  bool header = false;
+  bool header = false, fixed_camera = false;
   ImportOutput output;
 };
 
@@ -119,6 +119,8 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
                                                        arguments.file, map_of(arguments, kind));
   if (kind_name == "tracker")
     importer::finish_tracker(table);
+  else if (kind_name == "camera")
+    importer::finish_camera(table, !arguments.fixed_camera);
   else
     importer::finish_probe(table, arguments.radius_mm);
   std::optional<importer::LoggedTable> logged;
@@ -188,6 +190,21 @@ void add_tracker_kind(CLI::App& kind) {
       "z,\n"
       "u, run, role … Orientation: rx ry rz (rotation vector), or rX rY rZ (angles of Rx*Ry*Rz), or\n"
       "qw qx qy qz (quaternion); the latter two become rx ry rz.");
+}
+
+void add_camera_kind(CLI::App& kind) {
+  const auto arguments = std::make_shared<SurveyArguments>();
+  add_survey_options(kind, arguments);
+  kind.add_flag(
+      "--fixed-camera", arguments->fixed_camera,
+      "the camera is fixed and the tool carries the board; default: the tool carries the camera and "
+      "the board is fixed");
+  kind.footer(
+      "Each row: the axis positions, and the pose of the board in the frame of the camera (OpenCV solvePnP:\n"
+      "tvec, rvec): x y z with the unit of the table, and rx ry rz (rotation vector), or rX rY rZ (angles "
+      "of\n"
+      "Rx*Ry*Rz), or qw qx qy qz (quaternion). Give u (of x y z) and ua (of the rotation), or --set "
+      "u[mm]=0.1.");
 }
 
 void add_probe_kind(CLI::App& kind) {

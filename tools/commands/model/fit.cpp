@@ -227,7 +227,7 @@ void register_fit(CLI::App& vernier) {
   command->add_option(
       "--free", arguments->free,
       "patterns of free parameters in addition to those of the file: statics, table.X.rY, BaseShift, "
-      "scalefactor.X; may be repeated");
+      "ToolShift, scalefactor.X; may be repeated");
   command->add_option(
       "--hold", arguments->hold,
       "patterns of parameters that the fit does not change (applied after --free); may be repeated");

@@ -39,6 +39,7 @@ std::vector<std::array<double, 2>> measured_ranges(const model::Machine& machine
 model::Machine without_set_up(const model::Machine& machine) {
   model::Machine bare = machine;
   bare.base_shifts.clear();
+  bare.tool_shifts.clear();
   if (!machine.fitted) return bare;
   const std::vector<std::string>& names = machine.fitted->parameters;
   for (model::Axis& axis : bare.axes)

@@ -21,6 +21,7 @@ ReadingsBesideSetUp::ReadingsBesideSetUp(const model::Machine& fitted, const mod
                                          const VectorXd& residual, double variance)
     : bare_(fitted), states_(rows.states), check_(rows.check) {
   bare_.base_shifts.clear();
+  bare_.tool_shifts.clear();
   const double rms_mm = fitted.fitted ? std::max(fitted.fitted->rms_mm, 1e-9) : 1;
   std::vector<double> left;
   std::vector<std::size_t> setups;

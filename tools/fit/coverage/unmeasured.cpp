@@ -239,7 +239,7 @@ std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters) 
   std::vector<Coefficient> list;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const model::Parameter& p = parameters[i];
-    if (p.kind == model::ParameterKind::kBaseShift) continue;
+    if (model::is_set_up(p.kind)) continue;
     std::string name = p.name;
     if (p.kind == model::ParameterKind::kStation)
       name = name.substr(0, name.find('[')) + name.substr(name.rfind(']') + 1);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
@@ -18,10 +19,10 @@ std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measu
   // the instrument.
   constexpr double kSeen = 1e-3;
   std::vector<bool> unseen(parameters.size(), false);
-  std::map<std::size_t, std::array<Eigen::Index, 6>> shifts;
+  std::map<std::pair<model::ParameterKind, std::size_t>, std::array<Eigen::Index, 6>> shifts;
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    if (parameters[i].kind == model::ParameterKind::kBaseShift) {
-      auto& columns = shifts.try_emplace(parameters[i].item).first->second;
+    if (model::is_set_up(parameters[i].kind)) {
+      auto& columns = shifts.try_emplace({parameters[i].kind, parameters[i].item}).first->second;
       columns[parameters[i].column] = static_cast<Eigen::Index>(i);
     }
   if (shifts.empty()) return unseen;

@@ -154,6 +154,23 @@ void finish_tracker(ImportTable& table) {
       "no measured column is mapped: map at least one of x y z, rX rY rZ, qw qx qy qz, rx ry rz");
 }
 
+void finish_camera(ImportTable& table, bool on_tool) {
+  finish_tracker(table);
+  for (const auto& group : {columns::kPoint, columns::kRotation})
+    if (!has_all(table, format::words_of(group)))
+      throw text::InputError({table.file, 0}, group.front(),
+                             "the pose of a board is not complete: map x, y, z and an orientation (rx ry rz, "
+                             "rX rY rZ or qw qx qy qz)");
+  check_dimension(table, format::words_of(columns::kPoint), format::Dimension::kLength);
+  check_dimension(table, format::words_of(columns::kRotation), format::Dimension::kAngle);
+  if (!on_tool) return;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (ImportTable::Column& column : table.columns) {
+      if (column.name == columns::kPoint[k]) column.name = columns::kBoard[k];
+      if (column.name == columns::kRotation[k]) column.name = columns::kBoardRotation[k];
+    }
+}
+
 void finish_probe(ImportTable& table, double radius_mm) {
   const std::string normals = format::words_of(columns::kNormal),
                     nominals = format::words_of(columns::kNominalPoint);

@@ -13,6 +13,12 @@ namespace vernier::importer {
 /// part, a quaternion whose length is not 1 within 1e-3, no measured column.
 void finish_tracker(ImportTable& table);
 
+/// Finishes a table of poses of a board as camera software gives them: x y z and an orientation in one of the
+/// forms of finish_tracker(). on_tool: the tool carries the camera; the columns become bx by bz brx bry brz,
+/// the pose of the board in the frame of the camera. Else the tool carries the board and the camera is fixed:
+/// x y z rx ry rz, as a tracker reads them. Throws InputError without a complete position.
+void finish_camera(ImportTable& table, bool on_tool);
+
 /// Converts a table of touches to a measurement. A column d is imported as d; otherwise d = n * (m - p) with
 /// the recorded point mx my mz. nx ny nz (scaled to length 1, within 1e-3) and the nominal point px py pz are
 /// required. All points are in workpiece coordinates. `radius_mm`: radius of the stylus ball, if the recorded

@@ -27,12 +27,16 @@ Linearizer::Linearizer(const Machine& machine, const Measurement& measurement, c
   active_.assign(statics + 7 * machine.axes.size(), 0);
   slot_of_key_.assign(active_.size(), -1);
   base_parameter_.resize(machine.base_shifts.size());
-  for (auto& six : base_parameter_) six.fill(-1);
+  tool_parameter_.resize(machine.tool_shifts.size());
+  for (auto* const list : {&base_parameter_, &tool_parameter_})
+    for (auto& six : *list) six.fill(-1);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& p = parameters[i];
     const auto parameter = static_cast<Index>(i);
     if (p.kind == ParameterKind::kBaseShift) {
       base_parameter_[p.item][p.column] = parameter;
+    } else if (p.kind == ParameterKind::kToolShift) {
+      tool_parameter_[p.item][p.column] = parameter;
     } else if (p.kind != ParameterKind::kStation) {
       const std::size_t key =
           p.kind == ParameterKind::kStatic ? p.item : statics + 6 * machine.axes.size() + p.item;
@@ -70,12 +74,9 @@ Linearizer::Pass::Pass(const Linearizer& all, const Machine& machine)
     : all_(all),
       machine_(machine),
       chain_(machine, all.measurement_.states, all.active_),
-      things_(all.things_, machine, chain_) {
+      things_(all.things_, machine, chain_),
+      set_ups_(set_ups_of(machine, all.measurement_.states.names(all.measurement_.states.setup))) {
   for (const std::size_t key : chain_.keys()) slot_of_key_.push_back(all.slot_of_key_[key]);
-  for (const std::string& run : all.measurement_.states.names(all.measurement_.states.setup)) {
-    const auto found = base_shift_of(machine, run);
-    shift_of_setup_.push_back(found ? &machine.base_shifts[*found] : nullptr);
-  }
   row_.groups = all.static_groups_;
   for (const TableGroup& table : all.tables_) row_.groups.push_back(table.group);
 }
@@ -122,21 +123,22 @@ void Linearizer::Pass::join_other_end(std::size_t row, std::size_t other) {
 
 Eigen::Vector3d Linearizer::Pass::point_at(std::size_t row) const {
   const Frame pose = chain_.pose(row);
-  return ObservationModel(all_.measurement_, machine_.gravity, shift_of(row), pose).point();
+  return ObservationModel(all_.measurement_, machine_.gravity, set_up_of(row), pose).point();
 }
 
 void Linearizer::Pass::fill(std::size_t row, std::size_t at, const Eigen::Vector3d& other_end) {
   const Measurement& m = all_.measurement_;
-  const BaseShift* shift = shift_of(at);
+  const SetUpOfRow& set_up = set_up_of(at);
   const Frame pose = chain_.pose(at, twists_);
-  ObservationModel model(m, machine_.gravity, shift, pose);
+  ObservationModel model(m, machine_.gravity, set_up, pose);
   model.set_other_end(other_end);
   const std::size_t first = all_.start_[row], count = all_.start_[row + 1] - first;
   row_.first_observation = first;
   row_.predicted.setZero(static_cast<Index>(count));
-  row_.gradient.setZero(all_.slots_ + 6, static_cast<Index>(count));
-  std::array<Twist, 6> base;
-  if (shift != nullptr) base = model.base_twists();
+  row_.gradient.setZero(all_.slots_ + 12, static_cast<Index>(count));
+  std::array<Twist, 6> base, tool;
+  if (set_up.base != nullptr) base = model.base_twists();
+  if (set_up.tool != nullptr) tool = model.tool_twists();
   for (std::size_t k = 0; k < count; ++k) {
     const auto o = static_cast<Index>(k);
     const Observation& observation = m.observations[first + k];
@@ -159,10 +161,14 @@ void Linearizer::Pass::fill(std::size_t row, std::size_t at, const Eigen::Vector
     for (std::size_t s = 0; s < twists_.size(); ++s)
       row_.gradient(slot_of_key_[s], o) +=
           in_workpiece.point.dot(twists_[s].point) + in_workpiece.rotation.dot(twists_[s].rotation);
-    if (shift == nullptr || is_free_of_set_up(m, observation)) continue;
-    for (std::size_t c = 0; c < 6; ++c)
-      row_.gradient(all_.slots_ + static_cast<Index>(c), o) =
-          g.point.dot(base[c].point) + g.rotation.dot(base[c].rotation);
+    if (is_free_of_set_up(m, observation)) continue;
+    const auto add = [&](const std::array<Twist, 6>& twists, Index slot) {
+      for (std::size_t c = 0; c < 6; ++c)
+        row_.gradient(slot + static_cast<Index>(c), o) =
+            g.point.dot(twists[c].point) + g.rotation.dot(twists[c].rotation);
+    };
+    if (set_up.base != nullptr) add(base, all_.slots_);
+    if (set_up.tool != nullptr && !is_of_thing(observation.kind)) add(tool, all_.slots_ + 6);
   }
   const std::size_t statics = all_.static_groups_.size();
   for (std::size_t t = 0; t < all_.tables_.size(); ++t) {
@@ -171,12 +177,16 @@ void Linearizer::Pass::fill(std::size_t row, std::size_t at, const Eigen::Vector
         table.weights.begin() + static_cast<std::ptrdiff_t>(table.start[at]),
         table.weights.begin() + static_cast<std::ptrdiff_t>(table.start[at + 1]));
   }
-  // The BaseShift of this row's run, component by component if some are held.
   row_.groups.resize(statics + all_.tables_.size());
+  add_set_up(all_.base_parameter_, machine_.base_shifts, set_up.base, all_.slots_);
+  add_set_up(all_.tool_parameter_, machine_.tool_shifts, set_up.tool, all_.slots_ + 6);
+}
+
+void Linearizer::Pass::add_set_up(const std::vector<std::array<Index, 6>>& parameters,
+                                  const std::vector<BaseShift>& shifts, const BaseShift* shift, Index slot) {
   if (shift == nullptr) return;
-  const auto& parameter = all_.base_parameter_[static_cast<std::size_t>(shift - machine_.base_shifts.data())];
-  if (parameter[0] < 0) return;
-  row_.groups.push_back({all_.slots_, 6, {{parameter[0], 1.0}}});
+  const Index first = parameters[static_cast<std::size_t>(shift - shifts.data())][0];
+  if (first >= 0) row_.groups.push_back({slot, 6, {{first, 1.0}}});
 }
 
 }  // namespace vernier::model

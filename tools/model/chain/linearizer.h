@@ -15,7 +15,8 @@
 namespace vernier::model {
 
 /// Adjacent parameters with common weights: the free columns of a table (one weight for each station that
-/// contributes at a row), statics, or the components of a BaseShift (weight 1).
+/// contributes at a row), statics, or the components of a BaseShift or a ToolShift (weight
+/// 1).
 struct ParameterGroup {
   Eigen::Index slot = 0, width = 0;                           // rows of RowLinear::gradient
   std::vector<std::pair<Eigen::Index, double>> first_weight;  // parameter of the first column, weight
@@ -76,17 +77,20 @@ class Linearizer {
     /// Adds the influence of the pose at the other end of the row's distance. After that, every parameter of
     /// both rows has a separate slot.
     void join_other_end(std::size_t row, std::size_t other);
-    const BaseShift* shift_of(std::size_t row) const {
+    const SetUpOfRow& set_up_of(std::size_t row) const {
       const States& states = all_.measurement_.states;
-      return shift_of_setup_[states.of(states.setup, row)];
+      return set_ups_[states.of(states.setup, row)];
     }
+    /// Adds the group of six set-up parameters that begins at `slot`; none if they are held.
+    void add_set_up(const std::vector<std::array<Eigen::Index, 6>>& parameters,
+                    const std::vector<BaseShift>& shifts, const BaseShift* shift, Eigen::Index slot);
 
     const Linearizer& all_;
     const Machine& machine_;
     ChainRows chain_;
     ThingsAt things_;
     std::vector<Eigen::Index> slot_of_key_;
-    std::vector<const BaseShift*> shift_of_setup_;
+    std::vector<SetUpOfRow> set_ups_;
     std::vector<Twist> twists_;
     std::size_t at_ = 0;
     RowLinear row_, joined_;
@@ -100,9 +104,9 @@ class Linearizer {
   std::vector<Eigen::Index> slot_of_key_;  // by key of Evaluator
   std::vector<ParameterGroup> static_groups_;
   std::vector<TableGroup> tables_;
-  std::vector<std::array<Eigen::Index, 6>>
-      base_parameter_;      // per BaseShift: parameter of each component, -1: held
-  Eigen::Index slots_ = 0;  // without the six of the BaseShift
+  std::vector<std::array<Eigen::Index, 6>> base_parameter_,
+      tool_parameter_;      // per BaseShift, ToolShift: parameter of each component, -1: held
+  Eigen::Index slots_ = 0;  // without the twelve of the set-up
 };
 
 }  // namespace vernier::model

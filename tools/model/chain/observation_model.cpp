@@ -59,20 +59,44 @@ ValueAndSlope angle_over_sine(double x) {
 int across(ObservationKind kind) { return kind == ObservationKind::kA1 ? 1 : 2; }
 int level(ObservationKind kind) { return kind == ObservationKind::kIx ? 0 : 1; }
 
-int component(ObservationKind kind) {
-  return static_cast<int>(kind) - static_cast<int>(ObservationKind::kRx);
+int component(ObservationKind kind) { return static_cast<int>(format::component_of(kind)); }
+
+Matrix3d rotation_of(const Vector3d& vector) {
+  const double angle = vector.norm();
+  if (angle < 1e-300) return Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
 }
 
 }  // namespace
 
 ObservationModel::ObservationModel(const Measurement& measurement, const std::array<double, 3>& gravity,
-                                   const BaseShift* shift, const Frame& pose)
+                                   const SetUpOfRow& set_up, const Frame& pose)
     : m_(measurement), pose_(pose), up_(-gravity[0], -gravity[1], -gravity[2]) {
-  if (shift != nullptr) {
-    base_ = sixdof_frame(shift->value);
-    base_value_ = shift->value;
+  if (set_up.base != nullptr) {
+    base_ = sixdof_frame(set_up.base->value);
+    base_value_ = set_up.base->value;
   }
   point_ = base_.rotation * pose.origin + base_.origin;
+  seen_ = {base_.rotation * pose.rotation, point_};
+  if (set_up.tool == nullptr) return;
+  has_tool_shift_ = true;
+  tool_value_ = set_up.tool->value;
+  const Frame mounted = sixdof_frame(tool_value_);
+  seen_.origin += seen_.rotation * mounted.origin;
+  seen_.rotation *= mounted.rotation;
+}
+
+std::array<Twist, 6> ObservationModel::tool_twists() const {
+  const Frame mounted = sixdof_frame(tool_value_);
+  const Matrix3d turn = base_.rotation * pose_.rotation;
+  const Vector3d arm = seen_.origin - point_;
+  std::array<Twist, 6> twists = sixdof_twists(tool_value_, mounted.origin);
+  // A motion of what is measured is the motion of the tool that has the same effect on it.
+  for (Twist& twist : twists) {
+    twist.rotation = turn * twist.rotation;
+    twist.point = turn * twist.point - twist.rotation.cross(arm);
+  }
+  return twists;
 }
 
 Vector3d ObservationModel::normal(Eigen::Index row) const {
@@ -82,16 +106,28 @@ Vector3d ObservationModel::normal(Eigen::Index row) const {
 
 const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
   if (has_phi_) return phi_;
+  phi_ = nearest_rotation_vector(seen_.rotation, measured_rotation(row, ObservationKind::kRx));
+  has_phi_ = true;
+  return phi_;
+}
+
+const Vector3d& ObservationModel::board_error(std::size_t row) {
+  if (has_board_error_) return board_error_;
+  const Matrix3d measured = rotation_of(measured_rotation(row, ObservationKind::kBoardRx));
+  board_error_ = nearest_rotation_vector(measured * seen_.rotation, Vector3d::Zero());
+  has_board_error_ = true;
+  return board_error_;
+}
+
+Vector3d ObservationModel::measured_rotation(std::size_t row, ObservationKind first) const {
   Vector3d measured = Vector3d::Zero();
   // Observations are ordered by row, so those of this row are adjacent.
   auto o = std::lower_bound(m_.observations.begin(), m_.observations.end(), row,
                             [](const Observation& a, std::size_t r) { return a.row < r; });
   for (; o != m_.observations.end() && o->row == row; ++o)
-    if (o->kind >= ObservationKind::kRx && o->kind <= ObservationKind::kRz)
+    if (format::form_of(o->kind) == format::form_of(first))
       measured[component(o->kind)] = o->value / maths::kDegPerRad;
-  phi_ = nearest_rotation_vector(base_.rotation * pose_.rotation, measured);
-  has_phi_ = true;
-  return phi_;
+  return measured;
 }
 
 Matrix3d ObservationModel::sight(Eigen::Index row) const {
@@ -112,13 +148,11 @@ double ObservationModel::predicted(const Observation& o) {
   const auto at = static_cast<Eigen::Index>(o.row);
   switch (o.kind) {
     case ObservationKind::kX:
-      return point_.x();
     case ObservationKind::kY:
-      return point_.y();
     case ObservationKind::kZ:
-      return point_.z();
+      return seen_.origin[component(o.kind)];
     case ObservationKind::kLength:
-      return (point_ - m_.centre.col(at)).norm();
+      return (seen_.origin - m_.centre.col(at)).norm();
     case ObservationKind::kD:
       return normal(at).dot(pose_.origin - m_.nominal_point.col(at));
     case ObservationKind::kA1:
@@ -129,7 +163,15 @@ double ObservationModel::predicted(const Observation& o) {
              frame.col(across(o.kind)).dot(axis);
     }
     case ObservationKind::kDistance:
-      return (point_ - other_end_).norm();
+      return (seen_.origin - other_end_).norm();
+    case ObservationKind::kBoardX:
+    case ObservationKind::kBoardY:
+    case ObservationKind::kBoardZ:
+      return -seen_.rotation.col(component(o.kind)).dot(seen_.origin);
+    case ObservationKind::kBoardRx:
+    case ObservationKind::kBoardRy:
+    case ObservationKind::kBoardRz:
+      return o.value - maths::kDegPerRad * board_error(o.row)[component(o.kind)];
     case ObservationKind::kIx:
     case ObservationKind::kIy:
       return maths::kDegPerRad * std::asin(std::clamp(up_.dot(pose_.rotation.col(level(o.kind))), -1.0, 1.0));
@@ -139,14 +181,28 @@ double ObservationModel::predicted(const Observation& o) {
 }
 
 Twist ObservationModel::gradient(const Observation& o) const {
+  Twist g;
+  if (o.kind == ObservationKind::kD) {
+    g.point = base_.rotation * normal(static_cast<Eigen::Index>(o.row));
+  } else if (is_inclination(o.kind)) {
+    const Vector3d arm = pose_.rotation.col(level(o.kind));
+    const double cosine = std::sqrt(std::max(1 - std::pow(up_.dot(arm), 2), 1e-12));
+    g.rotation = base_.rotation * (maths::kDegPerRad / cosine * arm.cross(up_));
+  } else {
+    g = gradient_of_seen(o);
+    // A rotation of the tool also moves what is mounted beside the tool point.
+    if (has_tool_shift_) g.rotation += (seen_.origin - point_).cross(g.point);
+  }
+  return g;
+}
+
+Twist ObservationModel::gradient_of_seen(const Observation& o) const {
   const auto at = static_cast<Eigen::Index>(o.row);
   Twist g;
   if (o.kind == ObservationKind::kLength) {
-    const Vector3d arm = point_ - m_.centre.col(at);
+    const Vector3d arm = seen_.origin - m_.centre.col(at);
     const double length = arm.norm();
     if (length > 0) g.point = arm / length;
-  } else if (o.kind == ObservationKind::kD) {
-    g.point = base_.rotation * normal(at);
   } else if (is_direction(o.kind)) {
     // d/d(turn w) of phi(a . d) (e . d), where the tool axis d moves by w x d.
     const Matrix3d frame = sight(at);
@@ -155,13 +211,18 @@ Twist ObservationModel::gradient(const Observation& o) const {
     g.rotation =
         maths::kDegPerRad * (phi.value * axis.cross(aside) + aside.dot(axis) * phi.slope * axis.cross(along));
   } else if (o.kind == ObservationKind::kDistance) {
-    const Vector3d arm = point_ - other_end_;
+    const Vector3d arm = seen_.origin - other_end_;
     const double length = arm.norm();
     if (length > 0) g.point = arm / length;
-  } else if (is_inclination(o.kind)) {
-    const Vector3d arm = pose_.rotation.col(level(o.kind));
-    const double cosine = std::sqrt(std::max(1 - std::pow(up_.dot(arm), 2), 1e-12));
-    g.rotation = base_.rotation * (maths::kDegPerRad / cosine * arm.cross(up_));
+  } else if (format::form_of(o.kind) == format::ReadingForm::kBoard) {
+    // The camera at p with the axes g_k sees the origin of the measuring frame at -g_k . p.
+    const Vector3d along = seen_.rotation.col(component(o.kind));
+    g.point = -along;
+    g.rotation = seen_.origin.cross(along);
+  } else if (format::form_of(o.kind) == format::ReadingForm::kBoardRotation) {
+    // A turn w of the camera turns the board by -G^T w: the error e changes by J^-1(-e) G^T w.
+    g.rotation =
+        -maths::kDegPerRad * (seen_.rotation * inverse_left_jacobian(board_error_).col(component(o.kind)));
   } else if (is_rotation(o.kind)) {
     g.rotation = maths::kDegPerRad * inverse_left_jacobian(phi_).row(component(o.kind)).transpose();
   } else {

@@ -88,21 +88,17 @@ Prediction predict_with_things(const Machine& machine, const Measurement& m) {
   const ChainRows chain(machine, m.states);
   const Things things(machine, m);
   const ThingsAt at(things, machine, chain);
-  std::vector<const BaseShift*> shifts;
-  for (const std::string& run : m.states.names(m.states.setup)) {
-    const auto found = base_shift_of(machine, run);
-    shifts.push_back(found ? &machine.base_shifts[*found] : nullptr);
-  }
+  const std::vector<SetUpOfRow> set_ups = set_ups_of(machine, m.states.names(m.states.setup));
   Prediction result;
   result.predicted.resize(static_cast<Eigen::Index>(m.observations.size()));
   for (std::size_t k = 0; k < m.observations.size();) {
     const std::size_t row = m.observations[k].row;
     const Frame pose = chain.pose(row);
-    ObservationModel model(m, machine.gravity, shifts[m.states.of(m.states.setup, row)], pose);
+    ObservationModel model(m, machine.gravity, set_ups[m.states.of(m.states.setup, row)], pose);
     if (const std::size_t other = m.other_end.empty() ? kNoRow : m.other_end[row]; other != kNoRow) {
       const Frame there = chain.pose(other);
       model.set_other_end(
-          ObservationModel(m, machine.gravity, shifts[m.states.of(m.states.setup, other)], there).point());
+          ObservationModel(m, machine.gravity, set_ups[m.states.of(m.states.setup, other)], there).point());
     }
     for (; k < m.observations.size() && m.observations[k].row == row; ++k) {
       const Observation& o = m.observations[k];

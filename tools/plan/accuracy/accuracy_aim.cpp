@@ -26,6 +26,7 @@ constexpr std::size_t kLookedAt = 150, kFrom = 7919;
 
 model::Machine bare(model::Machine machine) {
   machine.base_shifts.clear();
+  machine.tool_shifts.clear();
   return machine;
 }
 

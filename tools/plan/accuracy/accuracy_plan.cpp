@@ -55,8 +55,7 @@ class AccuracyPlanner {
  public:
   AccuracyPlanner(const Knowledge& knowledge, const AccuracyAim& aim) : knowledge_(knowledge) {
     for (std::size_t i = 0; i < knowledge.parameters.size(); ++i)
-      if (knowledge.parameters[i].kind != model::ParameterKind::kBaseShift)
-        own_.push_back(static_cast<Index>(i));
+      if (!model::is_set_up(knowledge.parameters[i].kind)) own_.push_back(static_cast<Index>(i));
     if (own_.empty())
       throw text::InputError({knowledge.machine.file, 0}, knowledge.machine.name,
                              "no reading can determine a free parameter of the machine file");
@@ -129,6 +128,7 @@ class AccuracyPlanner {
     const model::ParameterSet& parameters = knowledge_.parameters;
     model::Machine machine = knowledge_.machine;
     if (knowledge_.new_set_up) machine.base_shifts.clear();
+    machine.tool_shifts.clear();
     const model::ParameterSet here(machine, {""});
     const model::Measurement readings = fit::point_readings(poses);
     const MatrixXd columns(model::linearise(machine, readings, here).jacobian);
