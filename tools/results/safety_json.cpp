@@ -4,18 +4,31 @@
 #include <fmt/format.h>
 
 namespace vernier::results {
+namespace {
+
+nlohmann::ordered_json rule_json(const safety::SafetyFinding& f) {
+  return {{"rule", safety::rule_name(f.rule)},
+          {"value", f.value ? nlohmann::ordered_json(*f.value) : nlohmann::ordered_json(nullptr)},
+          {"limit", f.limit},
+          {"unit", f.unit},
+          {"ok", f.ok},
+          {"accepted", f.accepted},
+          {"culprit", f.culprit},
+          {"reason", f.reason}};
+}
+
+}  // namespace
 
 nlohmann::ordered_json safety_json(const safety::SafetySheet& sheet) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const safety::SafetyFinding& f : sheet.findings) list.push_back(rule_json(f));
+  return list;
+}
+
+nlohmann::ordered_json safe_to_run_json(const safety::SafetySheet& sheet) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const safety::SafetyFinding& f : sheet.findings)
-    list.push_back({{"rule", safety::rule_name(f.rule)},
-                    {"value", f.value ? nlohmann::ordered_json(*f.value) : nlohmann::ordered_json(nullptr)},
-                    {"limit", f.limit},
-                    {"unit", f.unit},
-                    {"ok", f.ok},
-                    {"accepted", f.accepted},
-                    {"culprit", f.culprit},
-                    {"reason", f.reason}});
+    if (f.value) list.push_back(rule_json(f));
   return list;
 }
 

@@ -7,8 +7,12 @@
 
 namespace vernier::results {
 
-/// Returns the safety sheet as JSON: [{"rule":…, "value":…, "limit":…, "unit":…, "ok":…, "accepted":…,
-/// "culprit":…, "reason":…}…]; value is null if the file does not give it.
+/// Returns the rules of the sheet for which the machine file has a figure: [{"rule":…, "value":…, "limit":…,
+/// "unit":…, "ok":…, "accepted":…, "culprit":…, "reason":…}…]. The other rules stand in the `not_covered` of
+/// the assurance.
+nlohmann::ordered_json safe_to_run_json(const safety::SafetySheet& sheet);
+
+/// Returns all rules of the sheet, for a page that shows them; value is null if the file has no figure.
 nlohmann::ordered_json safety_json(const safety::SafetySheet& sheet);
 
 /// Returns the safety sheet as text for users, one line for each rule.

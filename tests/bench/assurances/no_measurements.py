@@ -801,7 +801,7 @@ def poses(b, stat, kind, tag, m, t, fm, g, T, tools):
                 continue
             if abs(np.array(j["deviation_um"]) - mine[i]).max() > 0.01:
                 b.crash.append(("chain", f"{tag} {at} {j['deviation_um']} {mine[i]}", ""))
-            if j["std_um"] is None:
+            if j.get("std_um") is None:
                 b.crash.append(("null std_um", f"{tag} {at}", ""))
                 continue
             sd = np.array(j["std_um"])

@@ -47,7 +47,8 @@ void print_effect(std::FILE* out, const effects::Effect& effect) {
 }
 
 void run_effects(const EffectsArguments& arguments) {
-  const std::vector<effects::Effect> all = effects::effect_catalogue(arguments.files);
+  std::vector<effects::Effect> all = effects::effect_catalogue(arguments.files);
+  if (arguments.id == effects::custom_effect().id) all.push_back(effects::custom_effect());
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   std::FILE* out = human_stream(arguments.json);
   bool found = false;

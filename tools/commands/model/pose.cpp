@@ -35,8 +35,6 @@ void run_pose(const PoseArguments& arguments) {
   std::FILE* out = human_stream(arguments.json);
   const Eigen::Vector3d deviation = actual.position.col(0) - nominal.position.col(0);
   json["deviation_um"] = {1000 * deviation.x(), 1000 * deviation.y(), 1000 * deviation.z()};
-  json["std_um"] = nullptr;
-  json["std_not_measured_um"] = nullptr;
   bool mostly_open = false;
   const fit::Reach reach(machine);
   if (reach.known()) {

@@ -177,7 +177,7 @@ void run_compile(const Arguments& arguments) {
   if (options.accepted_rules = sheet.accepted_mask(); options.accepted_rules != 0)
     compiled = compile::compile_machine(machine, text, options);
   nlohmann::ordered_json result = to_json(compiled, machine);
-  result["safe_to_run"] = results::safety_json(sheet);
+  result["safe_to_run"] = results::safe_to_run_json(sheet);
   result["findings"] = results::findings_json(machine);
   result["assurance"] = results::assurance_of(sheet, machine, text::AssuranceKind::kCompile).json();
   text::make_folder(arguments.directory);
