@@ -152,31 +152,9 @@ double left_mm(const FitResult& result) {
   return std::max(result.after.rms_um.value_or(0) * 1e-3, turns_mm);
 }
 
-/// Touches of unknown points agree best if the machine does not move at all. Returns the reason if the fitted
-/// machine moves the tool much less than the nominal one; else empty.
-std::string collapse_of(const FitResult& result, const model::Measurement& measurement) {
-  constexpr double kLeast = 0.5;  // no calibration halves a machine
-  if (measurement.things.empty()) return {};
-  const model::Machine nominal = model::nominal_machine(result.machine);
-  std::vector<std::array<double, 2>> ranges;
-  for (const model::Column& position : measurement.states.axis)
-    ranges.push_back({position.minCoeff(), position.maxCoeff()});
-  const model::States states = model::poses_over(nominal, ranges).states;
-  const auto extent_mm = [&](const model::Machine& machine) {
-    const Eigen::Matrix3Xd points = model::forward(machine, states).position;
-    return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
-  };
-  const double fitted_mm = extent_mm(result.machine), nominal_mm = extent_mm(nominal);
-  if (!(fitted_mm < kLeast * nominal_mm)) return {};
-  return fmt::format(
-      "the fitted machine moves the tool over {:.3g} mm, the nominal machine over {:.3g} mm: touches of "
-      "unknown points agree best if the machine does not move; perhaps two labels are exchanged",
-      fitted_mm, nominal_mm);
-}
-
 void judge(FitResult& result, const model::Machine& machine, const model::Measurement& measurement,
            const Settled& end, std::size_t readings) {
-  result.absurd = collapse_of(result, measurement);
+  result.absurd = collapse_of(result.machine, measurement);
   result.worst = worst_reading(measurement, result.residual, false);
   result.worst_check = worst_reading(measurement, result.residual, true);
   // A load or a homing error at one place may be large in a measured box that is small.

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -13,8 +15,11 @@
 #include "tools/fit/convention.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/format/readings.h"
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/median.h"
+#include "tools/model/chain/chain.h"
+#include "tools/model/chain/work_poses.h"
 
 namespace vernier::fit {
 namespace {
@@ -161,6 +166,71 @@ double spread_of_lengths(const model::Measurement& rows) {
 }
 
 }  // namespace
+
+namespace {
+
+/// The direction in which a machine moves the tool least, compared with another machine at the same poses.
+struct LeastMotion {
+  double share;           // of the motion of the other machine
+  Eigen::Vector3d along;  // unit vector
+};
+
+/// The linear map from positions of the nominal machine to those of the fitted one, 3 x n each, has one
+/// singular value per direction. Directions in which the nominal machine hardly moves are excluded, because
+/// errors across them would decide.
+LeastMotion least_motion(const Eigen::Matrix3Xd& fitted, const Eigen::Matrix3Xd& nominal) {
+  constexpr double kMoves = 1e-3;  // share of the largest motion
+  const Eigen::MatrixXd of_nominal = nominal.colwise() - nominal.rowwise().mean();
+  const Eigen::MatrixXd of_fitted = fitted.colwise() - fitted.rowwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spread(of_nominal * of_nominal.transpose());
+  const Eigen::VectorXd& squares = spread.eigenvalues();  // ascending
+  Eigen::Index excluded = 0;
+  while (excluded < 3 && !(squares[excluded] > kMoves * kMoves * squares[2])) ++excluded;
+  if (excluded == 3) return {1, Eigen::Vector3d::Zero()};
+  const Eigen::MatrixXd directions = spread.eigenvectors().rightCols(3 - excluded);
+  const Eigen::MatrixXd map = of_fitted * of_nominal.transpose() * directions *
+                              squares.tail(3 - excluded).cwiseInverse().asDiagonal();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(map, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::Index least = svd.singularValues().size() - 1;
+  return {svd.singularValues()[least], directions * svd.matrixV().col(least)};
+}
+
+/// "along Y", or "along the direction (0.7, 0.7, 0)".
+std::string direction_text(const Eigen::Vector3d& along) {
+  constexpr double kAlong = 0.98;
+  Eigen::Index largest = 0;
+  if (along.cwiseAbs().maxCoeff(&largest) > kAlong) return fmt::format("along {}", "XYZ"[largest]);
+  return fmt::format("along the direction ({:.2f}, {:.2f}, {:.2f})", along.x(), along.y(), along.z());
+}
+
+}  // namespace
+
+std::string collapse_of(const model::Machine& fitted, const model::Measurement& measurement) {
+  constexpr double kLeast = 0.5;          // no calibration halves a machine
+  constexpr double kLeastOfTravel = 0.1;  // positions that vary by noise alone show the machine as well
+  if (measurement.things.empty()) return {};
+  const model::Machine nominal = model::nominal_machine(fitted);
+  std::vector<std::array<double, 2>> ranges;
+  for (std::size_t a = 0; a < fitted.axes.size(); ++a) {
+    const model::Column& position = measurement.states.axis[a];
+    std::array<double, 2> range = {position.minCoeff(), position.maxCoeff()};
+    if (const auto travel = model::work_range(nominal, a)) {
+      const double wider = kLeastOfTravel * ((*travel)[1] - (*travel)[0]) - (range[1] - range[0]);
+      range[0] -= std::max(0.0, wider) / 2;
+      range[1] += std::max(0.0, wider) / 2;
+    }
+    ranges.push_back(range);
+  }
+  const model::States states = model::poses_over(nominal, ranges).states;
+  const LeastMotion least =
+      least_motion(model::forward(fitted, states).position, model::forward(nominal, states).position);
+  if (!(least.share < kLeast)) return {};
+  return fmt::format(
+      "{} the fitted machine moves the tool by {:.3g} of what the nominal machine does: touches of unknown "
+      "points agree best if the machine does not move; perhaps two labels are exchanged, or each point was "
+      "touched from positions that do not vary enough",
+      direction_text(least.along), least.share);
+}
 
 double half_travel_mm(const model::Machine& machine) {
   double squares = 0;

@@ -34,6 +34,11 @@ struct LikelyMistake {
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                              const WorstReading& worst, bool plausible);
 
+/// Touches of unknown points agree best if the machine does not move at all. Returns the reason if a fit of
+/// such readings gave a machine that moves the tool much less than the nominal one, in any direction; else
+/// empty.
+std::string collapse_of(const model::Machine& fitted, const model::Measurement& measurement);
+
 /// Returns half of the diagonal of the declared ranges of the linear axes, mm; 0 without ranges.
 double half_travel_mm(const model::Machine& machine);
 
