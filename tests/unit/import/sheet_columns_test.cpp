@@ -379,6 +379,23 @@ TEST(SheetWish, EmptyCellsHaveTheValueAboveThem) {
   EXPECT_NE(sparse.sheet.notes[0].find("3 of 4 cells below \"T [degC]\" are empty"), std::string::npos);
 }
 
+TEST(SheetWish, AHeadingThatIsNotThereIsRefusedByItsOption) {
+  const std::string bytes = "X [mm];x [mm];T [degC]\n0;1;20\n9;10;\n";
+  SheetWords filled, left;
+  filled.fill = {"Temp"};
+  left.left = {"Bemerkung"};
+  for (const auto& [words, start] : {std::pair{filled, "--fill \"Temp\": the sheet has no such heading"},
+                                     std::pair{left, "--leave \"Bemerkung\": the sheet has no such heading"}}) {
+    try {
+      read_as_sheet(bytes, "s.csv", words);
+      FAIL() << start;
+    } catch (const text::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(start), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("X [mm], x [mm], T [degC]"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(SheetProfile, DoesNotStoreWhatTheValuesDecide) {
   const auto profile_of = [](const std::string& bytes) {
     const SheetReading read = read_as_sheet(bytes, "s.csv", SheetWords{});

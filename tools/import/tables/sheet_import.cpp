@@ -47,9 +47,8 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
 bool is_filled_down(const SheetReading& reading, std::size_t k) {
   const SheetColumn& column = reading.columns[k];
   if (column.use == SheetColumn::Use::kLeft) return false;
-  const sheet::Heading& heading = reading.table.headings[k];
   for (const std::string& wish : reading.wishes.fill)
-    if (wish == heading.text || wish == heading.name || wish == std::to_string(k + 1)) return true;
+    if (find_heading(reading.table, wish) == k) return true;
   return column.use == SheetColumn::Use::kColumn &&
          (column.name == format::columns::kRun || column.name == format::columns::kSetup);
 }
@@ -110,7 +109,12 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   result.runs = unfold_runs(result.sheet, result.table);
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
   for (const std::string& one : words.deviations) assign_deviation(result.wishes, one);
+  for (const std::string& heading : words.fill)
+    if (find_heading(result.table, heading) == std::string::npos)
+      refuse_heading(result.table, "--fill", heading);
   for (const std::string& heading : words.left) {
+    if (find_heading(result.table, heading) == std::string::npos)
+      refuse_heading(result.table, "--leave", heading);
     SheetColumn column;
     column.use = SheetColumn::Use::kLeft;
     result.wishes.assignments.push_back({heading, column, {}});

@@ -52,6 +52,13 @@ std::size_t find_heading(const sheet::SheetTable& table, const std::string& word
   return std::string::npos;
 }
 
+void refuse_heading(const sheet::SheetTable& table, const std::string& option, const std::string& words) {
+  std::string known;
+  for (const sheet::Heading& heading : table.headings) known += (known.empty() ? "" : ", ") + heading.text;
+  throw text::InputError(option + " \"" + words + "\": the sheet has no such heading; its headings are " +
+                         known);
+}
+
 void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words) {
   // A heading may hold the sign itself: the split that makes a heading of one side is the one that was meant.
   for (const bool last : {false, true}) {
@@ -65,10 +72,7 @@ void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const st
       return;
     }
   }
-  std::string known;
-  for (const sheet::Heading& heading : table.headings) known += (known.empty() ? "" : ", ") + heading.text;
-  throw text::InputError("--column \"" + words + "\": the sheet has no such heading; its headings are " +
-                         known);
+  refuse_heading(table, "--column", words);
 }
 
 void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place) {

@@ -60,4 +60,8 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
 /// npos if none is named.
 std::size_t find_heading(const sheet::SheetTable& table, const std::string& words);
 
+/// Throws InputError: no heading of the table is meant by these words of the option. It lists the headings.
+[[noreturn]] void refuse_heading(const sheet::SheetTable& table, const std::string& option,
+                                 const std::string& words);
+
 }  // namespace vernier::importer
