@@ -182,6 +182,8 @@ Case robot(Random& random, Size known) {
   Survey survey(std::string("J1[deg],J2[deg],J3[deg],J4[deg],J5[deg],J6[deg],") +
                 (named ? "on," : "same,distance[mm],from,name,") + "u[mm]");
   constexpr int kPoses = 20;
+  // The calibrated distance has the uncertainty that its rows state; all rows state the same value.
+  const double distance_mm = (second - first).norm() + normal(random, kU_mm);
   for (int point = 0; point < 2; ++point)
     for (int i = 0; i < kPoses;) {
       VectorXd q(6);
@@ -193,7 +195,7 @@ Case robot(Random& random, Size known) {
       std::string rest = label + ",";
       if (!named) {
         rest += point == 1 && known == Size::kDistance
-                    ? fmt::format("{},A{},", text::number_text((second - first).norm()), i)
+                    ? fmt::format("{},A{},", text::number_text(distance_mm), i)
                     : ",,";
         rest += fmt::format("{}{},", label, i);
       }
