@@ -150,8 +150,8 @@ TEST(FitOfThings, AnArmThatCollapsedIsNoResult) {
   EXPECT_TRUE(fitted(survey(true, 3)).absurd.empty());
 }
 
-/// Each point is touched from many positions of X, Z and B, and always from the same Y: nothing but the noise of
-/// the touches speaks about the scale of Y, and it is least where Y does not move.
+/// Each point is touched from many positions of X, Z and B, and always from the same Y: nothing but the noise
+/// of the touches speaks about the scale of Y, and it is least where Y does not move.
 TEST(FitOfThings, OneAxisThatCollapsedIsNoResult) {
   const model::Machine mill = model::parse_machine(
       R"XML(<machine name="mill"><variables><static><sy value="0" nominal="0" scale="1"/></static>

@@ -32,7 +32,8 @@ TEST(Columns, HeadingsHaveTheUnitOfTheTable) {
   EXPECT_EQ(heading("T_column", "degC"), "T_column[degC]");
   EXPECT_EQ(headings(columns::kCentre), "cx[mm],cy[mm],cz[mm]");
   EXPECT_STREQ(column_unit("T_column"), "");
-  EXPECT_EQ(reading_column_names(), "x y z rx ry rz length d ax ay az distance ix iy same on bx by bz brx bry brz");
+  EXPECT_EQ(reading_column_names(),
+            "x y z rx ry rz length d ax ay az distance ix iy same on bx by bz brx bry brz");
 }
 
 TEST(Columns, OfAnAxisAreTakenApart) {

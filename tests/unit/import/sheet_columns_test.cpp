@@ -384,14 +384,16 @@ TEST(SheetWish, AHeadingThatIsNotThereIsRefusedByItsOption) {
   SheetWords filled, left;
   filled.fill = {"Temp"};
   left.left = {"Bemerkung"};
-  for (const auto& [words, start] : {std::pair{filled, "--fill \"Temp\": the sheet has no such heading"},
-                                     std::pair{left, "--leave \"Bemerkung\": the sheet has no such heading"}}) {
+  for (const auto& [words, start] :
+       {std::pair{filled, "--fill \"Temp\": the sheet has no such heading"},
+        std::pair{left, "--leave \"Bemerkung\": the sheet has no such heading"}}) {
     try {
       read_as_sheet(bytes, "s.csv", words);
       FAIL() << start;
     } catch (const text::InputError& error) {
       EXPECT_NE(std::string(error.what()).find(start), std::string::npos) << error.what();
-      EXPECT_NE(std::string(error.what()).find("X [mm], x [mm], T [degC]"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("X [mm], x [mm], T [degC]"), std::string::npos)
+          << error.what();
     }
   }
 }
