@@ -165,17 +165,18 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
   const bool far_off = result.misfit_mm > kFarOff * result.reach_mm;
   if (!result.absurd.empty() || (result.converged && !misses_box && !far_off)) return;
   const LikelyMistake likely = likely_mistake(machine, measurement, result.worst, !misses);
-  const std::string& mistake = likely.sentence;
+  std::string mistake = likely.sentence;
   if (result.converged && !misses && mistake.empty()) return;
+  if (mistake.empty()) mistake = missing_set_up(machine, measurement);
   if (!likely.one_reading) result.mistake = mistake;
   result.absurd =
-      !result.converged
-          ? fmt::format("the fit did not converge in {} iterations: {}", result.iterations,
-                        blame_of(result, end.converged ? Eigen::VectorXd() : end.last_step, readings))
+      !result.converged ? fmt::format("the fit did not converge in {} iterations", result.iterations)
       : misses ? fmt::format("the residual of the fit is {:.3g} mm in a measured box of +- {:.3g} mm",
                              left_mm(result), result.reach_mm)
                : fmt::format("the nominal machine is off by {:.3g} mm in a measured box of +- {:.3g} mm",
                              result.misfit_mm, result.reach_mm);
+  if (mistake.empty() && !result.converged)
+    mistake = blame_of(result, end.converged ? Eigen::VectorXd() : end.last_step, readings);
   if (!mistake.empty()) result.absurd += ": " + mistake;
 }
 

@@ -165,10 +165,6 @@ double spread_of_lengths(const model::Measurement& rows) {
   return count > 0 ? std::sqrt(std::max(0.0, squares) / count) : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace
-
-namespace {
-
 /// The direction in which a machine moves the tool least, compared with another machine at the same poses.
 struct LeastMotion {
   double share;           // of the motion of the other machine
@@ -301,6 +297,19 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
   for (const Found& one : found)
     if (one.outside == outside) sentence += (sentence.empty() ? "" : ", or ") + one.sentence;
   return {sentence, false};
+}
+
+std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows) {
+  constexpr double kFivefold = 0.2;
+  if (!machine.base_shifts.empty()) return {};
+  model::Machine placed = machine;
+  placed.base_shifts.emplace_back();
+  const model::ParameterSet none;
+  if (!(convention_of(placed, rows, none).misfit_mm <
+        kFivefold * convention_of(machine, rows, none).misfit_mm))
+    return {};
+  return "the readings are in another frame than that of the machine file; write <BaseShift/> into <static>: "
+         "the fit then finds the place of the instrument";
 }
 
 }  // namespace vernier::fit

@@ -344,6 +344,28 @@ TEST(FitRecord, KeepsWhatNoReadingBoreOn) {
   EXPECT_FALSE(old.open_known());
 }
 
+/// A tracker has a frame of its own. A machine file without a set-up cannot follow it, and the message says
+/// what to write; with the set-up the same readings are fitted.
+TEST(Sanity, NamesAMissingSetUp) {
+  const auto fitted = [](const std::string& set_up) {
+    const Machine machine =
+        parse_machine("<machine name=\"m\"><variables><static><k value=\"0\"/>" + set_up +
+                          "</static><machineaxes><X/><Y/><Z/></machineaxes></variables>"
+                          "<transforms><sixdof n=\"1\" X=\"X+k*Y\" Y=\"Y\" Z=\"Z\"/></transforms></machine>",
+                      "m.xml");
+    std::string rows = "X[mm],Y[mm],Z[mm],x[mm],y[mm],z[mm],u[um]\n";
+    for (const int x : {0, 300, 700})
+      for (const int y : {0, 200, 500})
+        for (const int z : {-100, 50, 200})  // turned by 90 deg about x, then shifted
+          rows += fmt::format("{},{},{},{},{},{},1\n", x, y, z,
+                              x + 1500 + 1e-3 * ((x / 100 + y / 100 + z / 50) % 3 - 1), -z - 400, y + 90);
+    return fit::fit(machine, parse_measurement(rows, "tracker.csv", machine));
+  };
+  const fit::FitResult without = fitted("");
+  EXPECT_NE(without.absurd.find("write <BaseShift/> into <static>"), std::string::npos) << without.absurd;
+  EXPECT_EQ(fitted("<BaseShift/>").absurd, "");
+}
+
 TEST(Sanity, NamesTheMistakeInTheReadings) {
   const Bridge bridge;
   const auto absurd = [&](Measurement rows) { return fit::fit(bridge.model, rows).absurd; };
