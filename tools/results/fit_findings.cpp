@@ -59,9 +59,14 @@ text::Assurance assurance_of(const fit::FitResult& result) {
   if (result.check_ratio)
     word.at_most("check-rows", *result.check_ratio, 1,
                  "Ratio of the residuals of the check rows: fitted machine to nominal machine.");
-  else
+  else {
     word.not_covered(
         "The fit was not tested on held-out rows, because there are fewer than twelve check readings.");
+    word.require("redundancy", result.freedom >= 1,
+                 fmt::format("The readings have {:.1f} degrees of freedom more than the fit used: below 1 no "
+                             "residual can show an error of the model.",
+                             result.freedom));
+  }
   for (const model::FitRecord::Finding& one : result.machine.fitted->findings) {
     if (forbids(one)) continue;  // the rules above
     if (contradicts_fit(one))
