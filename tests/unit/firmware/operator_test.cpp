@@ -2,6 +2,7 @@
 // What an operator set, and a latched fault, outlive a power failure.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <set>
 #include <string>
@@ -217,6 +218,10 @@ TEST_F(OperatorSetting, AnyDamageOfOneRecordKeepsTheCorrectionOut) {
       store.read_record(place, longer, sizeof(OperatorRecord));
       store.write_record(place, longer, sizeof(longer));
       expect_out(store, "ten bytes longer");
+      store = sound;
+      std::fill(std::end(longer) - 10, std::end(longer), std::uint8_t{0xff});
+      store.write_record(place, longer, sizeof(longer));
+      expect_out(store, "ten bytes of ones longer");
       // A copy of the other record, as from a backup.
       store = sound;
       std::uint8_t other[sizeof(OperatorRecord)];

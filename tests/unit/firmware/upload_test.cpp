@@ -3,6 +3,7 @@
 #include <sodium.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <cstring>
 #include <random>
@@ -431,7 +432,11 @@ TEST_F(Upload, ConfirmedImageThatDoesNotLoadIsAFaultAndAnotherOneEndsIt) {
   // WHEN another image is confirmed and the fault is cleared
   ASSERT_EQ(rig.send(upload(3e-5, kIssued + 1)).fault, UploadFault::kNone);
   ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
-  const_cast<Exchange&>(rig.service().exchange()).command = Command::kClearFault;
+  std::atomic<Command>& command = const_cast<Exchange&>(rig.service().exchange()).command;
+  command = Command::kClearFault;
+  rig.run(3000);
+  EXPECT_EQ(rig.service().cycle().mode(), Mode::kReady) << "as after every fault, an activation is needed";
+  command = Command::kActivate;
   rig.run(3000);
   EXPECT_EQ(rig.service().cycle().mode(), Mode::kActive);
 }
