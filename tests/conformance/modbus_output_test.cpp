@@ -318,6 +318,100 @@ TEST_F(ModbusOutputLoss, RestartOfTheControllerWithinTheTimeOutMakesNoStep) {
   expect_return_without_a_step(plc_, *output_, *ticks_);
 }
 
+/// Largest change of a value from block to block, with and without a valid bit; before: of the first block.
+std::int64_t largest_change(const std::vector<Plc::Block>& blocks, std::size_t place, std::int64_t before) {
+  std::int64_t largest = 0;
+  for (const Plc::Block& block : blocks) {
+    largest = std::max(largest, std::abs(block.values[place] - before));
+    before = block.values[place];
+  }
+  return largest;
+}
+
+// A start wrote zeros over the correction that a killed daemon had left.
+TEST(ModbusOutputLeftOver, GoesToZeroWithinTheLimitAndWithoutAValidBit) {
+  Plc plc;
+  plc.leave(0, 2000), plc.leave(2, -1000);
+  std::string error;
+  const auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  AxisTravel x, y;
+  ASSERT_EQ(output->read_back(0, x), HalFault::kNone);
+  ASSERT_EQ(output->read_back(1, y), HalFault::kNone);
+  EXPECT_EQ(x, AxisTravel(20'000));
+  EXPECT_EQ(y, AxisTravel(-10'000));
+  EXPECT_EQ(output->read_back(2, y), HalFault::kNoDevice);
+  ASSERT_TRUE(plc.wait_for_blocks(3));
+  EXPECT_EQ(plc.blocks().back().values[0], 2000) << "nothing moves the value before a tick does";
+  // WHEN ticks move the values to zero, in turn
+  auto due = Clock::now();
+  for (const std::uint32_t axis : {0u, 1u})
+    for (std::int64_t left = axis == 0 ? 20'000 : -10'000; left != 0;) {
+      left -= std::clamp(left, -kStep, kStep);
+      ASSERT_EQ(output->write_correction(axis, AxisTravel(left)), HalFault::kNone);
+      std::this_thread::sleep_until(due += kTick);
+    }
+  Ticks ticks(*output);
+  ticks.run(60ms, 0);
+  // THEN no block changes a value by more than two periods do, and no value has a valid bit before its zero
+  EXPECT_LE(largest_change(plc.blocks(), 0, 2000), kMostStep);
+  EXPECT_LE(largest_change(plc.blocks(), 2, -1000), kMostStep);
+  for (const Plc::Block& block : plc.blocks()) {
+    EXPECT_TRUE((block.valid & 1) == 0 || block.values[0] == 0) << block.values[0];
+    EXPECT_TRUE((block.valid & 4) == 0 || block.values[2] == 0) << block.values[2];
+  }
+  EXPECT_EQ(plc.blocks().back().valid, 5);
+  plc.forget();
+  ticks.run(200ms, 20'000);
+  EXPECT_GT(plc.blocks().back().values[0], 1000) << "and corrections follow";
+  EXPECT_LE(largest_step(plc.blocks()), kMostStep);
+}
+
+// `vernierd --check` moves nothing.
+TEST(ModbusOutputLeftOver, StaysInItsRegisterWithoutATick) {
+  Plc plc;
+  plc.leave(0, 2000);
+  std::string error;
+  auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  EXPECT_EQ(output->attempt(0), "");
+  output.reset();
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(largest_change(plc.blocks(), 0, 2000), 0);
+  EXPECT_EQ(plc.blocks().back().valid, 0);
+}
+
+// A loss of the controller in the middle of the way changes nothing about the way.
+TEST(ModbusOutputLeftOver, ALossOnItsWayMakesNoStep) {
+  Plc plc;
+  plc.leave(0, 2000);
+  std::string error;
+  const auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  const auto began = Clock::now();
+  for (std::int64_t left = 20'000; left > 0; left -= 20) {
+    plc.stuck = Clock::now() > began + 300ms && Clock::now() < began + 500ms;
+    output->write_correction(0, AxisTravel(left));
+    std::this_thread::sleep_for(kTick);
+  }
+  EXPECT_LE(largest_change(plc.blocks(), 0, 2000), kMostStep);
+  EXPECT_LT(plc.blocks().back().values[0], 1000);
+  for (const Plc::Block& block : plc.blocks()) EXPECT_EQ(block.valid & 1, 0);
+}
+
+// Registers that had another use, or a board file with a smaller range.
+TEST(ModbusOutputLeftOver, BeyondTheRangeBeginsAtItsEnd) {
+  Plc plc;
+  plc.leave(0, INT32_MIN), plc.leave(2, 100'001);
+  std::string error;
+  const auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  AxisTravel x, y;
+  output->read_back(0, x), output->read_back(1, y);
+  EXPECT_EQ(x, AxisTravel(-1'000'000));
+  EXPECT_EQ(y, AxisTravel(1'000'000));
+}
+
 // The first board may have the longest period that a board file allows.
 TEST(ModbusOutputStart, SecondBoardIsRefusedBesideASlowOne) {
   Plc plc;

@@ -61,6 +61,13 @@ void Plc::forget() {
   blocks_.clear();
 }
 
+void Plc::leave(int place, std::int32_t value) {
+  std::uint16_t* const block = registers_->tab_registers + kBlock;
+  block[1] = static_cast<std::uint16_t>(block[1] | 1u << place);
+  block[2 + 2 * place] = static_cast<std::uint16_t>(static_cast<std::uint32_t>(value) >> 16);
+  block[3 + 2 * place] = static_cast<std::uint16_t>(value);
+}
+
 bool Plc::wait_for_blocks(std::size_t count) const {
   const std::size_t wanted = blocks().size() + count;
   for (int i = 0; i < 2000 && blocks().size() < wanted; ++i)
