@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/conformance/line_disturber.h"
 #include "tests/conformance/plc.h"
 
 namespace vernier::modbus_output_test {
@@ -284,6 +285,108 @@ TEST_F(ModbusOutputSerial, LostAnswerIsNoLoss) {
     EXPECT_EQ(plc_.blocks().back().valid & 1, 1) << "answer " << lost;
   }
   EXPECT_NE(output_->account().find(" 0 losses"), std::string::npos) << output_->account();
+}
+
+/// A fault of the line, and its effect on the board.
+struct LineCase {
+  enum class Effect {
+    kNone,        // no fault: the correction continues
+    kLoss,        // a fault within the time of the page
+    kLossHeard,   // the same; and the requests arrive: the controller learns that nothing is valid
+    kAnyOutcome,  // the fault comes by chance: no step, whether it is a loss or not
+  };
+  const char* name;
+  LineDisturber::Fault fault;
+  int ms;
+  Effect effect;
+};
+using Line = LineDisturber::Fault;
+using Effect = LineCase::Effect;
+// An answer has 100 ms: a quarter of the time-out.
+constexpr LineCase kLines[] = {{"bytes 5 ms apart", Line::kSlowBytes, 5, Effect::kNone},
+                               {"bytes 15 ms apart", Line::kSlowBytes, 15, Effect::kLossHeard},
+                               {"answers of another unit", Line::kOtherUnit, 0, Effect::kLossHeard},
+                               {"bit errors in answers", Line::kBitErrors, 0, Effect::kAnyOutcome},
+                               {"bit errors in requests", Line::kBitsOfRequests, 0, Effect::kAnyOutcome},
+                               {"exceptions", Line::kException, 0, Effect::kLossHeard},
+                               {"no answers", Line::kNoAnswer, 0, Effect::kLossHeard},
+                               {"line cut", Line::kCutLine, 0, Effect::kLoss},
+                               {"old answers", Line::kOldAnswers, 0, Effect::kLoss},
+                               {"answers after 40 ms", Line::kLate, 40, Effect::kNone},
+                               {"answers after 130 ms", Line::kLate, 130, Effect::kLossHeard},
+                               {"answers after 210 ms", Line::kLate, 210, Effect::kLossHeard},
+                               {"answers after 300 ms", Line::kLate, 300, Effect::kLossHeard},
+                               {"answers after 450 ms", Line::kLate, 450, Effect::kLossHeard},
+                               {"garbage before answers", Line::kGarbage, 0, Effect::kAnyOutcome},
+                               {"answers without an end", Line::kCutAnswers, 0, Effect::kAnyOutcome},
+                               {"answers twice", Line::kTwice, 0, Effect::kNone},
+                               {"own echo", Line::kOwnEcho, 0, Effect::kLossHeard}};
+
+void expect_no_step_on(const LineCase& line) {
+  SCOPED_TRACE(line.name);
+  Plc plc{Plc::Serial{}};
+  LineDisturber disturber(plc.path());
+  ModbusOutputSettings usual = settings();
+  usual.period = TimeUs(20'000), usual.timeout = TimeUs(400'000);
+  const auto wait = TimeUs(ModbusOutput::wait_for_answer(usual.timeout, true));
+  std::string error;
+  const auto end = ModbusLine::rtu(disturber.path(), 115200, 'N', wait, error);
+  ASSERT_NE(end, nullptr) << error;
+  const auto output = ModbusOutput::open(end, usual, error);
+  ASSERT_NE(output, nullptr) << error;
+  Ticks ticks(*output);
+  ticks.run(100ms, 0);
+  ticks.run(200ms, 20'000);
+  ASSERT_EQ(plc.blocks().back().valid & 1, 1);
+  // WHEN the line is disturbed while the correction moves
+  disturber.ms = line.ms;
+  disturber.fault = line.fault;
+  const auto began = Clock::now();
+  const auto since_began = [&](Clock::time_point when) {
+    return std::chrono::duration_cast<std::chrono::milliseconds>(when - began);
+  };
+  auto lost = -1ms, heard = -1ms;
+  for (int i = 0; Clock::now() - began < 1300ms; ++i)
+    if (ticks.step(lost < 0ms ? (i / 300 % 2 == 0 ? -20'000 : 20'000) : 0) != HalFault::kNone && lost < 0ms)
+      lost = since_began(Clock::now());
+  for (const Plc::Block& block : plc.blocks())
+    if ((block.valid & 1) == 0 && block.when > began && heard < 0ms) heard = since_began(block.when);
+  const std::uint16_t valid = plc.blocks().back().valid;
+  // WHEN the line is sound again
+  disturber.fault = Line::kNone;
+  for (int i = 0; i < 3000 && ticks.written() != 0; ++i) ticks.step(0);
+  for (int i = 0; i < 3000 && (plc.blocks().back().valid & 1) == 0; ++i) ticks.step(0);
+  ticks.run(300ms, 20'000);
+  std::printf("%-24s fault after %4d ms, valid bit 0 after %4d ms, largest step %4d counts of 10 nm\n",
+              line.name, static_cast<int>(lost.count()), static_cast<int>(heard.count()),
+              static_cast<int>(largest_step(plc.blocks())));
+  // THEN no valid value makes a step, whatever came over the line, and the correction comes back
+  EXPECT_LE(largest_step(plc.blocks()), 2 * (kStep * 20 / 10 + 1));
+  EXPECT_EQ(plc.blocks().back().valid & 1, 1);
+  EXPECT_GT(plc.blocks().back().values[0], 1000);
+  constexpr auto kBusy = 150ms, kMost = 400ms + 200ms + 20ms + kBusy;
+  if (line.effect == Effect::kNone) {
+    EXPECT_EQ(lost, -1ms);
+    EXPECT_EQ(valid & 1, 1);
+  }
+  if (line.effect == Effect::kLoss || line.effect == Effect::kLossHeard) {
+    EXPECT_GE(lost, 0ms);
+    EXPECT_LE(lost, kMost);
+  }
+  if (line.effect != Effect::kLossHeard) return;
+  EXPECT_GE(heard, 0ms);
+  EXPECT_LE(heard, lost + 100ms + 20ms + kBusy) << "the line is quiet for 100 ms before the next request";
+  EXPECT_EQ(valid & 1, 0);
+}
+
+TEST(ModbusOutputLine, NoFaultOfASerialLineMakesAStep) {
+  constexpr std::size_t kTogether = 6;  // each case waits most of its time
+  for (std::size_t first = 0; first < std::size(kLines); first += kTogether) {
+    std::vector<std::thread> threads;
+    for (std::size_t i = first; i < std::min(first + kTogether, std::size(kLines)); ++i)
+      threads.emplace_back([i] { expect_no_step_on(kLines[i]); });
+    for (std::thread& one : threads) one.join();
+  }
 }
 
 // The requests arrive: the controller must not keep a block that is valid.

@@ -38,6 +38,10 @@ Plc::Plc(Serial)
       nowhere_(::open("/dev/null", O_WRONLY | O_CLOEXEC)) {
   modbus_set_socket(context_, line_);
   modbus_set_slave(context_, 1);
+  // A damaged request ends with the next pause of the line, as the standard asks (Modbus over serial
+  // line, 2.5).
+  modbus_set_byte_timeout(context_, 0, 5'000);
+  modbus_set_error_recovery(context_, MODBUS_ERROR_RECOVERY_PROTOCOL);
   thread_ = std::thread([this] { serve(); });
 }
 

@@ -238,7 +238,8 @@ bool ModbusOutput::write_block(Clock::time_point began) {
 void ModbusOutput::exchange(bool last) {
   const Clock::time_point began = Clock::now();
   const bool ticks_are_on = ticks_run(began);
-  if (unanswered_ && !last && !find_restart()) {
+  // A board without a valid bit has nothing that a restart could lose: it only says that nothing is valid.
+  if (unanswered_ && healthy_ && !last && !find_restart()) {
     {
       const std::scoped_lock lock(guard_);
       ++exchanges_, ++failed_;
