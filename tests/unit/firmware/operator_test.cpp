@@ -112,6 +112,24 @@ TEST_F(OperatorSetting, WeightOfAnAxisOutlivesAStart) {
   EXPECT_EQ(rig.service().cycle().axis_weight(1).count, kFullWeight.count / 4);
 }
 
+TEST_F(OperatorSetting, RecordHasTheAxesOfTheBoardAndNoFurtherOne) {
+  UploadRig rig(store_, key_);
+  exchange(rig).axis_weight[1] = kFullWeight.count / 4;
+  exchange(rig).axis_weight[2] = kFullWeight.count / 2;  // of no axis
+  rig.run(10);
+  OperatorRecord record{};
+  std::uint8_t bytes[sizeof(record)];
+  ASSERT_EQ(store_.read_record(kOperatorPlace, bytes, sizeof(bytes)), HalFault::kNone);
+  std::memcpy(&record, bytes, sizeof(record));
+  EXPECT_EQ(record.state.axis[0], operator_axis("X", 1));
+  EXPECT_EQ(record.state.axis[1], operator_axis("Y", 1));
+  EXPECT_EQ(record.state.weight[1], kFullWeight.count / 4);
+  for (std::size_t i = 2; i < kMaxAxes; ++i) {
+    EXPECT_EQ(record.state.axis[i], 0u) << i;
+    EXPECT_EQ(record.state.weight[i], 0) << i;
+  }
+}
+
 TEST_F(OperatorSetting, LatchedFaultOutlivesAStartUntilItIsCleared) {
   {
     UploadRig rig(store_, key_);
