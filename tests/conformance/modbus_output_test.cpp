@@ -484,6 +484,26 @@ TEST(ModbusOutputLeftOver, StaysInItsRegisterWithoutATick) {
   EXPECT_EQ(plc.blocks().back().valid, 0);
 }
 
+// `vernierd --zero` ends when it has written the zero.
+TEST(ModbusOutputLeftOver, EndWaitsForTheZeroThatWasWritten) {
+  Plc plc;
+  plc.leave(0, 2000);
+  std::string error;
+  auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  auto due = Clock::now();
+  for (std::int64_t left = 20'000; left > 0;) {
+    left -= kStep;
+    output->write_correction(0, AxisTravel(left));
+    std::this_thread::sleep_until(due += kTick);
+  }
+  output.reset();
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(plc.blocks().back().values[0], 0);
+  EXPECT_EQ(plc.blocks().back().valid, 0);
+  EXPECT_LE(largest_change(plc.blocks(), 0, 2000), kMostStep);
+}
+
 // A loss of the controller in the middle of the way changes nothing about the way.
 TEST(ModbusOutputLeftOver, ALossOnItsWayMakesNoStep) {
   Plc plc;

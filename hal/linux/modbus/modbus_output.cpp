@@ -120,6 +120,10 @@ HalFault ModbusOutput::read_back(std::uint32_t axis, AxisTravel& correction) noe
 
 ModbusOutput::~ModbusOutput() {
   if (!thread_.joinable()) return;
+  const auto on_its_way = [](const Place& one) { return one.left_over && one.wanted == 0; };
+  for (const auto end = Clock::now() + span_of(settings_.timeout);
+       Clock::now() < end && std::any_of(places_.begin(), places_.end(), on_its_way);)
+    std::this_thread::sleep_for(span_of(settings_.period));
   stop_ = true;
   thread_.join();
   lose();

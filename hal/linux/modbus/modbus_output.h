@@ -56,7 +56,8 @@ class ModbusOutput : public OutputDevice {
   /// Not real-time safe.
   static std::unique_ptr<ModbusOutput> open(std::shared_ptr<ModbusLine> line,
                                             const ModbusOutputSettings& settings, std::string& error);
-  /// Clears the valid bits.
+  /// Clears the valid bits. If writes have moved the value of an earlier process to zero, waits until the
+  /// controller has the zero, at most the time-out.
   ~ModbusOutput() override;
   ModbusOutput(const ModbusOutput&) = delete;
   ModbusOutput& operator=(const ModbusOutput&) = delete;
@@ -87,7 +88,8 @@ class ModbusOutput : public OutputDevice {
     std::atomic<std::int32_t> wanted{0};  // register's number
     std::atomic<bool> valid{false}, refuse{false};
     std::int32_t sent = 0;
-    bool left_over = false;  // `sent` began at a value of an earlier process, and is not at zero yet
+    /// `sent` began at a value of an earlier process, and is not at zero yet. The thread clears it.
+    std::atomic<bool> left_over{false};
     std::int64_t most_per_period = 1;
     std::uint64_t held_at_end = 0;
   };
