@@ -99,7 +99,8 @@ bool ModbusOutput::take_left_overs() {
     answered = line_->read(settings_.unit, ModbusLine::Registers::kHolding, settings_.address, registers(),
                            block.data());
   for (std::size_t k = 0; k < settings_.axes.size() && answered; ++k) {
-    const auto at = static_cast<std::size_t>(ModbusOutputSettings::kValues + 2 * settings_.axes[k].place);
+    const std::size_t at =
+        ModbusOutputSettings::kValues + 2 * static_cast<std::size_t>(settings_.axes[k].place);
     const auto found =
         static_cast<std::int32_t>(std::uint32_t{block[at]} << 16 | std::uint32_t{block[at + 1]});
     const AnalogueScale& scale = settings_.axes[k].scale;

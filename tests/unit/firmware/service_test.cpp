@@ -99,6 +99,22 @@ TEST_F(BesideStore, SettingThatTheStoreDoesNotTakeIsAnsweredAfterFiveSeconds) {
   EXPECT_EQ(reply_[0], 1) << "not stored";
 }
 
+// A store that goes on, though slowly, is waited for.
+TEST_F(BesideStore, EachSettingThatIsStoredBeginsTheFiveSecondsAnew) {
+  service_->look_after_store();
+  give(Command::kDeactivate);
+  EXPECT_EQ(later(), CommandHandler::kLater);
+  clock_.spend(InstantNs(3'000'000'000));
+  run(1);  // the tick that can have taken the command is the next one
+  service_->look_after_store();
+  EXPECT_EQ(later(), CommandHandler::kLater);
+  clock_.spend(InstantNs(3'000'000'000));
+  EXPECT_EQ(later(), CommandHandler::kLater);
+  clock_.spend(InstantNs(2'100'000'000));
+  ASSERT_EQ(later(), 1u);
+  EXPECT_EQ(reply_[0], 1) << "not stored";
+}
+
 TEST_F(BesideStore, PercentilesArePublishedOfTheWholeTimes) {
   run(20'000);
   HealthRecord health;
