@@ -17,6 +17,9 @@ class SlotStore {
   /// kNoReading: the slot was never written. A flash may instead return the contents of an erased slot, all
   /// bits one. kRefused: the slot contains fewer bytes than requested, or cannot be read. Not real-time safe.
   virtual HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept = 0;
+  /// True if read_record() may give ones for bytes that were never written, as a flash does. False: a record
+  /// whose place has further bytes, also ones, is none of this board. Not real-time safe.
+  virtual bool reads_ones_where_erased() const noexcept { return true; }
   /// Returns when the bytes are on the medium. A place that is a file has no bytes behind them. kRefused: the
   /// medium may have a part of the bytes. Not real-time safe.
   virtual HalFault write_record(std::uint32_t place, const std::uint8_t* bytes,

@@ -17,7 +17,7 @@ std::uint32_t number_of(const Wiring::Axis& axis) noexcept {
 }  // namespace
 
 // Erased flash reads as ones. A store of an earlier version has no such place. A file that is longer than a
-// record was not written by this board.
+// record was not written by this board, also if the bytes behind the record are ones.
 OperatorPlace OperatorMemory::read(std::uint32_t number) noexcept {
   OperatorPlace place;
   constexpr std::uint32_t kSize = sizeof(OperatorRecord);
@@ -25,7 +25,8 @@ OperatorPlace OperatorMemory::read(std::uint32_t number) noexcept {
   const HalFault first = store_.read_record(number, bytes, 1);
   if (first == HalFault::kNoReading || first == HalFault::kNoDevice) return place;
   place.written = true;
-  if (store_.read_record(number, bytes, kSize + 1) == HalFault::kNone && bytes[kSize] != kErased)
+  if (store_.read_record(number, bytes, kSize + 1) == HalFault::kNone &&
+      (bytes[kSize] != kErased || !store_.reads_ones_where_erased()))
     return place;
   if (store_.read_record(number, bytes, kSize) != HalFault::kNone) return place;
   place.written = false;

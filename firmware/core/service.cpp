@@ -87,9 +87,9 @@ Command Service::next_command() noexcept {
   // correction it keeps the correction out.
   if (asked == Command::kActivate && mode == Mode::kReady) taken_out_ = false;
   if (asked == Command::kDeactivate) taken_out_ = true;
-  // A board that was active waits for the next activation after a clear, also if it starts again.
-  if (asked == Command::kClearFault && mode == Mode::kFaulted && activated_ && !options_.clear_on_enable)
-    taken_out_ = true;
+  // After a clear the board waits for the next activation, also if it starts again or its enable line comes
+  // on.
+  if (asked == Command::kClearFault && mode == Mode::kFaulted && !options_.clear_on_enable) taken_out_ = true;
   if (asked == Command::kDeactivate && !in) asked = Command::kNone;
   if (ending_ || !enabled_) {
     if (in) return Command::kDeactivate;

@@ -86,9 +86,18 @@ struct Devices::Parts {
   std::vector<OpenLink> links;
   std::unique_ptr<HardwareWatchdog> watchdog;
   FileLock store_lock;
+  std::vector<std::filesystem::path> made;  // folders of the store that were not there
   std::vector<DeviceFinding> findings;
 
   explicit Parts(const BoardFile& board_file) : file(board_file) {}
+  /// A board that did not run has put nothing into its store: no empty folder stays behind.
+  ~Parts() {
+    std::error_code failed;
+    for (const std::filesystem::path& folder : made)
+      if (std::filesystem::is_empty(folder, failed)) std::filesystem::remove(folder, failed);
+  }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
   void note(const std::string& device, const std::string& missing,
             std::function<std::string()> attempt = {}) {
     findings.push_back({device, missing, std::move(attempt)});
@@ -445,6 +454,10 @@ void Devices::Parts::make_links() {
 
 void Devices::Parts::make_store() {
   std::error_code failed;
+  for (std::filesystem::path folder(file.store);
+       !folder.empty() && folder.has_relative_path() && !std::filesystem::exists(folder, failed);
+       folder = folder.parent_path())
+    made.push_back(folder);
   std::filesystem::create_directories(file.store, failed);
   std::string missing = failed ? failed.message() : "";
   if (missing.empty() && ::access(file.store.c_str(), R_OK | W_OK | X_OK) != 0)

@@ -37,6 +37,9 @@ constexpr Identifiers kRestricted[] = {{0x001, 0x07f, "a restricted use"}, {0x10
                                        {0x581, 0x5ff, "SDO answers"},      {0x601, 0x67f, "SDO requests"},
                                        {0x6e0, 0x6ff, "a restricted use"}, {0x701, 0x77f, "heartbeats"},
                                        {0x780, 0x7ff, "a restricted use"}};
+constexpr Identifiers kControlword = {0x201, 0x27f, "RPDO 1, the controller's controlword"};
+/// No drive sends its statusword and position with one of them.
+constexpr Identifiers kNoTpdo[] = {kEmergencies, kTime, kControlword};
 /// The default identifiers of CiA 301 and CiA 402 that the drives or the controller send.
 constexpr Identifiers kOfOthers[] = {kEmergencies,
                                      kTime,
@@ -44,7 +47,7 @@ constexpr Identifiers kOfOthers[] = {kEmergencies,
                                      {0x281, 0x2ff, "TPDO 2 of the drives"},
                                      {0x381, 0x3ff, "TPDO 3 of the drives"},
                                      {0x481, 0x4ff, "TPDO 4 of the drives"},
-                                     {0x201, 0x27f, "RPDO 1, the controller's controlword"}};
+                                     kControlword};
 
 bool is_among(const Identifiers& use, std::uint32_t id) { return id >= use.first && id <= use.last; }
 
@@ -105,20 +108,23 @@ CanopenSettings settings_of(const SignalSource& source) {
   refuse_use(source, "sync", settings.sync, kRestricted);
   refuse_use(source, "sync", settings.sync, kOfOthers);
   refuse_use(source, "tpdo", settings.tpdo, kRestricted);
+  refuse_use(source, "tpdo", settings.tpdo, kNoTpdo);
   refuse_use(source, "rpdo", settings.rpdo, kRestricted);
   refuse_use(source, "rpdo", settings.rpdo, kOfOthers);
   refuse_further_rpdos(source, settings.rpdo, node);
   return settings;
 }
 
-/// The position offset of an axis of the drive, or an object of the manufacturer: every other object of
-/// CiA 301 or CiA 402 has another meaning (0x607A is the target position, 0x6040 the controlword).
-bool takes_an_offset(std::uint16_t index) {
+/// The position offset of an axis of the drive, which has no subindex, or an object of the manufacturer:
+/// every other object of CiA 301 or CiA 402 has another meaning (0x607A is the target position, 0x6040 the
+/// controlword).
+bool takes_an_offset(const CanopenObject& object) {
   constexpr std::uint16_t kPositionOffset = 0x60b0, kPerAxis = 0x800, kAxes = 8;
   constexpr std::uint16_t kFirstOfMaker = 0x2000, kLastOfMaker = 0x5fff;
+  const std::uint16_t index = object.index;
   if (index >= kFirstOfMaker && index <= kLastOfMaker) return true;
   return index >= kPositionOffset && (index - kPositionOffset) % kPerAxis == 0 &&
-         (index - kPositionOffset) / kPerAxis < kAxes;
+         (index - kPositionOffset) / kPerAxis < kAxes && object.subindex == 0;
 }
 
 /// "0x60B0" or "0x60B0:00".
@@ -135,7 +141,7 @@ CanopenObject object_of(const SignalSource& source) {
       (colon == std::string::npos || read(std::string_view(text).substr(colon + 1), object.subindex));
   if (!whole || object.index < 0x1000)
     source.fail_at("object", "object: '" + text + "' is no object, for example \"0x60B0\" or \"0x2010:03\"");
-  if (!takes_an_offset(object.index))
+  if (!takes_an_offset(object))
     source.fail_at("object", "object: '" + text +
                                  "' is no position offset: give 0x60B0 (0x68B0 ... for a further axis of the "
                                  "drive), or an object of the drive's maker (0x2000 to 0x5FFF)");

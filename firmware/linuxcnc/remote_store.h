@@ -14,6 +14,7 @@ class RemoteStore : public SlotStore {
       : hatch_(hatch), stop_(stop), capacity_(capacity) {}
 
   std::uint32_t capacity() const noexcept override { return capacity_; }
+  bool reads_ones_where_erased() const noexcept override { return false; }
   HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override;
   HalFault write_record(std::uint32_t place, const std::uint8_t* bytes, std::uint32_t size) noexcept override;
   HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,

@@ -13,6 +13,7 @@ class FileSlotStore : public SlotStore {
   FileSlotStore(std::string directory, std::uint32_t capacity);
 
   std::uint32_t capacity() const noexcept override { return capacity_; }
+  bool reads_ones_where_erased() const noexcept override { return false; }
   HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override;
   /// Makes the file of a record of `size` bytes, all ones (never written), if there is no file: the first
   /// write then needs no further room on the medium. Not real-time safe.

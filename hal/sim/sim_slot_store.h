@@ -30,6 +30,7 @@ class SimSlotStore : public SlotStore {
   void fill_up_to(std::uint32_t bytes) { room_ = bytes; }
 
   std::uint32_t capacity() const noexcept override { return capacity_; }
+  bool reads_ones_where_erased() const noexcept override { return false; }
   HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override {
     return place < 4 ? read(records_[place], 0, bytes, size) : HalFault::kNoDevice;
   }

@@ -13,9 +13,11 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 #include <thread>
 #include <tuple>
+#include <vector>
 
 #include "tests/conformance/linux_devices.h"
 
@@ -125,6 +127,25 @@ TEST_F(Check, NamesAConverterThatIsNotThere) {
 TEST_F(Check, NamesAConverterThatRefuses) {
   files_.break_writes("iio:device3/out_voltage1_raw");
   expect_missing("missing  axis.Y.output  iio-dac: its present value cannot be read");
+}
+
+TEST_F(Check, LeavesNoEmptyFolderOfTheStore) {
+  write(replaced(kBoard, "store = \"store\"", "store = \"deep/store\""));
+  for (const char* const how : {"--check", "--zero"}) {
+    EXPECT_EQ(run(how).status, 0);
+    EXPECT_FALSE(std::filesystem::exists(files_.path() + "/deep")) << how;
+  }
+  std::filesystem::remove_all(files_.path() + "/pwm0");
+  EXPECT_EQ(run("--seconds 0.1").status, 2) << "a start without its output";
+  EXPECT_FALSE(std::filesystem::exists(files_.path() + "/deep"));
+  // A folder that was there stays, and so does one with contents.
+  std::filesystem::create_directories(files_.path() + "/deep");
+  EXPECT_EQ(run("--check").status, 2);
+  EXPECT_TRUE(std::filesystem::exists(files_.path() + "/deep"));
+  EXPECT_FALSE(std::filesystem::exists(files_.path() + "/deep/store"));
+  files_.put("pwm0/period", "50000"), files_.put("pwm0/duty_cycle", "25000"), files_.put("pwm0/enable", "1");
+  EXPECT_EQ(run("--seconds 0.1").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(files_.path() + "/deep/store/identity.pub"));
 }
 
 // The board file's own span does not stand in for a calibration that is named and not there.
@@ -413,6 +434,27 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
       {board_of(sim, output + "object = \"0x607A\"", sync),
        "board.toml:18: output of X: object: '0x607A' is no position offset: give 0x60B0"},
       {board_of(sim, output + "object = \"0x6040:00\"", sync), "'0x6040:00' is no position offset"},
+      {board_of(sim, output + "object = \"0x60FF\"", sync), "'0x60FF' is no position offset"},
+      {board_of(sim, output + "object = \"0x6071\"", sync), "'0x6071' is no position offset"},
+      {board_of(sim, output + "object = \"0x6060\"", sync), "'0x6060' is no position offset"},
+      {board_of(sim, output + "object = \"0x60B1\"", sync), "'0x60B1' is no position offset"},
+      {board_of(sim, output + "object = \"0x60B0:01\"", sync), "'0x60B0:01' is no position offset"},
+      {board_of(sim, output + "rpdo = 0x000", sync), "rpdo must be a whole number from 1 to 2047"},
+      {board_of(sim, output + "rpdo = 0x080", sync), "sync and rpdo have one identifier"},
+      {board_of(sim, output + "rpdo = 0x701", sync), "the heartbeat and rpdo have one identifier"},
+      {board_of(sim, output + "rpdo = 0x702", sync), "rpdo: 0x702 belongs to heartbeats"},
+      {board_of(sim, output + "tpdo = 0x501", sync), "tpdo and rpdo have one identifier"},
+      {board_of(sim, output + "tpdo = 0x082", sync),
+       "board.toml:18: output of X: tpdo: 0x082 belongs to emergency messages"},
+      {board_of(replaced(drive, "scale", "tpdo = 0x100\nscale"), output, sync),
+       "board.toml:13: axis X: tpdo: 0x100 belongs to TIME"},
+      {board_of(sim, output + "tpdo = 0x27F", sync), "tpdo: 0x27F belongs to RPDO 1"},
+      {board_of(sim, output + "rpdo = 0x6C0", sync) +
+           "\n[[axis]]\nname = \"Y\"\nkind = \"sim\"\nmax_speed = 100\nmax_correction = 0.2\nmax_step = "
+           "0.001\n"
+           "[[output]]\naxis = \"Y\"\n" +
+           replaced(output, "node = 1", "node = 2\nrpdo = 0x6C0"),
+       "output of Y: rpdo: the identifier is that of "},
       {board_of("kind = \"can\"\ninterface = \"nocan\"\nid = 0x501", output, sync),
        "board.toml:12: axis X: id: a frame of the drive of "},
       {board_of(replaced(drive, "scale", "tpdo = 0x501\nscale"), output, sync),
@@ -470,6 +512,279 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
     EXPECT_EQ(said.status, 1) << said.text;
     EXPECT_NE(said.text.find(said_of_it), std::string::npos) << said_of_it << "\n" << said.text;
   }
+}
+
+/// Settings of every kind of device, each on its own line. The board file is valid; no device is there.
+constexpr const char* kEverySetting = R"([board]
+name = "mill"
+class = "mills"
+store = "store"
+tick_us = 1000
+slot_bytes = 100000
+trial_s = 60.5
+activate = true
+max_lost_ticks = 0.05
+priority = 70
+watchdog = "ROOT/watchdog"
+sync = { kind = "can", interface = "ROOT/bus", id = 0x80, timeout_ms = 20 }
+[[axis]]
+name = "X"
+kind = "canopen"
+interface = "ROOT/bus"
+node = 1
+tpdo = 0x381
+scale = 0.1
+offset = 0.5
+low = 0.5
+high = 800.5
+max_speed = 500.5
+max_acceleration = 5000.5
+max_step = 0.001
+max_correction = 0.2
+correction_share = 0.1
+missing_ticks = 3
+rotary = false
+rollover = false
+[[output]]
+axis = "X"
+kind = "canopen"
+interface = "ROOT/bus"
+node = 1
+tpdo = 0x381
+rpdo = 0x501
+sync = 0x80
+object = "0x60B0"
+scale = 0.1
+sync_us = 1000
+range = 0.1
+polarity = "normal"
+timeout_ms = 20
+heartbeat_ms = 200
+pdo_test = "sdo"
+delay_ms = 1.5
+[[axis]]
+name = "Y"
+kind = "counter"
+root = "ROOT"
+device = "eqep"
+count = 0
+bits = 32
+scale = 0.1
+offset = 0.5
+max_speed = 100
+max_correction = 0.2
+max_step = 0.001
+[[output]]
+axis = "Y"
+kind = "modbus"
+address = "127.0.0.1"
+port = 1
+unit = 1
+sequence = 100
+valid = 101
+register = 102
+echo = 50
+scale = 0.01
+range = 0.1
+period_ms = 5
+timeout_ms = 100
+[[axis]]
+name = "Z"
+kind = "modbus"
+address = "127.0.0.1"
+port = 1
+unit = 2
+register = 12
+sequence = 10
+registers = "holding"
+scale = 0.1
+offset = 0.5
+period_ms = 5
+timeout_ms = 100
+missing_ticks = 20
+max_speed = 100
+max_correction = 0.2
+max_step = 0.001
+[[output]]
+axis = "Z"
+kind = "pwm"
+path = "ROOT/pwm9"
+period_ns = 50000
+span = 0.25
+zero_ns = 25000
+low_ns = 0
+high_ns = 50000
+[[axis]]
+name = "B"
+kind = "can"
+interface = "nocan"
+id = 0x181
+rotary = true
+max_speed = 100
+max_correction = 0.2
+max_step = 0.001
+[[output]]
+axis = "B"
+kind = "modbus-out"
+device = "ROOT/tty"
+baud = 115200
+parity = "E"
+unit = 1
+register = 100
+echo = 50
+place = 0
+resolution = 1e-5
+range = 0.1
+period_ms = 20
+timeout_ms = 400
+[[axis]]
+name = "C"
+kind = "sim"
+max_speed = 100
+max_correction = 0.2
+max_step = 0.001
+[[output]]
+axis = "C"
+kind = "iio-dac"
+root = "ROOT"
+device = "mcp"
+channel = 1
+codes = 255
+span = 0.25
+zero = 127
+low = 0
+high = 254
+[input.T]
+unit = "degC"
+low = -10.5
+high = 60.5
+max_step = 1.5
+reference = 20.5
+[input.T.source]
+kind = "iio"
+root = "ROOT"
+device = "tmp117"
+attribute = "in_temp_input"
+scale = 0.001
+offset = 0.5
+stale_ticks = 1000
+[input.A]
+unit = "m/s^2"
+[input.A.source]
+kind = "iio-buffer"
+root = "ROOT"
+devices = "ROOT/dev"
+device = "adxl"
+channel = "accel_x"
+scale = 0.001
+offset = 0.5
+trigger = "t"
+rate_Hz = 1000
+[input.V]
+unit = "m/s^2"
+[input.V.source]
+kind = "feature"
+of = "A"
+feature = "RMS"
+window = 1500
+every = 1
+resolution = 0.001
+missing_samples = 3
+[input.S]
+unit = "degC"
+[input.S.source]
+kind = "sim"
+amplitude = 0.5
+frequency_Hz = 0.5
+[input.M]
+unit = "degC"
+[input.M.source]
+kind = "modbus-tcp"
+address = "127.0.0.1"
+port = 1
+unit = 3
+register = 1
+registers = "input"
+type = "int16"
+scale = 0.5
+offset = 0.5
+timeout_ms = 200
+stale_ticks = 1000
+[probe]
+delay_us = 0.5
+delay_spread_us = 0.5
+position_age_us = 0.5
+position_age_spread_us = 0.5
+settle_us = 1000.5
+[probe.line]
+kind = "gpio"
+chip = "none"
+line = 3
+polarity = "normal"
+[digital.healthy]
+kind = "gpio"
+chip = "none"
+line = 4
+toggle_ms = 10
+[[link]]
+kind = "modbus-tcp"
+address = "127.0.0.1"
+port = 0
+access = "read"
+plain_commands = "refused"
+[[link]]
+kind = "modbus-rtu"
+device = "ROOT/tty2"
+baud = 115200
+parity = "E"
+unit = 1
+[[link]]
+kind = "isotp"
+interface = "nocan"
+receive = 0x700
+transmit = 0x702
+)";
+
+/// A value of another type than `value` has; a fraction for a whole number.
+std::vector<std::string> of_another_type(const std::string& value) {
+  if (value[0] == '"') return {"true", "7", "1.5"};
+  if (value == "true" || value == "false") return {"1", "0", "\"" + value + "\""};
+  std::vector<std::string> others = {"true", "\"" + value + "\"", "nan", "inf", "-inf", "1979-05-27"};
+  // The settings with a fraction in the file above take every number.
+  if (value.find_first_of(".e") == std::string::npos)
+    for (const char* const whole : {"3.5", "9007199254740993"}) others.emplace_back(whole);
+  return others;
+}
+
+// `activate = 1` and `missing_ticks = 3.5`: whatever the setting, its value has one type.
+TEST_F(Check, EverySettingRefusesAValueOfAnotherTypeWithItsLine) {
+  write(kEverySetting);
+  ASSERT_EQ(run("--check").status, 2) << run("--check").text;
+  std::vector<std::string> lines;
+  std::istringstream file(kEverySetting);
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  int tried = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string line = lines[i];
+    const auto equals = line.find(" = ");
+    const std::string name = line.substr(0, equals), number = std::to_string(i + 1);
+    if (equals == std::string::npos || name == "sync") continue;
+    // These take fractions, although the value above is none.
+    const bool any_number = std::set<std::string>{"max_speed", "delay_ms"}.contains(name);
+    for (const std::string& value : of_another_type(line.substr(equals + 3) + (any_number ? ".0" : ""))) {
+      lines[i] = name + " = " + value;
+      std::string text;
+      for (const std::string& one : lines) text += one + "\n";
+      write(text);
+      const Said said = run("--check");
+      EXPECT_EQ(said.status, 1) << number << ": " << lines[i] << "\n" << said.text;
+      EXPECT_NE(said.text.find("board.toml:" + number + ": "), std::string::npos) << lines[i] << said.text;
+      EXPECT_NE(said.text.find(name), std::string::npos) << lines[i] << said.text;
+      ++tried;
+    }
+    lines[i] = line;
+  }
+  EXPECT_GT(tried, 800);
 }
 
 /// A port of this computer at which nobody accepts a connection; the system completes it all the same.

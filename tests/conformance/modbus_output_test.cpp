@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/conformance/line_disturber.h"
 #include "tests/conformance/plc.h"
 
 namespace vernier::modbus_output_test {
@@ -286,6 +287,108 @@ TEST_F(ModbusOutputSerial, LostAnswerIsNoLoss) {
   EXPECT_NE(output_->account().find(" 0 losses"), std::string::npos) << output_->account();
 }
 
+/// A fault of the line, and its effect on the board.
+struct LineCase {
+  enum class Effect {
+    kNone,        // no fault: the correction continues
+    kLoss,        // a fault within the time of the page
+    kLossHeard,   // the same; and the requests arrive: the controller learns that nothing is valid
+    kAnyOutcome,  // the fault comes by chance: no step, whether it is a loss or not
+  };
+  const char* name;
+  LineDisturber::Fault fault;
+  int ms;
+  Effect effect;
+};
+using Line = LineDisturber::Fault;
+using Effect = LineCase::Effect;
+// An answer has 100 ms: a quarter of the time-out.
+constexpr LineCase kLines[] = {{"bytes 5 ms apart", Line::kSlowBytes, 5, Effect::kNone},
+                               {"bytes 15 ms apart", Line::kSlowBytes, 15, Effect::kLossHeard},
+                               {"answers of another unit", Line::kOtherUnit, 0, Effect::kLossHeard},
+                               {"bit errors in answers", Line::kBitErrors, 0, Effect::kAnyOutcome},
+                               {"bit errors in requests", Line::kBitsOfRequests, 0, Effect::kAnyOutcome},
+                               {"exceptions", Line::kException, 0, Effect::kLossHeard},
+                               {"no answers", Line::kNoAnswer, 0, Effect::kLossHeard},
+                               {"line cut", Line::kCutLine, 0, Effect::kLoss},
+                               {"old answers", Line::kOldAnswers, 0, Effect::kLoss},
+                               {"answers after 40 ms", Line::kLate, 40, Effect::kNone},
+                               {"answers after 130 ms", Line::kLate, 130, Effect::kLossHeard},
+                               {"answers after 210 ms", Line::kLate, 210, Effect::kLossHeard},
+                               {"answers after 300 ms", Line::kLate, 300, Effect::kLossHeard},
+                               {"answers after 450 ms", Line::kLate, 450, Effect::kLossHeard},
+                               {"garbage before answers", Line::kGarbage, 0, Effect::kAnyOutcome},
+                               {"answers without an end", Line::kCutAnswers, 0, Effect::kAnyOutcome},
+                               {"answers twice", Line::kTwice, 0, Effect::kNone},
+                               {"own echo", Line::kOwnEcho, 0, Effect::kLossHeard}};
+
+void expect_no_step_on(const LineCase& line) {
+  SCOPED_TRACE(line.name);
+  Plc plc{Plc::Serial{}};
+  LineDisturber disturber(plc.path());
+  ModbusOutputSettings usual = settings();
+  usual.period = TimeUs(20'000), usual.timeout = TimeUs(400'000);
+  const auto wait = TimeUs(ModbusOutput::wait_for_answer(usual.timeout, true));
+  std::string error;
+  const auto end = ModbusLine::rtu(disturber.path(), 115200, 'N', wait, error);
+  ASSERT_NE(end, nullptr) << error;
+  const auto output = ModbusOutput::open(end, usual, error);
+  ASSERT_NE(output, nullptr) << error;
+  Ticks ticks(*output);
+  ticks.run(100ms, 0);
+  ticks.run(200ms, 20'000);
+  ASSERT_EQ(plc.blocks().back().valid & 1, 1);
+  // WHEN the line is disturbed while the correction moves
+  disturber.ms = line.ms;
+  disturber.fault = line.fault;
+  const auto began = Clock::now();
+  const auto since_began = [&](Clock::time_point when) {
+    return std::chrono::duration_cast<std::chrono::milliseconds>(when - began);
+  };
+  auto lost = -1ms, heard = -1ms;
+  for (int i = 0; Clock::now() - began < 1300ms; ++i)
+    if (ticks.step(lost < 0ms ? (i / 300 % 2 == 0 ? -20'000 : 20'000) : 0) != HalFault::kNone && lost < 0ms)
+      lost = since_began(Clock::now());
+  for (const Plc::Block& block : plc.blocks())
+    if ((block.valid & 1) == 0 && block.when > began && heard < 0ms) heard = since_began(block.when);
+  const std::uint16_t valid = plc.blocks().back().valid;
+  // WHEN the line is sound again
+  disturber.fault = Line::kNone;
+  for (int i = 0; i < 3000 && ticks.written() != 0; ++i) ticks.step(0);
+  for (int i = 0; i < 3000 && (plc.blocks().back().valid & 1) == 0; ++i) ticks.step(0);
+  ticks.run(300ms, 20'000);
+  std::printf("%-24s fault after %4d ms, valid bit 0 after %4d ms, largest step %4d counts of 10 nm\n",
+              line.name, static_cast<int>(lost.count()), static_cast<int>(heard.count()),
+              static_cast<int>(largest_step(plc.blocks())));
+  // THEN no valid value makes a step, whatever came over the line, and the correction comes back
+  EXPECT_LE(largest_step(plc.blocks()), 2 * (kStep * 20 / 10 + 1));
+  EXPECT_EQ(plc.blocks().back().valid & 1, 1);
+  EXPECT_GT(plc.blocks().back().values[0], 1000);
+  constexpr auto kBusy = 150ms, kMost = 400ms + 200ms + 20ms + kBusy;
+  if (line.effect == Effect::kNone) {
+    EXPECT_EQ(lost, -1ms);
+    EXPECT_EQ(valid & 1, 1);
+  }
+  if (line.effect == Effect::kLoss || line.effect == Effect::kLossHeard) {
+    EXPECT_GE(lost, 0ms);
+    EXPECT_LE(lost, kMost);
+  }
+  if (line.effect != Effect::kLossHeard) return;
+  EXPECT_GE(heard, 0ms);
+  EXPECT_LE(heard, lost + 100ms + 20ms + kBusy) << "the line is quiet for 100 ms before the next request";
+  EXPECT_EQ(valid & 1, 0);
+}
+
+TEST(ModbusOutputLine, NoFaultOfASerialLineMakesAStep) {
+  constexpr std::size_t kTogether = 6;  // each case waits most of its time
+  for (std::size_t first = 0; first < std::size(kLines); first += kTogether) {
+    std::vector<std::thread> threads;
+    for (std::size_t i = first; i < std::min(first + kTogether, std::size(kLines)); ++i)
+      threads.emplace_back([i] { expect_no_step_on(kLines[i]); });
+    for (std::thread& one : threads) one.join();
+  }
+}
+
 // The requests arrive: the controller must not keep a block that is valid.
 TEST_F(ModbusOutputSerial, ControllerThatOnlyHearsLearnsThatNothingIsValid) {
   plc_.lost_answers = 1'000'000;
@@ -316,6 +419,120 @@ TEST_F(ModbusOutputLoss, RestartOfTheControllerWithinTheTimeOutMakesNoStep) {
   std::vector<Plc::Block> since(blocks.begin() + static_cast<std::ptrdiff_t>(before), blocks.end());
   EXPECT_LE(largest_step(since), kMostStep);
   expect_return_without_a_step(plc_, *output_, *ticks_);
+}
+
+/// Largest change of a value from block to block, with and without a valid bit; before: of the first block.
+std::int64_t largest_change(const std::vector<Plc::Block>& blocks, std::size_t place, std::int64_t before) {
+  std::int64_t largest = 0;
+  for (const Plc::Block& block : blocks) {
+    largest = std::max(largest, std::abs(block.values[place] - before));
+    before = block.values[place];
+  }
+  return largest;
+}
+
+// A start wrote zeros over the correction that a killed daemon had left.
+TEST(ModbusOutputLeftOver, GoesToZeroWithinTheLimitAndWithoutAValidBit) {
+  Plc plc;
+  plc.leave(0, 2000), plc.leave(2, -1000);
+  std::string error;
+  const auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  AxisTravel x, y;
+  ASSERT_EQ(output->read_back(0, x), HalFault::kNone);
+  ASSERT_EQ(output->read_back(1, y), HalFault::kNone);
+  EXPECT_EQ(x, AxisTravel(20'000));
+  EXPECT_EQ(y, AxisTravel(-10'000));
+  EXPECT_EQ(output->read_back(2, y), HalFault::kNoDevice);
+  ASSERT_TRUE(plc.wait_for_blocks(3));
+  EXPECT_EQ(plc.blocks().back().values[0], 2000) << "nothing moves the value before a tick does";
+  // WHEN ticks move the values to zero, in turn
+  auto due = Clock::now();
+  for (const std::uint32_t axis : {0u, 1u})
+    for (std::int64_t left = axis == 0 ? 20'000 : -10'000; left != 0;) {
+      left -= std::clamp(left, -kStep, kStep);
+      ASSERT_EQ(output->write_correction(axis, AxisTravel(left)), HalFault::kNone);
+      std::this_thread::sleep_until(due += kTick);
+    }
+  Ticks ticks(*output);
+  ticks.run(60ms, 0);
+  // THEN no block changes a value by more than two periods do, and no value has a valid bit before its zero
+  EXPECT_LE(largest_change(plc.blocks(), 0, 2000), kMostStep);
+  EXPECT_LE(largest_change(plc.blocks(), 2, -1000), kMostStep);
+  for (const Plc::Block& block : plc.blocks()) {
+    EXPECT_TRUE((block.valid & 1) == 0 || block.values[0] == 0) << block.values[0];
+    EXPECT_TRUE((block.valid & 4) == 0 || block.values[2] == 0) << block.values[2];
+  }
+  EXPECT_EQ(plc.blocks().back().valid, 5);
+  plc.forget();
+  ticks.run(200ms, 20'000);
+  EXPECT_GT(plc.blocks().back().values[0], 1000) << "and corrections follow";
+  EXPECT_LE(largest_step(plc.blocks()), kMostStep);
+}
+
+// `vernierd --check` moves nothing.
+TEST(ModbusOutputLeftOver, StaysInItsRegisterWithoutATick) {
+  Plc plc;
+  plc.leave(0, 2000);
+  std::string error;
+  auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  EXPECT_EQ(output->attempt(0), "");
+  output.reset();
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(largest_change(plc.blocks(), 0, 2000), 0);
+  EXPECT_EQ(plc.blocks().back().valid, 0);
+}
+
+// `vernierd --zero` ends when it has written the zero.
+TEST(ModbusOutputLeftOver, EndWaitsForTheZeroThatWasWritten) {
+  Plc plc;
+  plc.leave(0, 2000);
+  std::string error;
+  auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  auto due = Clock::now();
+  for (std::int64_t left = 20'000; left > 0;) {
+    left -= kStep;
+    output->write_correction(0, AxisTravel(left));
+    std::this_thread::sleep_until(due += kTick);
+  }
+  output.reset();
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(plc.blocks().back().values[0], 0);
+  EXPECT_EQ(plc.blocks().back().valid, 0);
+  EXPECT_LE(largest_change(plc.blocks(), 0, 2000), kMostStep);
+}
+
+// A loss of the controller in the middle of the way changes nothing about the way.
+TEST(ModbusOutputLeftOver, ALossOnItsWayMakesNoStep) {
+  Plc plc;
+  plc.leave(0, 2000);
+  std::string error;
+  const auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  const auto began = Clock::now();
+  for (std::int64_t left = 20'000; left > 0; left -= 20) {
+    plc.stuck = Clock::now() > began + 300ms && Clock::now() < began + 500ms;
+    output->write_correction(0, AxisTravel(left));
+    std::this_thread::sleep_for(kTick);
+  }
+  EXPECT_LE(largest_change(plc.blocks(), 0, 2000), kMostStep);
+  EXPECT_LT(plc.blocks().back().values[0], 1000);
+  for (const Plc::Block& block : plc.blocks()) EXPECT_EQ(block.valid & 1, 0);
+}
+
+// Registers that had another use, or a board file with a smaller range.
+TEST(ModbusOutputLeftOver, BeyondTheRangeBeginsAtItsEnd) {
+  Plc plc;
+  plc.leave(0, INT32_MIN), plc.leave(2, 100'001);
+  std::string error;
+  const auto output = open(plc, error);
+  ASSERT_NE(output, nullptr) << error;
+  AxisTravel x, y;
+  output->read_back(0, x), output->read_back(1, y);
+  EXPECT_EQ(x, AxisTravel(-1'000'000));
+  EXPECT_EQ(y, AxisTravel(1'000'000));
 }
 
 // The first board may have the longest period that a board file allows.

@@ -38,6 +38,10 @@ Plc::Plc(Serial)
       nowhere_(::open("/dev/null", O_WRONLY | O_CLOEXEC)) {
   modbus_set_socket(context_, line_);
   modbus_set_slave(context_, 1);
+  // A damaged request ends with the next pause of the line, as the standard asks (Modbus over serial
+  // line, 2.5).
+  modbus_set_byte_timeout(context_, 0, 5'000);
+  modbus_set_error_recovery(context_, MODBUS_ERROR_RECOVERY_PROTOCOL);
   thread_ = std::thread([this] { serve(); });
 }
 
@@ -59,6 +63,13 @@ std::vector<Plc::Block> Plc::blocks() const {
 void Plc::forget() {
   const std::scoped_lock lock(guard_);
   blocks_.clear();
+}
+
+void Plc::leave(int place, std::int32_t value) {
+  std::uint16_t* const block = registers_->tab_registers + kBlock;
+  block[1] = static_cast<std::uint16_t>(block[1] | 1u << place);
+  block[2 + 2 * place] = static_cast<std::uint16_t>(static_cast<std::uint32_t>(value) >> 16);
+  block[3 + 2 * place] = static_cast<std::uint16_t>(value);
 }
 
 bool Plc::wait_for_blocks(std::size_t count) const {

@@ -39,6 +39,8 @@ class Plc {
   /// Waits until `count` more blocks have come; false after two seconds.
   bool wait_for_blocks(std::size_t count) const;
   void forget();
+  /// Puts a value with its valid bit into the block, as a killed board leaves it. Call before a board opens.
+  void leave(int place, std::int32_t value);
 
   std::atomic<bool> stuck{false};    // the program stands still: no echo
   std::atomic<bool> gone{false};     // connections are closed, and none is answered

@@ -17,7 +17,9 @@ inline int raw_terminal(std::string& other_end) {
   ::tcgetattr(line, &raw);
   ::cfmakeraw(&raw);
   ::tcsetattr(line, TCSANOW, &raw);
-  other_end = ::ptsname(line);
+  char name[64] = {};  // ptsname() has one memory for all threads
+  ::ptsname_r(line, name, sizeof name);
+  other_end = name;
   return line;
 }
 

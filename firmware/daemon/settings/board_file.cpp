@@ -91,17 +91,23 @@ class Table {
     const toml::node* const node = table_.get(name);
     // A default may be outside the range: it means "not given".
     if (node == nullptr) return otherwise;
-    if (!node->is_number()) fail(name + " must be a number", node);
-    const double value = *node->value<double>();
+    const double value = finite_number(*node, name, false);
     if (!(value >= low && value <= high))
       fail(name + " must be between " + number_text(low) + " and " + number_text(high), node);
     return value;
   }
   std::int64_t whole(const std::string& name, std::int64_t otherwise, std::int64_t low, std::int64_t high) {
-    const double value =
-        number(name, static_cast<double>(otherwise), static_cast<double>(low), static_cast<double>(high));
-    if (value != std::trunc(value)) fail(name + " must be a whole number", table_.get(name));
-    return static_cast<std::int64_t>(value);
+    if (const toml::node* const node = table_.get(name)) finite_number(*node, name, true);
+    return static_cast<std::int64_t>(
+        number(name, static_cast<double>(otherwise), static_cast<double>(low), static_cast<double>(high)));
+  }
+  /// A number that is neither infinite nor "not a number", which TOML can write too.
+  double finite_number(const toml::node& node, const std::string& name, bool whole) const {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!node.is_number()) fail(name + " must be a number", &node);
+    if (!value || !std::isfinite(*value)) fail(name + " must be a finite number of at most 15 digits", &node);
+    if (whole && *value != std::trunc(*value)) fail(name + " must be a whole number", &node);
+    return *value;
   }
   bool has(const std::string& name) const { return table_.get(name) != nullptr; }
   const toml::table* table(const std::string& name) {
@@ -132,18 +138,21 @@ SignalSource source_of(const toml::table* table, const std::string& file, const 
     return file + ":" + std::to_string(node.source().begin.line) + ": " + where;
   };
   source.where = place(*table);
-  for (const auto& [key, node] : *table) {
-    if (others.contains(key.str())) continue;
-    source.places[std::string(key.str())] = place(node);
-    if (const auto text = node.value_exact<std::string>())
-      source.texts[std::string(key.str())] = *text;
-    else if (node.is_number())
-      source.numbers[std::string(key.str())] = *node.value<double>();
-    else
-      settings.fail(std::string(key.str()) + " must be a text or a number", &node);
-  }
   source.kind = settings.text("kind", "");
   if (source.kind.empty()) settings.fail("kind is missing");
+  for (const auto& [key, node] : *table) {
+    if (others.contains(key.str())) continue;
+    const std::string name(key.str());
+    source.places[name] = place(node);
+    const SettingType type = type_of_setting(source.kind, name);
+    if (const auto text = node.value_exact<std::string>();
+        text && type != SettingType::kNumber && type != SettingType::kWholeNumber)
+      source.texts[name] = *text;
+    else if (type == SettingType::kText)
+      settings.fail(name + " must be a text", &node);
+    else
+      source.numbers[name] = settings.finite_number(node, name, type == SettingType::kWholeNumber);
+  }
   return source;
 }
 

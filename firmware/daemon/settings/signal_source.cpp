@@ -3,10 +3,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string_view>
 
 #include "firmware/daemon/settings/key_file.h"
 
 namespace vernier {
+namespace {
+
+using Names = std::set<std::string_view>;
+const Names kTexts = {"access",    "address", "attribute", "calibration", "chip",           "device",
+                      "devices",   "feature", "kind",      "interface",   "minus",          "object",
+                      "of",        "parity",  "path",      "pdo_test",    "plain_commands", "polarity",
+                      "registers", "root",    "trigger",   "type"};
+const Names kNumbers = {"amplitude", "corner_Hz",  "delay_ms", "frequency_Hz", "offset",
+                        "range",     "resolution", "scale",    "span"};
+const Names kWholeNumbers = {"baud",        "bits",      "channel",      "codes",      "count",
+                             "echo",        "every",     "heartbeat_ms", "high",       "high_ns",
+                             "id",          "line",      "low",          "low_ns",     "missing_samples",
+                             "node",        "period_ms", "period_ns",    "place",      "port",
+                             "rate_Hz",     "receive",   "register",     "rpdo",       "sequence",
+                             "stale_ticks", "sync",      "sync_us",      "timeout_ms", "toggle_ms",
+                             "tpdo",        "transmit",  "unit",         "valid",      "window",
+                             "zero",        "zero_ns"};
+
+}  // namespace
+
+SettingType type_of_setting(const std::string& kind, const std::string& name) {
+  // The channel of a buffer has a name, that of a converter has a number.
+  if (kTexts.contains(name) || (name == "channel" && kind == "iio-buffer")) return SettingType::kText;
+  if (kNumbers.contains(name)) return SettingType::kNumber;
+  return kWholeNumbers.contains(name) ? SettingType::kWholeNumber : SettingType::kUnknown;
+}
 
 void SignalSource::fail(const std::string& what) const { throw BoardError{where + ": " + what}; }
 void SignalSource::fail_at(const std::string& name, const std::string& what) const {

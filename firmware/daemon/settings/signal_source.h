@@ -7,6 +7,11 @@
 
 namespace vernier {
 
+/// Type of the value of a device's setting. kUnknown: no kind of device has the setting.
+enum class SettingType { kUnknown, kText, kNumber, kWholeNumber };
+/// Returns the type of the setting `name` of a device of this kind. Not real-time safe.
+SettingType type_of_setting(const std::string& kind, const std::string& name);
+
 /// Connection of a signal of the board to a device: a kind that open_devices.cpp knows, and the settings as
 /// written in the board file.
 struct SignalSource {

@@ -15,6 +15,7 @@ using std::chrono::microseconds;
 
 constexpr std::size_t kDelayBins = 10'000;  // of 0.1 ms: one second
 constexpr int kTries = 10;                  // of the first exchange
+using Block = std::array<std::uint16_t, ModbusOutputSettings::kValues + 2 * ModbusOutputSettings::kPlaces>;
 /// Another board writes at least once in its period.
 constexpr std::chrono::milliseconds kLookForAnother(4 * ModbusOutputSettings::kLongestPeriod_ms);
 
@@ -71,6 +72,7 @@ std::string ModbusOutput::begin() {
     if (!look(after)) return "the controller gives no valid answer any more: " + line_->why();
     if (before != after) return "in use: another board writes the sequence number";
   }
+  if (!take_left_overs()) return "the controller gives no valid answer any more: " + line_->why();
   sequence_ = kept_ = before;
   good_ = written_ = Clock::now();
   for (const auto end = Clock::now() + span_of(settings_.timeout) + std::chrono::seconds(1);
@@ -81,8 +83,48 @@ std::string ModbusOutput::begin() {
   return healthy_ ? "" : "the controller does not return the sequence number: does its program run?";
 }
 
+/// Registers of the block, as far as the last place that has an axis.
+int ModbusOutput::registers() const {
+  int places = 0;
+  for (const ModbusOutputSettings::Axis& axis : settings_.axes) places = std::max(places, axis.place + 1);
+  return ModbusOutputSettings::kValues + 2 * places;
+}
+
+/// Each value begins where an earlier process left it. A value beyond the range of its axis is none of a
+/// board with these settings: it begins at the end of the range. False: no answer.
+bool ModbusOutput::take_left_overs() {
+  Block block{};
+  bool answered = false;
+  for (int i = 0; i < kTries && !answered; ++i)
+    answered = line_->read(settings_.unit, ModbusLine::Registers::kHolding, settings_.address, registers(),
+                           block.data());
+  for (std::size_t k = 0; k < settings_.axes.size() && answered; ++k) {
+    const std::size_t at =
+        ModbusOutputSettings::kValues + 2 * static_cast<std::size_t>(settings_.axes[k].place);
+    const auto found =
+        static_cast<std::int32_t>(std::uint32_t{block[at]} << 16 | std::uint32_t{block[at + 1]});
+    const AnalogueScale& scale = settings_.axes[k].scale;
+    places_[k].sent = static_cast<std::int32_t>(
+        std::clamp<std::int64_t>(found, scale.low - scale.zero, scale.high - scale.zero));
+    places_[k].wanted = places_[k].sent;
+    places_[k].left_over = places_[k].sent != 0;
+  }
+  return answered;
+}
+
+HalFault ModbusOutput::read_back(std::uint32_t axis, AxisTravel& correction) noexcept {
+  if (axis >= converters_.size()) return HalFault::kNoDevice;
+  const AnalogueScale& scale = converters_[axis].scale();
+  correction = scale.correction_of(scale.zero + places_[axis].wanted.load());
+  return HalFault::kNone;
+}
+
 ModbusOutput::~ModbusOutput() {
   if (!thread_.joinable()) return;
+  const auto on_its_way = [](const Place& one) { return one.left_over && one.wanted == 0; };
+  for (const auto end = Clock::now() + span_of(settings_.timeout);
+       Clock::now() < end && std::any_of(places_.begin(), places_.end(), on_its_way);)
+    std::this_thread::sleep_for(span_of(settings_.period));
   stop_ = true;
   thread_.join();
   lose();
@@ -116,14 +158,15 @@ bool ModbusOutput::ticks_run(Clock::time_point now) const {
 }
 
 // After the loss the controller removes the correction by its own ramp; the values are zero when the board
-// comes back. A tick must learn of the loss of a correction; without one its board is at zero already.
+// comes back. A tick must learn of the loss of a correction; without one its board is at zero already. A
+// value of an earlier process has no valid bit; it goes on from where it is.
 void ModbusOutput::lose() {
   repeat_ = false;
   for (std::size_t k = 0; k < settings_.axes.size(); ++k) {
     Place& place = places_[k];
     if (place.valid && (place.sent != 0 || place.wanted != 0)) place.refuse = true;
     place.valid = false;
-    place.sent = 0;
+    if (!place.left_over) place.sent = 0;
   }
 }
 
@@ -134,12 +177,12 @@ void ModbusOutput::choose_values(Clock::time_point now, bool ticks_are_on) {
   for (std::size_t k = 0; k < settings_.axes.size(); ++k) {
     Place& place = places_[k];
     const std::int64_t wanted = place.wanted.load();
-    if (!place.valid) {
-      place.valid = healthy_ && ticks_are_on && wanted == 0 && !place.refuse;
-      continue;
-    }
     const auto most = static_cast<std::int64_t>(static_cast<double>(place.most_per_period) * periods);
-    place.sent = static_cast<std::int32_t>(std::clamp(wanted, place.sent - most, place.sent + most));
+    if (place.valid || place.left_over)
+      place.sent = static_cast<std::int32_t>(std::clamp(wanted, place.sent - most, place.sent + most));
+    place.left_over = place.left_over && place.sent != 0;
+    if (!place.valid)
+      place.valid = healthy_ && ticks_are_on && wanted == 0 && !place.left_over && !place.refuse;
   }
 }
 
@@ -172,6 +215,7 @@ bool ModbusOutput::find_restart() {
   std::uint16_t now = 0;
   if (!line_->read(settings_.unit, ModbusLine::Registers::kHolding, settings_.address, 1, &now)) return false;
   if (static_cast<std::uint16_t>(now - kept_) <= static_cast<std::uint16_t>(sequence_ - kept_)) return true;
+  for (Place& place : places_) place.left_over = false;
   lose();
   kept_ = sequence_;
   const std::scoped_lock lock(guard_);
@@ -181,8 +225,7 @@ bool ModbusOutput::find_restart() {
 
 /// Writes values and valid bits with a new sequence number. False: no answer.
 bool ModbusOutput::write_block(Clock::time_point began) {
-  std::array<std::uint16_t, ModbusOutputSettings::kValues + 2 * ModbusOutputSettings::kPlaces> block{};
-  int used = ModbusOutputSettings::kValues;
+  Block block{};
   block[ModbusOutputSettings::kSequence] = ++sequence_;
   sent_at_[sequence_ & 0xff] = began;
   for (std::size_t k = 0; k < settings_.axes.size(); ++k) {
@@ -193,15 +236,15 @@ bool ModbusOutput::write_block(Clock::time_point began) {
     if (places_[k].valid)
       block[ModbusOutputSettings::kValid] =
           static_cast<std::uint16_t>(block[ModbusOutputSettings::kValid] | 1u << place);
-    used = std::max(used, ModbusOutputSettings::kValues + 2 * static_cast<int>(place) + 2);
   }
-  return line_->write(settings_.unit, settings_.address, used, block.data());
+  return line_->write(settings_.unit, settings_.address, registers(), block.data());
 }
 
 void ModbusOutput::exchange(bool last) {
   const Clock::time_point began = Clock::now();
   const bool ticks_are_on = ticks_run(began);
-  if (unanswered_ && !last && !find_restart()) {
+  // A board without a valid bit has nothing that a restart could lose: it only says that nothing is valid.
+  if (unanswered_ && healthy_ && !last && !find_restart()) {
     {
       const std::scoped_lock lock(guard_);
       ++exchanges_, ++failed_;
@@ -249,8 +292,8 @@ std::string ModbusOutput::attempt(std::uint32_t) {
 }
 
 std::string ModbusOutput::trial() const {
-  return "blocks with valid bits 0 and values 0 were written; the controller removes a correction that the "
-         "registers held";
+  return "blocks with valid bits 0 were written, with the values that the registers had; the controller "
+         "removes a correction that it has";
 }
 
 std::string ModbusOutput::account() const {

@@ -41,7 +41,8 @@ struct ModbusOutputSettings {
 /// echo; a tick only leaves its value and never waits. If no new sequence number comes back in `timeout`, the
 /// thread clears the valid bits and all writes are refused. The valid bit of an axis is set again when the
 /// board's own correction of the axis is zero: the return of a connection causes no step. So it is if a
-/// controller was restarted within the time-out and has lost the block.
+/// controller was restarted within the time-out and has lost the block. A value that an earlier process left
+/// in the block stays there without its valid bit, until writes move it to zero.
 class ModbusOutput : public OutputDevice {
  public:
   /// Longest time for an answer, as the lines of `settings` must have it. A serial line is quiet for as long
@@ -55,7 +56,8 @@ class ModbusOutput : public OutputDevice {
   /// Not real-time safe.
   static std::unique_ptr<ModbusOutput> open(std::shared_ptr<ModbusLine> line,
                                             const ModbusOutputSettings& settings, std::string& error);
-  /// Clears the valid bits.
+  /// Clears the valid bits. If writes have moved the value of an earlier process to zero, waits until the
+  /// controller has the zero, at most the time-out.
   ~ModbusOutput() override;
   ModbusOutput(const ModbusOutput&) = delete;
   ModbusOutput& operator=(const ModbusOutput&) = delete;
@@ -67,10 +69,8 @@ class ModbusOutput : public OutputDevice {
 
   /// open() has found that nothing else changes the sequence number.
   bool lock() noexcept override { return true; }
-  /// Zero: without a valid bit the controller itself removes a correction of an earlier process.
-  HalFault read_back(std::uint32_t, AxisTravel& correction) noexcept override {
-    return correction = AxisTravel{}, HalFault::kNone;
-  }
+  /// Before the first write: the value that the block had at open(), at most the range of the axis.
+  HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept override;
   std::string attempt(std::uint32_t axis) override;
   std::string trial() const override;
   std::uint64_t held_at_end(std::uint32_t axis) const noexcept override { return places_[axis].held_at_end; }
@@ -88,12 +88,16 @@ class ModbusOutput : public OutputDevice {
     std::atomic<std::int32_t> wanted{0};  // register's number
     std::atomic<bool> valid{false}, refuse{false};
     std::int32_t sent = 0;
+    /// `sent` began at a value of an earlier process, and is not at zero yet. The thread clears it.
+    std::atomic<bool> left_over{false};
     std::int64_t most_per_period = 1;
     std::uint64_t held_at_end = 0;
   };
 
   ModbusOutput(std::shared_ptr<ModbusLine> line, const ModbusOutputSettings& settings);
   std::string begin();
+  bool take_left_overs();
+  int registers() const;
   void run();
   bool write_block(Clock::time_point began);
   void exchange(bool last = false);

@@ -121,6 +121,19 @@ TEST(VerifyProgram, NamesEveryCause) {
   EXPECT_EQ(after([](Sample& s) { s.outputs[0].slew = -1; }), ProgramFault::kOutput);
 }
 
+// An image is verified before it is trusted: its last result must not be written behind the memory.
+TEST(VerifyProgram, WritesNoRangeBehindTheRegisters) {
+  Sample s;
+  s.results = 7;  // the last step would be number 10
+  const ValueRange mark{-77, 77};
+  for (std::uint32_t i = 10; i < kMaxRegisters; ++i) s.ranges[i] = mark;
+  EXPECT_EQ(s.verify(), ProgramFault::kTooLong);
+  for (std::uint32_t i = 10; i < kMaxRegisters; ++i) {
+    EXPECT_EQ(s.ranges[i].low, mark.low) << i;
+    EXPECT_EQ(s.ranges[i].high, mark.high) << i;
+  }
+}
+
 /// A program of one instruction on two channels with given ranges; the range of its result.
 struct OneStep {
   Channel channels[2];
@@ -411,6 +424,8 @@ TEST(VerifyProgram, TablesAndPeriodsAreSoundAtEachLimit) {
   EXPECT_EQ(after([](Sample& s) { s.tables[0].grid_multiplier = 1832519379; }), kTable)
       << "the second piece is found 44 counts late: its end is right, its start is not";
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].reciprocal = 0; }), kWrap);
+  EXPECT_EQ(after([](Sample& s) { s.wraps[0] = {0, 1, 1 << 30, 30}; }), kNone) << "the shortest period";
+  EXPECT_EQ(after([](Sample& s) { s.wraps[0] = {0, 1 << 10, 1, 10}; }), kNone) << "the smallest reciprocal";
   EXPECT_EQ(after([](Sample& s) { s.wraps[0].shift = kMaxShift + 1; }), kWrap);
   EXPECT_EQ(after([](Sample& s) { s.wraps[0] = {INT32_MIN, INT32_MAX, INT32_MAX, kMaxShift + 1}; }), kWrap);
   EXPECT_EQ(after([](Sample& s) {

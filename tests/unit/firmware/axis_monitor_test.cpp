@@ -55,6 +55,32 @@ TEST(AxisMonitor, JumpIsAFaultOnceAndTheStepLimitIsNotOne) {
   EXPECT_EQ(bench.take(8'000'001), Fault::kNone);
 }
 
+// A reading after the time of exactly an eighth more is one of a tick; after that it may be two readings'.
+TEST(AxisMonitor, TickThatIsLateByAnEighthHasTheLimitOfOneTick) {
+  const auto fault_after = [](std::int32_t elapsed) {
+    Bench bench(true);
+    bench.take(0);
+    AxisReading reading;
+    reading.position = AxisPosition(2'000'001);
+    return bench.monitor.take(true, reading, *bench.health, TicksQ8{elapsed});
+  };
+  EXPECT_EQ(fault_after(kOneTick.count + kOneTick.count / 8), Fault::kPositionJump);
+  EXPECT_EQ(fault_after(kOneTick.count + kOneTick.count / 8 + 1), Fault::kNone);
+}
+
+// 0.2 mm/s for 5 s claim 1 mm; of them 1 s counts, which is 0.2 mm and no fault.
+TEST(AxisMonitor, LongSilenceCountsAsASecondOfClaimedTravel) {
+  const auto fault_at = [](std::int64_t speed) {
+    Bench bench(true);
+    bench.take(0, 0);
+    AxisReading reading;
+    reading.velocity = AxisSpeed(speed);
+    return bench.monitor.take(true, reading, *bench.health, kMostElapsed);
+  };
+  EXPECT_EQ(fault_at(200'000), Fault::kNone);
+  EXPECT_EQ(fault_at(200'001), Fault::kPositionFrozen);
+}
+
 TEST(AxisMonitor, RolloverIsNoJump) {
   AxisLimits limits;
   limits.rollover = true;

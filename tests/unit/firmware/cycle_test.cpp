@@ -195,6 +195,53 @@ TEST(Cycle, SilentSensorFromTheStartKeepsItChecking) {
   EXPECT_EQ(rig.plant().written(0), AxisTravel(0));
 }
 
+/// The small machine, whose Y follows two thermometers.
+std::unique_ptr<LoadedImage> image_with_two_inputs() {
+  std::string text = kSmallMachine;
+  const auto put = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("<T unit", "<S unit=\"degC\" reference=\"20\"/><T unit");
+  put("cte*Y*(T-20)", "cte*Y*(T-20)+cte*Y*(S-20)");
+  const Machine machine = parse_machine(text, "small.xml");
+  return load_image(compile_machine(machine, text, {}).image, machine);
+}
+
+/// Inputs of which one can be silent.
+struct TwoInputs : InputReader {
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override {
+    if (silent[input]) return HalFault::kNoReading;
+    value = InputMicro(21'000'000);
+    return HalFault::kNone;
+  }
+  bool silent[2] = {};
+};
+
+TEST(Cycle, EachInputOfTheProgramIsReadAndItsSilenceIsAFault) {
+  const auto image = image_with_two_inputs();
+  ASSERT_EQ(image->view.inputs().size, 2u);
+  for (const std::size_t silent : {0u, 1u}) {
+    Roaming motion({{0, 600'000'000}, {0, 200'000'000}}, {}, TimeUs(1000), 0.1, 1);
+    SimPlant plant(motion, 2, 0, {});
+    SimClock clock;
+    TwoInputs inputs;
+    Cycle cycle(image->view, Board{clock, plant, inputs, plant}, CycleLimits{});
+    int ticks = 0;
+    const auto run = [&](int count) {
+      for (int i = 0; i < count; ++i) {
+        plant.advance();
+        cycle.tick(TimeUs(1000 * ++ticks),
+                   cycle.mode() == Mode::kReady ? Command::kActivate : Command::kNone);
+      }
+    };
+    run(2000);
+    EXPECT_EQ(cycle.mode(), Mode::kActive);
+    inputs.silent[silent] = true;
+    run(200);
+    EXPECT_EQ(cycle.latched(), Fault::kInputMissing) << "input " << silent;
+  }
+}
+
 TEST(Cycle, RefusedWriteIsRepeatedWithTheSameValue) {
   PlantOptions options;
   options.faults = {{PlantFaultKind::kWriteFailure, 0, 1500, 100}};

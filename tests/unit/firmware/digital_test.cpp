@@ -77,6 +77,40 @@ TEST_F(Digital, NobodyActivatesAgainstTheEnableLine) {
   EXPECT_EQ(rig_.service().cycle().weight(), WeightQ16{});
 }
 
+// The line that came on made the board forget that it had been active: clearing the fault activated it.
+TEST_F(Digital, ClearedFaultWaitsForTheActivationAlthoughTheLineComesOn) {
+  const auto give = [](UploadRig& rig, Command command) {
+    const_cast<Exchange&>(rig.service().exchange()).command = command;
+    rig.run(3000);
+  };
+  const auto expect_wait = [&](UploadRig& rig) {
+    enable_.on = false;
+    rig.run(1000);
+    ASSERT_EQ(rig.service().cycle().mode(), Mode::kFaulted);
+    enable_.on = true;
+    rig.run(10);
+    give(rig, Command::kClearFault);
+    EXPECT_EQ(rig.service().cycle().mode(), Mode::kReady);
+    EXPECT_EQ(rig.plant().written(1), AxisTravel{});
+    give(rig, Command::kActivate);
+    EXPECT_EQ(rig.service().cycle().mode(), Mode::kActive);
+  };
+  const auto fault = [](UploadRig& rig) {
+    rig.service().cycle().tick(TimeUs(1), Command::kNone, Fault::kOverrun);
+    rig.run(1000);
+  };
+  enable_.on = true;
+  rig_.run(3000);
+  ASSERT_EQ(mode(), Mode::kActive);
+  fault(rig_);
+  expect_wait(rig_);
+  // A fault that a start restored.
+  fault(rig_);
+  UploadRig again(store_, key_, TimeUs(5'000'000), &enable_, &healthy_);
+  ASSERT_EQ(again.service().cycle().latched(), Fault::kOverrun);
+  expect_wait(again);
+}
+
 TEST_F(Digital, HealthySaysSoFromReadyUntilAFault) {
   enable_.on = true;
   rig_.run(50);

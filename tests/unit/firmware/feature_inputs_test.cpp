@@ -145,6 +145,35 @@ TEST(FeatureInputs, TakeOneSignalOffAnother) {
   EXPECT_EQ(mav.count, 100'000);
 }
 
+TEST(FeatureInputs, ASilentSubtractedSignalIsAMissingSample) {
+  SetInputs source;
+  const FeatureRequest request{
+      .input = 2, .of = 0, .minus = 1, .feature = Feature::kMav, .window = 8, .bridged = 0};
+  FeatureInputs inputs(source, 3, {request}, TimeUs(1000));
+  for (int tick = 0; tick < 8; ++tick) inputs.begin_tick();
+  InputMicro mav;
+  ASSERT_EQ(inputs.read_input(2, mav), HalFault::kNone);
+  source.silent[1] = true;
+  inputs.begin_tick();
+  EXPECT_EQ(inputs.read_input(2, mav), HalFault::kNoReading);
+}
+
+TEST(FeatureInputs, AnInputWithoutAFeaturePassesAndAFaultLeavesItsValue) {
+  SetInputs source;
+  FeatureInputs inputs(source, 2, {{.input = 1, .of = 0, .feature = Feature::kRms, .window = 20}},
+                       TimeUs(1000));
+  source.values[0] = InputMicro(50'000);
+  inputs.begin_tick();
+  InputMicro value(1);
+  EXPECT_EQ(inputs.read_input(0, value), HalFault::kNone);
+  EXPECT_EQ(value.count, 50'000);
+  source.silent[0] = true;
+  inputs.begin_tick();
+  value = InputMicro(1);
+  EXPECT_EQ(inputs.read_input(0, value), HalFault::kNoReading);
+  EXPECT_EQ(value.count, 1);
+}
+
 TEST(FeatureInputs, SampleEverySoManyTicks) {
   SetInputs source;
   FeatureInputs inputs(source, 2,

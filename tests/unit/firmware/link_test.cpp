@@ -477,6 +477,87 @@ TEST_F(LinkTest, LiveRegistersSayWhatTheTickSays) {
   EXPECT_EQ(pair(kLiveInputs), tick.input[0] / 1000);
 }
 
+TEST_F(LinkTest, LiveRegistersOfTheFirstTickAndOfABoardWithoutAnImage) {
+  std::uint16_t registers[kLiveRegisters];
+  const auto pair = [&](int at) {
+    link_.fill_registers(registers);
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(registers[at]) << 16 | registers[at + 1]);
+  };
+  EXPECT_EQ(pair(kLiveTicks), 0);
+  rig_.run(1);
+  EXPECT_EQ(pair(kLiveTicks), 1);
+  // Without an image no time counts.
+  rig_.run(2500);
+  EXPECT_EQ(pair(kLiveSince), 0);
+  EXPECT_EQ(registers[kLiveImage], static_cast<std::uint16_t>(ImageState::kNone));
+  // The seconds count from the tick that took the image.
+  ASSERT_EQ(rig_.send(make_upload(small_image_bytes(2e-5), key_, 5, 0)).fault, UploadFault::kNone);
+  rig_.run(3500);
+  EXPECT_EQ(pair(kLiveSince), 3);
+}
+
+TEST_F(LinkTest, ImageIsOnTrialWhileTheOneOnTrialRuns) {
+  const auto image = [&] {
+    std::uint16_t registers[kLiveRegisters];
+    link_.fill_registers(registers);
+    return static_cast<ImageState>(registers[kLiveImage]);
+  };
+  ASSERT_EQ(rig_.send(make_upload(small_image_bytes(2e-5), key_, 5, 0)).fault, UploadFault::kNone);
+  rig_.run(10);
+  EXPECT_EQ(image(), ImageState::kTrial);
+  ASSERT_EQ(rig_.uploader().confirm().fault, UploadFault::kNone);
+  rig_.run(10);
+  EXPECT_EQ(image(), ImageState::kConfirmed);
+  // A trial that the tick has not taken does not run yet.
+  ASSERT_EQ(rig_.send(make_upload(small_image_bytes(3e-5), key_, 6, 0)).fault, UploadFault::kNone);
+  EXPECT_EQ(image(), ImageState::kConfirmed);
+  rig_.run(10);
+  EXPECT_EQ(image(), ImageState::kTrial);
+}
+
+TEST_F(LinkTest, OnlyAxesAndInputsHaveNames) {
+  rig_.run(1);
+  const auto status = [&](std::uint8_t kind, std::uint8_t index) {
+    const std::uint8_t request[] = {static_cast<std::uint8_t>(LinkOp::kName), 1, kind, index};
+    std::uint8_t reply[kMaxReplyBytes] = {};
+    link_.answer(request, sizeof(request), reply, TimeUs(1));
+    return static_cast<LinkStatus>(reply[2]);
+  };
+  EXPECT_EQ(status(0, 1), LinkStatus::kDone);
+  EXPECT_EQ(status(0, 2), LinkStatus::kBadValue);
+  EXPECT_EQ(status(1, 0), LinkStatus::kDone);
+  EXPECT_EQ(status(1, 1), LinkStatus::kBadValue) << "beyond the inputs";
+  EXPECT_EQ(status(2, 0), LinkStatus::kBadValue) << "neither an axis nor an input";
+}
+
+TEST_F(LinkTest, EachFieldOfATouchArrivesInItsPlace) {
+  Exchange exchange(64, 8);
+  const BoardIdentity nobody;
+  Link link(exchange, rig_.uploader(), wiring_, TimeUs(1000), nobody);
+  TouchRecord touch{};
+  touch.time_ns = 11;
+  for (int i = 0; i < 3; ++i) touch.workpiece_nm[i] = 21 + i;
+  touch.lost_edges = 31, touch.lost_touches = 32, touch.spikes = 33, touch.missing = 34;
+  touch.kind = 1, touch.fault = 2, touch.flags = 3, touch.bounces = 4;
+  exchange.touches.add(touch);
+  std::uint8_t request[kRequestHeaderBytes + 8] = {static_cast<std::uint8_t>(LinkOp::kTouches), 1},
+                                             reply[kMaxReplyBytes];
+  const std::uint32_t size = link.answer(request, sizeof(request), reply, TimeUs(1));
+  ASSERT_EQ(size, kReplyHeaderBytes + 10 + sizeof(LinkTouch) + 2 * sizeof(LinkTouchAxis));
+  LinkTouch got;
+  std::memcpy(&got, reply + kReplyHeaderBytes + 10, sizeof(got));
+  EXPECT_EQ(got.time_ns, 11);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(std::int64_t{got.workpiece_nm[i]}, 21 + i);
+  EXPECT_EQ(std::uint32_t{got.lost_edges}, 31u);
+  EXPECT_EQ(std::uint32_t{got.lost_touches}, 32u);
+  EXPECT_EQ(std::uint32_t{got.spikes}, 33u);
+  EXPECT_EQ(std::uint32_t{got.missing}, 34u);
+  EXPECT_EQ(got.kind, 1);
+  EXPECT_EQ(got.fault, 2);
+  EXPECT_EQ(got.flags, 3);
+  EXPECT_EQ(got.bounces, 4);
+}
+
 std::uint64_t from_environment(const char* name, std::uint64_t value) {
   const char* text = std::getenv(name);
   return text != nullptr ? std::strtoull(text, nullptr, 10) : value;

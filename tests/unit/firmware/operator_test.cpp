@@ -2,6 +2,7 @@
 // What an operator set, and a latched fault, outlive a power failure.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <set>
 #include <string>
@@ -111,6 +112,24 @@ TEST_F(OperatorSetting, WeightOfAnAxisOutlivesAStart) {
   EXPECT_EQ(rig.service().cycle().axis_weight(1).count, kFullWeight.count / 4);
 }
 
+TEST_F(OperatorSetting, RecordHasTheAxesOfTheBoardAndNoFurtherOne) {
+  UploadRig rig(store_, key_);
+  exchange(rig).axis_weight[1] = kFullWeight.count / 4;
+  exchange(rig).axis_weight[2] = kFullWeight.count / 2;  // of no axis
+  rig.run(10);
+  OperatorRecord record{};
+  std::uint8_t bytes[sizeof(record)];
+  ASSERT_EQ(store_.read_record(kOperatorPlace, bytes, sizeof(bytes)), HalFault::kNone);
+  std::memcpy(&record, bytes, sizeof(record));
+  EXPECT_EQ(record.state.axis[0], operator_axis("X", 1));
+  EXPECT_EQ(record.state.axis[1], operator_axis("Y", 1));
+  EXPECT_EQ(record.state.weight[1], kFullWeight.count / 4);
+  for (std::size_t i = 2; i < kMaxAxes; ++i) {
+    EXPECT_EQ(record.state.axis[i], 0u) << i;
+    EXPECT_EQ(record.state.weight[i], 0) << i;
+  }
+}
+
 TEST_F(OperatorSetting, LatchedFaultOutlivesAStartUntilItIsCleared) {
   {
     UploadRig rig(store_, key_);
@@ -217,6 +236,10 @@ TEST_F(OperatorSetting, AnyDamageOfOneRecordKeepsTheCorrectionOut) {
       store.read_record(place, longer, sizeof(OperatorRecord));
       store.write_record(place, longer, sizeof(longer));
       expect_out(store, "ten bytes longer");
+      store = sound;
+      std::fill(std::end(longer) - 10, std::end(longer), std::uint8_t{0xff});
+      store.write_record(place, longer, sizeof(longer));
+      expect_out(store, "ten bytes of ones longer");
       // A copy of the other record, as from a backup.
       store = sound;
       std::uint8_t other[sizeof(OperatorRecord)];

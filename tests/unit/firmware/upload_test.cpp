@@ -3,6 +3,7 @@
 #include <sodium.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <cstring>
 #include <random>
@@ -334,6 +335,63 @@ TEST_F(Upload, WithoutAPlaceItIsRefusedAndTheConfirmedOneStaysAtHand) {
   EXPECT_EQ(uploader.begin(1000).fault, UploadFault::kNone);
 }
 
+// The lags of the confirmed image begin where its inputs are now; those of a running program are the tick's.
+TEST_F(Upload, GoingBackStartsTheConfirmedImageAnewUnlessItRuns) {
+  const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
+  Exchange exchange;
+  Uploader uploader(store_, wiring, exchange, {TimeUs(1000), key_.public_part(), TimeUs(60'000'000), 3});
+  Programs& programs = uploader.programs();
+  BoundProgram before;
+  const auto tick = [&] {
+    BoundProgram* const next = exchange.offered.exchange(nullptr);
+    if (next != nullptr) exchange.retired.store(&before);
+    programs.guard(TimeUs{});
+    return next;
+  };
+  const auto send = [&](const std::vector<std::uint8_t>& bytes) {
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    ASSERT_EQ(uploader.begin(size).fault, UploadFault::kNone);
+    ASSERT_EQ(uploader.add(0, bytes.data(), size).fault, UploadFault::kNone);
+    ASSERT_EQ(uploader.finish().fault, UploadFault::kNone);
+    programs.guard(TimeUs{});
+  };
+  const auto revert = [&] {
+    ASSERT_EQ(uploader.revert().fault, UploadFault::kNone);
+    programs.guard(TimeUs{});
+    uploader.look_after_store();
+  };
+  send(upload(2e-5));
+  ASSERT_EQ(uploader.confirm().fault, UploadFault::kNone);
+  programs.guard(TimeUs{});
+  BoundProgram* const first = tick();
+  ASSERT_NE(first, nullptr);
+  first->reads_input[kMaxInputs - 1] = true;  // a mark; a program that is bound again has it not
+  // WHEN a trial ends before the tick has taken it THEN the confirmed image runs on as it is
+  send(upload(4e-5, kIssued + 1));
+  revert();
+  EXPECT_EQ(tick(), nullptr);
+  EXPECT_TRUE(first->reads_input[kMaxInputs - 1]);
+  // WHEN the tick has taken the trial THEN the confirmed image begins anew
+  send(upload(5e-5, kIssued + 2));
+  ASSERT_NE(tick(), nullptr);
+  revert();
+  EXPECT_EQ(tick(), first);
+  EXPECT_FALSE(first->reads_input[kMaxInputs - 1]);
+}
+
+// A medium that gives only a part of its records has had some.
+TEST_F(Upload, RecordsThatAreCutAreALostImageAndNoNewBoard) {
+  {
+    UploadRig rig(store_, key_);
+    ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+    ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  }
+  for (const std::uint32_t place : {0u, 1u}) store_.cut_record(place, 10);
+  UploadRig rig(store_, key_);
+  rig.run(1000);
+  EXPECT_EQ(rig.service().cycle().latched(), Fault::kImageLost);
+}
+
 TEST_F(Upload, FullStoreIsSaidAndTheOldImageRuns) {
   UploadRig rig(store_, key_);
   ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
@@ -389,6 +447,50 @@ TEST_F(Upload, LinesThatNoCacheHoldsAreWorkToo) {
   EXPECT_LE(lines_of(program.equation), 2u);
 }
 
+// The link computes the shares of the effects beside the tick, of everything that they need.
+TEST_F(Upload, SharesCountAllTheirWork) {
+  ErrorTable table;
+  table.pieces = 2048;
+  table.columns = 1;
+  Instruction look{OpCode::kLookUp, 0, 0, 0, 0, 0, 0};
+  ShareProgram shares;
+  shares.equation.instructions = {&look, 1};
+  shares.equation.tables = {&table, 1};
+  constexpr std::uint64_t kPrice = 7;
+  const std::uint64_t beside = work_of(shares.equation, 0) + kPrice * lines_of(shares.equation);
+  ASSERT_GT(work_of(shares.equation, 0), 20u);
+  ASSERT_GT(lines_of(shares.equation), 4u);
+  // Filled up to a multiple of the factor.
+  const auto count = static_cast<std::uint32_t>(2 * kShareWorkFactor - beside % kShareWorkFactor);
+  const std::vector<Share> some(count + 1);
+  const WorkBudget budget{(beside + count) / kShareWorkFactor, kPrice};
+  shares.shares = {some.data(), count};
+  EXPECT_TRUE(budget.covers({}, shares));
+  shares.shares = {some.data(), count + 1};
+  EXPECT_FALSE(budget.covers({}, shares));
+}
+
+/// A clock whose first calls are 10 ns apart, and the further ones a millisecond.
+struct SteppedClock : Clock {
+  InstantNs now() noexcept override { return now_ = now_ + InstantNs(++calls_ <= 16 ? 10 : 1'000'000); }
+  HalFault sleep_until(InstantNs) noexcept override { return HalFault::kNone; }
+
+ private:
+  InstantNs now_{};
+  int calls_ = 0;
+};
+
+TEST_F(Upload, PriceOfALineIsItsTimeInOperations) {
+  SteppedClock clock;
+  std::vector<std::uint32_t> memory(16 * 16);  // 16 lines of 64 bytes
+  const WorkBudget budget = measured_work_budget(clock, TimeUs(1000), memory);
+  // The budget is what is done in 10 ns, over a quarter of a tick of 1 ms; a line takes 1 ms / 4096.
+  const double done = static_cast<double>(budget.work) * 10 / 250'000;
+  const double wanted = done * (1e6 / 4096) / 10;
+  EXPECT_NEAR(static_cast<double>(budget.of_line), wanted, 1e-4 * wanted) << "both are rounded";
+  EXPECT_EQ(memory[0], 0u) << "whole rounds through all lines end where they began";
+}
+
 TEST_F(Upload, WorkCountsTermsSoThatNoImageStallsTheTick) {
   std::vector<ProductTerm> terms(kMaxTerms, ProductTerm{0, 0, 40});
   std::vector<Instruction> steps(900, Instruction{OpCode::kDot, 20, kMaxTerms / 2, kMaxTerms / 2, 0, 0, 0});
@@ -431,7 +533,11 @@ TEST_F(Upload, ConfirmedImageThatDoesNotLoadIsAFaultAndAnotherOneEndsIt) {
   // WHEN another image is confirmed and the fault is cleared
   ASSERT_EQ(rig.send(upload(3e-5, kIssued + 1)).fault, UploadFault::kNone);
   ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
-  const_cast<Exchange&>(rig.service().exchange()).command = Command::kClearFault;
+  std::atomic<Command>& command = const_cast<Exchange&>(rig.service().exchange()).command;
+  command = Command::kClearFault;
+  rig.run(3000);
+  EXPECT_EQ(rig.service().cycle().mode(), Mode::kReady) << "as after every fault, an activation is needed";
+  command = Command::kActivate;
   rig.run(3000);
   EXPECT_EQ(rig.service().cycle().mode(), Mode::kActive);
 }
