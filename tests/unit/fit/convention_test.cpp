@@ -14,6 +14,7 @@
 #include "tools/fit/coverage/reach.h"
 #include "tools/fit/fit.h"
 #include "tools/maths/alignment.h"
+#include "tools/maths/factors.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/chain/prediction.h"
 #include "tools/model/fit_record.h"
@@ -364,6 +365,46 @@ TEST(Sanity, NamesAMissingSetUp) {
   const fit::FitResult without = fitted("");
   EXPECT_NE(without.absurd.find("write <BaseShift/> into <static>"), std::string::npos) << without.absurd;
   EXPECT_EQ(fitted("<BaseShift/>").absurd, "");
+}
+
+/// A fixed camera sees a board on the tool. Some programs give the pose of the camera in the frame of the
+/// board.
+TEST(Sanity, NamesInvertedPoses) {
+  const Machine machine = parse_machine(
+      R"XML(<machine name="m"><variables><static><k value="0"/><BaseShift/><ToolShift/></static><machineaxes>
+  <X/><Y/><Z/><B rotary="true"/><C rotary="true"/></machineaxes></variables><transforms>
+  <sixdof n="1" X="X+k*Y" Y="Y" Z="Z"/><sixdof n="2" rZ="C"/><sixdof n="3" rY="B"/></transforms></machine>)XML",
+      "m.xml");
+  const Eigen::Isometry3d camera =
+      Eigen::Translation3d(900, 200, 1500) * Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, 2, 0.5).normalized());
+  const Eigen::Isometry3d board =
+      Eigen::Translation3d(30, -50, -120) * Eigen::AngleAxisd(1.2, Eigen::Vector3d(-1, 1, 3).normalized());
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> place(0, 400), turn(-60, 60);
+  std::normal_distribution<double> noise(0, 0.05);
+  std::string right = "X[mm],Y[mm],Z[mm],B[deg],C[deg],x[mm],y[mm],z[mm],rx[deg],ry[deg],rz[deg],u[mm]\n",
+              inverted = right;
+  for (int i = 0; i < 30; ++i) {
+    const double x = place(random), y = place(random), z = place(random), b = turn(random), c = turn(random);
+    const Eigen::Isometry3d tool = Eigen::Translation3d(x, y, z) *
+                                   Eigen::AngleAxisd(c * maths::kRadPerDeg, Eigen::Vector3d::UnitZ()) *
+                                   Eigen::AngleAxisd(b * maths::kRadPerDeg, Eigen::Vector3d::UnitY());
+    Eigen::Isometry3d seen = camera.inverse() * tool * board;
+    seen.translation() += Eigen::Vector3d(noise(random), noise(random), noise(random));
+    const auto row = [&](const Eigen::Isometry3d& pose) {
+      const Eigen::AngleAxisd angle(pose.rotation());
+      const Eigen::Vector3d t = pose.translation(), r = angle.axis() * angle.angle() / maths::kRadPerDeg;
+      return fmt::format("{},{},{},{},{},{},{},{},{},{},{},0.05\n", x, y, z, b, c, t.x(), t.y(), t.z(), r.x(),
+                         r.y(), r.z());
+    };
+    right += row(seen);
+    inverted += row(seen.inverse());
+  }
+  const auto absurd = [&](const std::string& rows) {
+    return fit::fit(machine, parse_measurement(rows, "poses.csv", machine)).absurd;
+  };
+  EXPECT_EQ(absurd(right), "");
+  EXPECT_NE(absurd(inverted).find("the poses look inverted"), std::string::npos) << absurd(inverted);
 }
 
 TEST(Sanity, NamesTheMistakeInTheReadings) {
