@@ -25,6 +25,9 @@
 namespace vernier::fit {
 namespace {
 
+/// Largest share of the misfit that remains after a mistake is undone.
+constexpr double kFivefold = 0.2;
+
 std::string reading_name(const model::Measurement& m, const model::Observation& o) {
   return fmt::format("{}:{} {}", m.files[m.file[o.row]], m.line[o.row], format::name_of(o.kind));
 }
@@ -241,7 +244,7 @@ LeastMotion least_motion(const Eigen::Matrix3Xd& fitted, const Eigen::Matrix3Xd&
 
 /// "along Y", or "along the direction (0.7, 0.7, 0)".
 std::string direction_text(const Eigen::Vector3d& along) {
-  constexpr double kAlong = 0.98;
+  constexpr double kAlong = 0.98;  // cosine of 11 deg
   Eigen::Index largest = 0;
   if (along.cwiseAbs().maxCoeff(&largest) > kAlong) return fmt::format("along {}", "XYZ"[largest]);
   return fmt::format("along the direction ({:.2f}, {:.2f}, {:.2f})", along.x(), along.y(), along.z());
@@ -312,9 +315,8 @@ WorstReading worst_reading(const model::Measurement& measurement, const Eigen::V
 
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                              const WorstReading& worst, bool plausible) {
-  // Share of chi^2 in one reading; largest remaining share after a mistake is undone; another
-  // mistake with so small a remainder is equally likely.
-  constexpr double kMostOfAll = 0.5, kFivefold = 0.2, kAsGood = 1.5;
+  // Share of chi^2 in one reading; another mistake with so small a remainder is equally likely.
+  constexpr double kMostOfAll = 0.5, kAsGood = 1.5;
   if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return {cell, false};
   if (worst.share > kMostOfAll)
     return {worst.reading + " is an outlier: no other reading is so far off", true};
@@ -348,7 +350,6 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
 }
 
 std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows) {
-  constexpr double kFivefold = 0.2;
   if (!machine.base_shifts.empty()) return {};
   model::Machine placed = machine;
   placed.base_shifts.emplace_back();
