@@ -81,14 +81,13 @@ bool Plc::wait_for_blocks(std::size_t count) const {
 
 void Plc::answer(modbus_t* context, const std::uint8_t* query, int size) {
   std::this_thread::sleep_for(std::chrono::milliseconds(late_ms));
-  constexpr int kWrite = 16;
   const int function = query[modbus_get_header_length(context)];
   if (lost_answers > 0) {
     --lost_answers;
     modbus_set_socket(context, nowhere_);
   }
   modbus_reply(context, query, size, registers_);
-  if (function != kWrite) return;
+  if (function != MODBUS_FC_WRITE_MULTIPLE_REGISTERS) return;
   const std::uint16_t* const block = registers_->tab_registers + kBlock;
   if (!stuck) registers_->tab_registers[kEcho] = block[0];
   Block kept{Clock::now(), block[0], block[1], {}};
