@@ -1,0 +1,3 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Tests that measure times of milliseconds run alone: other tests beside them would make them late.
+set_tests_properties(ModbusOutputLine.NoFaultOfASerialLineMakesAStep PROPERTIES RUN_SERIAL TRUE)
