@@ -167,7 +167,7 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
   const LikelyMistake likely = likely_mistake(machine, measurement, result.worst, !misses);
   std::string mistake = likely.sentence;
   if (result.converged && !misses && mistake.empty()) return;
-  if (mistake.empty()) mistake = missing_set_up(machine, measurement);
+  if (mistake.empty()) mistake = missing_set_up(machine, measurement, result.misfit_mm);
   if (!likely.one_reading) result.mistake = mistake;
   result.absurd =
       !result.converged ? fmt::format("the fit did not converge in {} iterations", result.iterations)

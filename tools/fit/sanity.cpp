@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +14,7 @@
 
 #include "tools/fit/convention.h"
 #include "tools/fit/least_squares/statistics.h"
+#include "tools/fit/seen_poses.h"
 #include "tools/format/readings.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
@@ -44,47 +44,6 @@ void swap_kinds(model::Measurement& m, model::ObservationKind a, model::Observat
 void scale_rotations(model::Measurement& m, double factor) {
   for (model::Observation& o : m.observations)
     if (model::is_rotation(o.kind)) o.value *= factor;
-}
-
-/// The six kinds of a complete pose: three of its position, then three of its rotation vector (deg).
-using PoseKinds = std::array<model::ObservationKind, 6>;
-constexpr std::array<PoseKinds, 2> kPoses = {
-    {{model::ObservationKind::kBoardX, model::ObservationKind::kBoardY, model::ObservationKind::kBoardZ,
-      model::ObservationKind::kBoardRx, model::ObservationKind::kBoardRy, model::ObservationKind::kBoardRz},
-     {model::ObservationKind::kX, model::ObservationKind::kY, model::ObservationKind::kZ,
-      model::ObservationKind::kRx, model::ObservationKind::kRy, model::ObservationKind::kRz}}};
-
-/// Readings of the rows that have a complete pose of these kinds, in the order of the kinds.
-std::vector<std::array<std::size_t, 6>> complete_poses(const model::Measurement& m, const PoseKinds& kinds) {
-  std::map<std::size_t, std::map<std::size_t, std::size_t>> of_row;
-  for (std::size_t i = 0; i < m.observations.size(); ++i)
-    if (const auto kind = std::find(kinds.begin(), kinds.end(), m.observations[i].kind); kind != kinds.end())
-      of_row[m.observations[i].row][static_cast<std::size_t>(kind - kinds.begin())] = i;
-  std::vector<std::array<std::size_t, 6>> poses;
-  for (const auto& [row, found] : of_row) {
-    if (found.size() < kinds.size()) continue;
-    std::array<std::size_t, 6>& pose = poses.emplace_back();
-    for (const auto& [kind, reading] : found) pose[kind] = reading;
-  }
-  return poses;
-}
-
-void invert_poses(model::Measurement& m, const PoseKinds& kinds) {
-  for (const auto& pose : complete_poses(m, kinds)) {
-    const auto three = [&](std::size_t first) {
-      return Eigen::Vector3d(m.observations[pose[first]].value, m.observations[pose[first + 1]].value,
-                             m.observations[pose[first + 2]].value);
-    };
-    const Eigen::Vector3d turn = -three(3);
-    const double angle = turn.norm() / maths::kDegPerRad;
-    const Eigen::Vector3d place =
-        angle > 0 ? Eigen::Vector3d(-(Eigen::AngleAxisd(angle, turn.normalized()) * three(0))) : -three(0);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto at = static_cast<Eigen::Index>(k);
-      m.observations[pose[k]].value = place[at];
-      m.observations[pose[k + 3]].value = turn[at];
-    }
-  }
 }
 
 /// Unit of a length in which mm were expected, and the factor that corrects it.
@@ -131,12 +90,13 @@ void add_mistakes_of_readings(const model::Measurement& rows, std::vector<Mistak
                   [](model::Measurement& mended) { scale_rotations(mended, maths::kDegPerRad); }});
   list.push_back({"the rotations are stated in rad, but are probably in deg",
                   [](model::Measurement& mended) { scale_rotations(mended, 1 / maths::kDegPerRad); }});
-  for (const PoseKinds& kinds : kPoses)
-    if (!complete_poses(rows, kinds).empty())
+  const std::vector<SixReadings> poses = complete_poses(rows);
+  for (const bool of_board : {true, false})
+    if (std::any_of(poses.begin(), poses.end(), [=](const auto& pose) { return pose.of_board == of_board; }))
       list.push_back(
           {"the poses look inverted: the frame of the camera or instrument and the frame of what it sees are "
            "exchanged",
-           [&kinds](model::Measurement& mended) { invert_poses(mended, kinds); }});
+           [=](model::Measurement& mended) { invert_poses(mended, of_board); }});
 }
 
 void add_mistakes_of_positions(const model::Machine& machine, std::vector<Mistake>& list) {
@@ -349,14 +309,11 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
   return {sentence, false};
 }
 
-std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows) {
+std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows, double misfit_mm) {
   if (!machine.base_shifts.empty()) return {};
   model::Machine placed = machine;
   placed.base_shifts.emplace_back();
-  const model::ParameterSet none;
-  if (!(convention_of(placed, rows, none).misfit_mm <
-        kFivefold * convention_of(machine, rows, none).misfit_mm))
-    return {};
+  if (!(convention_of(placed, rows, model::ParameterSet()).misfit_mm < kFivefold * misfit_mm)) return {};
   return "the readings are in another frame than that of the machine file; write <BaseShift/> into <static>: "
          "the fit then finds the place of the instrument";
 }

@@ -35,9 +35,9 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
                              const WorstReading& worst, bool plausible);
 
 /// Returns the sentence for a machine file without a set-up whose nominal machine fits the readings much
-/// better with one (a fifth of the misfit); else empty. For fits that failed: free parameters of a machine
-/// can replace a set-up.
-std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows);
+/// better with one (a fifth of misfit_mm, its misfit without); else empty. For fits that failed: free
+/// parameters of a machine can replace a set-up.
+std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows, double misfit_mm);
 
 /// Touches of unknown points agree best if the machine does not move at all. Returns the reason if a fit of
 /// such readings gave a machine that moves the tool much less than the nominal one, in any direction; else

@@ -13,6 +13,7 @@
 #include "tools/fit/least_squares/levenberg.h"
 #include "tools/fit/least_squares/problem.h"
 #include "tools/fit/least_squares/statistics.h"
+#include "tools/fit/seen_poses.h"
 #include "tools/fit/selection.h"
 #include "tools/maths/alignment.h"
 #include "tools/maths/factors.h"
@@ -152,36 +153,6 @@ Eigen::VectorXd aligned_start(const SetUpProblem& problem, const model::Measurem
   return start;
 }
 
-Eigen::Vector3d read_vector(const model::Observation* three) {
-  return {three[0].value, three[1].value, three[2].value};
-}
-
-/// Returns what the instrument saw in one row as the pose of the measured object, or of the camera, in the
-/// measuring frame; nullopt: the row has no complete pose. first, last: the observations of the row.
-std::optional<maths::RigidMotion> seen_pose(const model::Observation* first, const model::Observation* last) {
-  using Kind = model::ObservationKind;
-  const auto three = [&](Kind kind) -> const model::Observation* {
-    const auto* const found =
-        std::find_if(first, last, [&](const model::Observation& o) { return o.kind == kind; });
-    const auto whole = [&](int k) {
-      return static_cast<int>(found[k].kind) == static_cast<int>(kind) + k;  // the kinds are in order
-    };
-    return last - found >= 3 && whole(1) && whole(2) ? found : nullptr;
-  };
-  const auto motion = [](const model::Observation* point, const model::Observation* turn) {
-    const Eigen::Vector3d vector = read_vector(turn) / maths::kDegPerRad;
-    const double angle = vector.norm();
-    maths::RigidMotion seen{Eigen::Matrix3d::Identity(), read_vector(point)};
-    if (angle > 0) seen.rotation = Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
-    return seen;
-  };
-  if (const auto* point = three(Kind::kBoardX), *turn = three(Kind::kBoardRx); point && turn)
-    return maths::inverse_of(motion(point, turn));
-  if (const auto* point = three(Kind::kX), *turn = three(Kind::kRx); point && turn)
-    return motion(point, turn);
-  return std::nullopt;
-}
-
 /// Stands for the index of a shift that the machine file does not have.
 constexpr std::size_t kNoShift = static_cast<std::size_t>(-1);
 /// Complete poses of the fit rows, by the ToolShift of their set-up; their group is the BaseShift.
@@ -190,20 +161,17 @@ using PosesOfToolShift = std::map<std::size_t, std::vector<maths::SeenPose>>;
 PosesOfToolShift seen_poses(const SetUpProblem& problem, const model::Measurement& rows) {
   PosesOfToolShift poses;
   const model::ChainRows chain(problem.rigid, rows.states);
-  const auto* const end = rows.observations.data() + rows.observations.size();
-  for (const auto* first = rows.observations.data(); first != end;) {
-    const std::size_t row = first->row;
-    const auto* const last =
-        std::find_if(first, end, [&](const model::Observation& o) { return o.row != row; });
-    if (const auto seen = rows.check[row] == 0 ? seen_pose(first, last) : std::nullopt) {
-      const std::string& name = rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)];
-      const model::Frame pose = chain.pose(row);
-      poses[model::tool_shift_of(problem.rigid, name).value_or(kNoShift)].push_back(
-          {{pose.rotation, pose.origin},
-           *seen,
-           model::base_shift_of(problem.rigid, name).value_or(kNoShift)});
-    }
-    first = last;
+  for (const SixReadings& readings : complete_poses(rows)) {
+    const std::size_t row = rows.observations[readings.point].row;
+    if (rows.check[row] != 0) continue;
+    const maths::RigidMotion seen = motion_read(rows, readings);
+    const std::string& name = rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)];
+    const model::Frame pose = chain.pose(row);
+    poses[model::tool_shift_of(problem.rigid, name).value_or(kNoShift)].push_back(
+        {{pose.rotation, pose.origin},
+         // The pose of a board in the frame of the camera is the inverse of that of the camera.
+         readings.of_board ? maths::inverse_of(seen) : seen,
+         model::base_shift_of(problem.rigid, name).value_or(kNoShift)});
   }
   return poses;
 }

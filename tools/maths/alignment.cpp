@@ -23,6 +23,12 @@ Eigen::Matrix3d rotation_of(const Eigen::Matrix3d& covariance, double extent) {
 
 }  // namespace
 
+Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector) {
+  const double angle = vector.norm();
+  if (angle < 1e-300) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
+}
+
 RigidMotion align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
   const Eigen::Vector3d from_mean = from.rowwise().mean(), to_mean = to.rowwise().mean();
   const Eigen::Matrix3Xd a = from.colwise() - from_mean, b = to.colwise() - to_mean;

@@ -10,6 +10,9 @@ struct RigidMotion {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 };
 
+/// Returns the rotation of a rotation vector, rad.
+Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector);
+
 /// Returns the rigid motion that brings `from` closest to `to` in the sum of squared distances. from, to: 3 x
 /// N, N >= 1, in correspondence. Points on one line do not determine the rotation about the line: the
 /// smallest rotation is used. For a single point the rotation is zero. Source: Umeyama, IEEE PAMI 13 (1991)

@@ -42,6 +42,13 @@ std::vector<std::string> blocks(const std::string& page, const std::string& kind
   return list;
 }
 
+/// All commands of a page, in their order.
+std::string script_of(const std::string& page) {
+  std::string script;
+  for (const std::string& block : blocks(page, "sh")) script += block;
+  return script;
+}
+
 std::string page(const std::string& name) { return read_file(std::string(VERNIER_SOURCE_DIR) + "/" + name); }
 
 /// A port that nobody has at the moment: other tests run boards too.
@@ -82,8 +89,7 @@ class Pages : public testing::Test {
 
 TEST_F(Pages, TutorialRunsAsPrinted) {
   const std::string text = page("tools/docs/tutorial.md");
-  std::string script;
-  for (const std::string& block : blocks(text, "sh")) script += block;
+  const std::string script = script_of(text);
   EXPECT_EQ(run(script), 0) << said_;
   // The figures that the page prints.
   for (const char* figure :
@@ -99,23 +105,19 @@ TEST_F(Pages, TutorialRunsAsPrinted) {
 
 TEST_F(Pages, ConformityAndPlanRunAsPrinted) {
   const std::string text = page("tools/docs/conformity.md");
-  std::string script;
-  for (const std::string& block : blocks(text, "sh")) script += block;
+  const std::string script = script_of(text);
   EXPECT_EQ(run(script), 0) << said_;
   const auto printed = blocks(text, "text");
   ASSERT_EQ(printed.size(), 1u);
   EXPECT_NE(said_.find(printed[0]), std::string::npos) << printed[0] << "is not in\n" << said_;
-  script.clear();
-  for (const std::string& block : blocks(page("tools/docs/plan.md"), "sh")) script += block;
-  EXPECT_EQ(run(script), 0) << said_;
+  EXPECT_EQ(run(script_of(page("tools/docs/plan.md"))), 0) << said_;
   EXPECT_NE(said_.find("the remaining uncertainty comes from"), std::string::npos) << said_;
 }
 
 /// A stranger's way: from a German spreadsheet to ISO 230-2 values, a named cause and a table for the
 /// control.
 TEST_F(Pages, FirstHourRunsAsPrinted) {
-  std::string script;
-  for (const std::string& block : blocks(page("tools/docs/first_hour.md"), "sh")) script += block;
+  const std::string script = script_of(page("tools/docs/first_hour.md"));
   ASSERT_EQ(run(script), 0) << said_;
   for (const char* figure :
        {"Windows-1252, columns separated by semicolon, decimal comma", "92.120 um", "tolerance 50: not met",
@@ -144,8 +146,7 @@ TEST_F(Pages, FirstHourRunsAsPrinted) {
 
 TEST_F(Pages, TouchRunsAsPrinted) {
   const std::string text = page("tools/docs/touch.md");
-  std::string script;
-  for (const std::string& block : blocks(text, "sh")) script += block;
+  const std::string script = script_of(text);
   ASSERT_EQ(run(script), 0) << said_;
   const auto printed = blocks(text, "text");
   ASSERT_EQ(printed.size(), 4u);
@@ -170,8 +171,7 @@ TEST_F(Pages, TouchRunsAsPrinted) {
 
 TEST_F(Pages, CameraRunsAsPrinted) {
   const std::string text = page("tools/docs/camera.md");
-  std::string script;
-  for (const std::string& block : blocks(text, "sh")) script += block;
+  const std::string script = script_of(text);
   ASSERT_EQ(run(script), 0) << said_;
   const auto printed = blocks(text, "text");
   ASSERT_EQ(printed.size(), 1u);

@@ -425,15 +425,22 @@ TEST_F(Upload, ImageThatIsTooMuchWorkForTheBoardIsRefusedWithThatReason) {
   EXPECT_STREQ(describe(send({1})), "more work than this board does in its share of a tick");
 }
 
+/// A look-up in 2048 uneven pieces.
+struct LookUp {
+  ErrorTable table;
+  Instruction look{OpCode::kLookUp, 0, 0, 0, 0, 0, 0};
+  LookUp() { table.pieces = 2048, table.columns = 1; }
+  void put_in(Equation& equation) {
+    equation.instructions = {&look, 1};
+    equation.tables = {&table, 1};
+  }
+};
+
 TEST_F(Upload, LinesThatNoCacheHoldsAreWorkToo) {
   // GIVEN a look-up in 2048 uneven pieces: a search through lines of memory, and the piece found
-  ErrorTable table;
-  table.pieces = 2048;
-  table.columns = 1;
-  Instruction look{OpCode::kLookUp, 0, 0, 0, 0, 0, 0};
+  LookUp look_up;
   Program program;
-  program.equation.instructions = {&look, 1};
-  program.equation.tables = {&table, 1};
+  look_up.put_in(program.equation);
   const std::uint64_t work = work_of(program.equation, 0), lines = lines_of(program.equation);
   EXPECT_GE(lines, 8u);
   EXPECT_LE(lines, 13u);
@@ -443,19 +450,15 @@ TEST_F(Upload, LinesThatNoCacheHoldsAreWorkToo) {
   EXPECT_TRUE((WorkBudget{work + 7 * lines, 7}.covers(program, {})));
   EXPECT_FALSE((WorkBudget{work + 7 * lines - 1, 7}.covers(program, {})));
   // AND even stations need no search
-  table.grid_multiplier = 1;
+  look_up.table.grid_multiplier = 1;
   EXPECT_LE(lines_of(program.equation), 2u);
 }
 
 // The link computes the shares of the effects beside the tick, of everything that they need.
 TEST_F(Upload, SharesCountAllTheirWork) {
-  ErrorTable table;
-  table.pieces = 2048;
-  table.columns = 1;
-  Instruction look{OpCode::kLookUp, 0, 0, 0, 0, 0, 0};
+  LookUp look_up;
   ShareProgram shares;
-  shares.equation.instructions = {&look, 1};
-  shares.equation.tables = {&table, 1};
+  look_up.put_in(shares.equation);
   constexpr std::uint64_t kPrice = 7;
   const std::uint64_t beside = work_of(shares.equation, 0) + kPrice * lines_of(shares.equation);
   ASSERT_GT(work_of(shares.equation, 0), 20u);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/maths/alignment.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::model {
@@ -61,12 +62,6 @@ int level(ObservationKind kind) { return kind == ObservationKind::kIx ? 0 : 1; }
 
 int component(ObservationKind kind) { return static_cast<int>(format::component_of(kind)); }
 
-Matrix3d rotation_of(const Vector3d& vector) {
-  const double angle = vector.norm();
-  if (angle < 1e-300) return Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
-}
-
 }  // namespace
 
 ObservationModel::ObservationModel(const Measurement& measurement, const std::array<double, 3>& gravity,
@@ -113,7 +108,7 @@ const Vector3d& ObservationModel::rotation_vector(std::size_t row) {
 
 const Vector3d& ObservationModel::board_error(std::size_t row) {
   if (has_board_error_) return board_error_;
-  const Matrix3d measured = rotation_of(measured_rotation(row, ObservationKind::kBoardRx));
+  const Matrix3d measured = maths::rotation_of(measured_rotation(row, ObservationKind::kBoardRx));
   board_error_ = nearest_rotation_vector(measured * seen_.rotation, Vector3d::Zero());
   has_board_error_ = true;
   return board_error_;
