@@ -13,8 +13,8 @@
 #include <set>
 
 #include "tools/fit/convention.h"
+#include "tools/fit/coverage/pose_readings.h"
 #include "tools/fit/least_squares/statistics.h"
-#include "tools/fit/seen_poses.h"
 #include "tools/format/readings.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"

@@ -9,11 +9,11 @@
 #include <map>
 #include <optional>
 
+#include "tools/fit/coverage/pose_readings.h"
 #include "tools/fit/coverage/unseen_turns.h"
 #include "tools/fit/least_squares/levenberg.h"
 #include "tools/fit/least_squares/problem.h"
 #include "tools/fit/least_squares/statistics.h"
-#include "tools/fit/seen_poses.h"
 #include "tools/fit/selection.h"
 #include "tools/maths/alignment.h"
 #include "tools/maths/factors.h"

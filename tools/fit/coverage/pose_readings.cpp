@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/seen_poses.h"
+#include "tools/fit/coverage/pose_readings.h"
 
 #include <algorithm>
 #include <optional>
