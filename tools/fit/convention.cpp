@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "tools/fit/coverage/seen_beside_things.h"
 #include "tools/fit/coverage/unseen_turns.h"
 #include "tools/fit/least_squares/levenberg.h"
 #include "tools/fit/least_squares/problem.h"
@@ -24,6 +25,9 @@ namespace {
 
 /// A single error of three times the total residual is already implausible.
 constexpr double kTimesMisfit = 3;
+/// Touched objects of unknown place follow the errors of the machine, so the residual does not limit these
+/// errors. Limit of an error as a share of the reach, then: robots made by hand have such errors.
+constexpr double kMostError = 0.01;
 /// The smallest misfit for scales, mm: a tenth of the finest resolution of any instrument here.
 constexpr double kLeastMisfit_mm = 1e-5;
 /// Set-ups: any position in a hall, any orientation.
@@ -241,6 +245,30 @@ void correlate(const model::Machine& machine, const model::ParameterSet& paramet
   convention.precision.setFromTriplets(apart.begin(), apart.end());
 }
 
+/// Enlarges the scales of parameters whose effect the unknown places of touched objects absorb: an error that
+/// the readings show by the share f is as large as the residual divided by f, at most kMostError. A parameter
+/// is unseen if even the largest error changes the readings by less than their noise in total: what its
+/// derivatives contain is the noise of the touched positions.
+void enlarge_absorbed(const model::Machine& centre, const model::Measurement& rows,
+                      const model::ParameterSet& parameters, double length_mm, Convention& convention) {
+  if (rows.things.empty() || parameters.size() == 0) return;
+  const double times = std::max(1.0, kMostError * convention.reach_mm / length_mm);
+  const double noise = has_uncertainty(rows) ? 1 : convention.misfit_mm;
+  const SeenBesideThings seen = seen_beside_things(centre, rows, parameters);
+  convention.most =
+      Eigen::VectorXd::Constant(convention.scale.size(), std::numeric_limits<double>::infinity());
+  convention.unseen.assign(parameters.size(), 0);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    // Set-ups, declared scales, periods, and statics without effect on the machine have no kind.
+    if (convention.kind[i] == 0 && parameters[i].kind != model::ParameterKind::kScaleFactor) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    convention.most[at] = times * convention.scale[at];
+    convention.scale[at] =
+        std::min(times * convention.scale[at], convention.scale[at] / std::max(seen.share[at], 1e-12));
+    if (std::sqrt(seen.squares[at]) * convention.most[at] < noise) convention.unseen[i] = 1;
+  }
+}
+
 }  // namespace
 
 Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const Eigen::VectorXd& scale) {
@@ -315,6 +343,7 @@ Convention convention_of(const model::Machine& machine, const model::Measurement
       result.kind[i] = 0;
     }
   }
+  enlarge_absorbed(centre, rows, parameters, length_mm, result);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #include "tools/fit/findings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -134,6 +135,42 @@ std::string alternatives_text(const model::FitRecord& record) {
   return text;
 }
 
+/// Returns the tips whose radius the fit did not change although it acts on the machine: tips that touched an
+/// artefact of known radius or place. An unknown radius or place follows the tip.
+std::string exact_tips(const FitResult& result, const model::Measurement& m) {
+  std::set<std::string> names;
+  for (const model::Thing& thing : m.things) {
+    const model::Artefact& artefact = thing.artefact;
+    if (artefact.tip.empty() || !(artefact.radius || artefact.place)) continue;
+    const bool is_free = std::any_of(result.parameters.begin(), result.parameters.end(),
+                                     [&](const model::Parameter& one) { return one.name == artefact.tip; });
+    if (!is_free) names.insert(artefact.tip);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Findings about lengths that give the machine its size and whose own errors no reading of this fit shows.
+void add_exact_lengths(const FitResult& result, const model::Measurement& m,
+                       std::vector<model::FitRecord::Finding>& list) {
+  constexpr const char* kCode = "taken-as-exact";
+  if (const std::string tips = exact_tips(result, m); !tips.empty())
+    list.push_back(
+        {kCode, 0,
+         fmt::format("The radius of the tip ({0}) was taken as exact. Its error changes every touched "
+                     "radius, and through it the scales of the machine. To include its uncertainty "
+                     "U in mm, add --free {0} --prior {0}=U.",
+                     tips)});
+  if (!result.size || !result.size->known) return;
+  // Without a standard uncertainty no free parameter changes the size: the scales of linear axes are known.
+  if (result.size->from == "machine" && result.size->relative_std > 0)
+    list.push_back({kCode, 0, size_sentence(*result.size)});
+  if (result.size->from == "board")
+    list.push_back(
+        {kCode, 0,
+         "The size of the board was taken as exact: an error of 1 % in it is an error of 1 % in the "
+         "size of the machine."});
+}
+
 }  // namespace
 
 Vector3d model_discrepancy(const FitResult& result, const model::Measurement& m) {
@@ -163,6 +200,7 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   if (result.size && !result.size->known)
     list.push_back({"size-unknown", result.size->relative_std, size_sentence(*result.size)});
   if (!result.absurd.empty()) list.push_back({"absurd", 1, result.absurd});
+  add_exact_lengths(result, m, list);
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);
   if (lack_um.maxCoeff() > 0) {

@@ -450,6 +450,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   result.misfit_mm = convention.misfit_mm;
   result.reach_mm = convention.reach_mm;
   FitProblem problem(machine, rows, result.parameters);
+  problem.hold_unseen(convention.unseen);
   result.size = decide_size(problem, machine, result.parameters, convention, convention.centre);
   const StatedPriors stated = stated_priors(result, options, convention);
   const bool with_u = has_uncertainty(measurement);

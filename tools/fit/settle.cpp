@@ -159,6 +159,7 @@ class Settler {
       if (convention_.kind[at] >= Convention::kFirstOfStatics)
         scale_[i] =
             std::max(scale_[i], beyond(convention_.scale[i], value[i] - convention_.centre[i], from_data[i]));
+      if (convention_.most.size() > 0) scale_[i] = std::min(scale_[i], convention_.most[i]);
     }
   }
 
@@ -259,14 +260,22 @@ class Settler {
     result_.normal = std::move(data);
   }
 
-  /// Orthonormal directions of the readings that the parameters can follow. A column that moves the readings
-  /// by no more than rounding, at the scale of its parameter, is no direction.
-  MatrixXd fitted_directions(const MatrixXd& jacobian, double size) const {
+  /// Orthonormal directions of the readings that the parameters and the touched objects can follow. A column
+  /// that moves the readings by no more than rounding, at the scale of its parameter, is no direction.
+  MatrixXd fitted_directions(const MatrixXd& jacobian, const MatrixXd& of_things, double size) const {
     constexpr double kRoundingOfResidual = 1e-6;  // of the residual
-    MatrixXd columns = jacobian * scale_.asDiagonal();
+    MatrixXd columns(jacobian.rows(), jacobian.cols() + of_things.cols());
+    columns << jacobian * scale_.asDiagonal(), of_things;
     for (Eigen::Index k = 0; k < columns.cols(); ++k)
       if (!(columns.col(k).norm() > kRoundingOfResidual * size)) columns.col(k).setZero();
     return maths::orthonormal(columns, kRoundingOfResidual, nullptr);
+  }
+
+  double unknowns_of_things() const {
+    double count = 0;
+    for (std::size_t k = 0; k < problem_.things().clusters(); ++k)
+      count += static_cast<double>(problem_.things().unknowns(k));
+    return count;
   }
 
   /// Returns J^T W cov(readings) W J. It is `variance` times the normal matrix if errors are
@@ -294,7 +303,11 @@ class Settler {
       result_.noise = *noise_;
     } else {
       MatrixXd basis(residual.size(), 0);
-      if (n * p * p < kMostNoiseProducts) basis = fitted_directions(j, residual.norm());
+      const double unknowns = unknowns_of_things();
+      const bool whole = unknowns > 0 && n * std::pow(p + unknowns, 2) < kMostNoiseProducts;
+      MatrixXd of_things(residual.size(), 0);
+      if (whole) of_things = problem_.things_jacobian(result_.point)(fitted, Eigen::all);
+      if (whole || n * p * p < kMostNoiseProducts) basis = fitted_directions(j, of_things, residual.norm());
       // The scales leave a part of the fitted directions in the residual, which is no noise.
       const VectorXd beside = residual - basis * (basis.transpose() * residual);
       result_.noise = estimate_noise(layout, beside, basis, with_u_);

@@ -29,8 +29,8 @@ std::optional<SizeDirection> size_direction(const model::Machine& machine, const
 
 /// Finds the lengths that determine the size of the machine, from the readings at `point` and the scales of
 /// all other parameters. If the readings give no more information on the size than the convention, the size
-/// is fixed: `problem` then does not depend on the size. Only for rows with `same` or `on`; nullopt if there
-/// are no such rows.
+/// is fixed: `problem` then does not depend on the size. Only for rows with `same` or `on`, or with readings
+/// of a board; nullopt if there are no such rows.
 std::optional<SizeOfMachine> decide_size(FitProblem& problem, const model::Machine& machine,
                                          const model::ParameterSet& parameters, const Convention& convention,
                                          const Eigen::VectorXd& point);

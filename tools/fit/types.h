@@ -114,6 +114,11 @@ struct Convention {
   /// axis, else -1; the second list: the length at half its travel for one unit, mm.
   std::vector<int> slope_of;
   Eigen::VectorXd slope_mm;
+  /// Rows that touch objects: upper limit of each scale, in the parameters' units; else empty.
+  Eigen::VectorXd most;
+  /// Parameters that no reading shows: touched objects follow them, and what is left is noise. Empty without
+  /// such rows.
+  std::vector<char> unseen;
   std::vector<bool> unseen_turn;  // rotation of a set-up that the readings show in second order only
 };
 
@@ -140,7 +145,10 @@ struct ThingEstimate {
 struct SizeOfMachine {
   bool known = false;       // false: held at nominal
   double relative_std = 0;  // standard uncertainty of the size, as a share; of nominal: the plausible share
-  std::string from;         // "distances", "known radius", "machine", "nominal" ...
+  std::string from;         // "distances", "known radius", "board", "machine", "nominal" ...
+  /// Lengths that the fit does not change and that limit the size of the machine: names of constants, scales
+  /// of axes. Empty if the fit can change the size as a whole.
+  std::vector<std::string> fixed;
 };
 
 struct FitResult {
@@ -163,7 +171,7 @@ struct FitResult {
       normalised_check;  // if there are check rows with an uncertainty of their readings
   std::vector<std::pair<std::string, double>> priors;  // parameter, standard uncertainty
   std::vector<ThingEstimate> things;                   // that rows met
-  std::optional<SizeOfMachine> size;                   // if rows met things
+  std::optional<SizeOfMachine> size;                   // if rows met things or a board
   std::vector<StageFigures> stages;                    // as requested, then one with all parameters
   WorstReading worst, worst_check;                     // of the fit rows; of the check rows
   /// rms of the fitted machine on check rows, divided by the rms of the nominal machine. The fitted machine

@@ -75,7 +75,8 @@ ordered_json tilt_json(const model::Machine& machine, const model::Measurement& 
 
 ordered_json size_json(const fit::SizeOfMachine& size) {
   ordered_json json = {{"known", size.known}, {"from", size.from}};
-  if (size.from != "machine") json["relative_std"] = size.relative_std;
+  if (size.relative_std > 0) json["relative_std"] = size.relative_std;
+  if (!size.fixed.empty()) json["fixed_lengths"] = size.fixed;
   json["sentence"] = fit::size_sentence(size);
   return json;
 }

@@ -112,6 +112,125 @@ TEST(FitOfThings, ChiSquareOverItsFreedomIsOne) {
   EXPECT_NEAR(sum / kSurveys, 2.0 / 3, 0.07);
 }
 
+/// A mill with a squareness and a scale: unknown points or a ring, touched with a spherical tip.
+constexpr double kMillNoise_mm = 0.0007, kRing_mm = 37.5, kTip_mm = 2.5, kScale_um_m = 60;
+constexpr const char* kMill = R"XML(<machine name="mill"><variables>
+  <static><sq value="0" nominal="0" unit="deg"/><kX value="0" nominal="0" unit="um/m"/>
+    <kY value="0" nominal="0" unit="um/m"/><tip value="2.5" nominal="2.5" unit="mm" Hide="true"/></static>
+  <machineaxes><X min="0" max="700"/><Y min="0" max="500"/><Z min="-400" max="0"/></machineaxes>
+  <artefact name="ring" type="cylinder" radius="37.5mm" uradius="0.4um" nx="0" ny="0" nz="1" side="inside" tip="tip"/>
+  </variables><transforms branch="tool"><sixdof n="1" X="X*(1+1e-6*kX)"/>
+    <sixdof n="2" X="-sq*0.017453292519943295*Y" Y="Y*(1+1e-6*kY)"/><sixdof n="3" Z="Z"/></transforms></machine>)XML";
+
+FitResult mill_fit(const std::string& rows) {
+  const model::Machine machine = model::parse_machine(kMill, "mill.xml");
+  return fit::fit(machine, model::parse_measurement(rows, "touches.csv", machine));
+}
+
+/// Each point is touched four times from the same side: the points follow every error of the machine.
+TEST(FitOfThings, AParameterThatThePointsFollowIsNotMeasured) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> noise(0, kMillNoise_mm);
+  std::uniform_real_distribution<double> across(60, 440);
+  std::string rows = "X[mm],Y[mm],Z[mm],same,u[um]\n";
+  for (int point = 0; point < 8; ++point) {
+    const double x = across(random), y = across(random);
+    for (int i = 0; i < 4; ++i)
+      rows += fmt::format("{:.6f},{:.6f},{:.6f},P{},0.7\n", x + noise(random), y + noise(random),
+                          -200 + noise(random), point);
+  }
+  const FitResult result = mill_fit(rows);
+  ASSERT_TRUE(result.converged);
+  for (const ParameterEstimate& one : result.estimates) {
+    EXPECT_EQ(one.from, Origin::kPrior) << one.name;
+    EXPECT_EQ(one.value, 0) << one.name << " follows the noise";
+    EXPECT_GT(one.std, one.unit == "deg" ? 0.1 : 1000) << one.name << ": no residual limits it";
+  }
+}
+
+/// Touches of a ring of known radius by a mill whose X scale is kScale_um_m. tip_mm: the true radius of the
+/// tip.
+std::string ring_touches(double tip_mm) {
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> noise(0, kMillNoise_mm);
+  std::string rows = "X[mm],Y[mm],Z[mm],on,u[um]\n";
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 40, radius = kRing_mm - tip_mm + noise(random);
+    rows += fmt::format("{:.6f},{:.6f},-200,ring,0.7\n",
+                        (300 + radius * std::cos(angle)) / (1 + 1e-6 * kScale_um_m),
+                        250 + radius * std::sin(angle));
+  }
+  return rows;
+}
+
+TEST(FitOfThings, ARingGivesTheScalesAndSaysThatTheTipIsExact) {
+  const FitResult result = mill_fit(ring_touches(kTip_mm));
+  ASSERT_TRUE(result.converged);
+  ASSERT_TRUE(result.size);
+  EXPECT_TRUE(result.size->known);
+  EXPECT_EQ(result.size->from, "known radius");
+  EXPECT_TRUE(has(result, "taken-as-exact"));
+  for (const ParameterEstimate& one : result.estimates) {
+    const double truth = one.name == "kX" ? kScale_um_m : 0;
+    EXPECT_LT(std::abs(one.value - truth), 3.5 * one.std) << one.name;
+    EXPECT_EQ(one.from, Origin::kData) << one.name;
+  }
+}
+
+/// The second link has an offset of 40 mm across it and an angle, which are held: without a distance, the
+/// size of the arm comes from it.
+TEST(FitOfThings, AFixedLengthThatGivesTheSizeIsNamed) {
+  std::string held = kArm;
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    held.replace(held.find(from), from.size(), to);
+  };
+  replace(R"(<b value="200" nominal="200" unit="mm"/>)",
+          R"(<b value="196" nominal="196" unit="mm"/><c value="40" nominal="40" unit="mm" Hide="true"/>)");
+  replace(R"(<zero value="0" nominal="0" unit="deg"/>)",
+          R"(<zero value="-11.415" nominal="-11.415" unit="deg" Hide="true"/>)");
+  replace(R"(X="b")", R"(X="b" Y="c")");
+  const model::Machine machine = model::parse_machine(held, "arm.xml");
+  const FitResult result =
+      fit::fit(machine, model::parse_measurement(survey(false, 3), "survey.csv", machine));
+  ASSERT_TRUE(result.size);
+  EXPECT_TRUE(result.size->known);
+  EXPECT_EQ(result.size->fixed, std::vector<std::string>{"c"});
+}
+
+/// Repeated touches of points of uncertain places in two set-ups: the places follow what the touches of one
+/// place have in common.
+TEST(FitOfThings, ThePlacesOfPointsAreNoNoiseOfThePoses) {
+  std::string machine_text = kMill;
+  machine_text.replace(machine_text.find("<sq "), 0,
+                       R"(<BaseShift setup="a"/><BaseShift setup="b" rZ="-90"/>)");
+  std::string points;
+  const std::array<std::array<double, 2>, 4> nominal = {{{-140, 0}, {140, 0}, {0, 170}, {0, -40}}};
+  for (std::size_t k = 0; k < nominal.size(); ++k)
+    points += fmt::format(R"(<artefact name="N{}" type="point" x="{}" y="{}" z="0" u="40um"/>)", k,
+                          nominal[k][0], nominal[k][1]);
+  machine_text.replace(machine_text.find("<artefact name=\"ring\""), 0, points);
+  const model::Machine machine = model::parse_machine(machine_text, "mill.xml");
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise(0, kMillNoise_mm), drawing(0, 0.04);
+    std::array<std::array<double, 3>, 4> place{};
+    for (std::size_t k = 0; k < place.size(); ++k)
+      place[k] = {nominal[k][0] + drawing(random), nominal[k][1] + drawing(random), drawing(random)};
+    std::string rows = "X[mm],Y[mm],Z[mm],on,setup,u[um]\n";
+    for (const char setup : {'a', 'b'})
+      for (std::size_t k = 0; k < place.size(); ++k)
+        for (int i = 0; i < 4; ++i) {
+          const double x = setup == 'a' ? place[k][0] : -place[k][1],
+                       y = setup == 'a' ? place[k][1] : place[k][0];
+          rows += fmt::format("{:.6f},{:.6f},{:.6f},N{},{},0.7\n", 300 + x + noise(random),
+                              300 + y + noise(random), -50 + place[k][2] + noise(random), k, setup);
+        }
+    const FitResult result = fit::fit(machine, model::parse_measurement(rows, "touches.csv", machine));
+    ASSERT_TRUE(result.converged) << seed;
+    EXPECT_LT(result.noise.pose, 1) << seed << ": in units of u";
+  }
+}
+
 /// The bed of a printer: its slope is none of the machine's errors, and the machine file keeps it.
 TEST(FitOfThings, ATouchedPlaneIsInTheRecord) {
   const std::string machine =

@@ -27,7 +27,8 @@ ReadingsBesideSetUp::ReadingsBesideSetUp(const model::Machine& fitted, const mod
   std::vector<std::size_t> setups;
   for (std::size_t i = 0; i < rows.observations.size(); ++i) {
     const model::Observation& o = rows.observations[i];
-    if (rows.check[o.row] != 0) continue;
+    // The unknown place of a touched object follows the effects that are compared here.
+    if (rows.check[o.row] != 0 || model::is_of_thing(o.kind)) continue;
     rotations_ = rotations_ || model::is_rotation(o.kind);
     const Eigen::Vector3d along =
         model::is_rotation(o.kind) ? Eigen::Vector3d::Zero().eval() : reading_direction(fitted, rows, o);

@@ -11,6 +11,7 @@ namespace vernier::fit {
 
 /// The weighted readings of the fit rows along one direction each (x, y, z, d). The part that a free set-up
 /// of each instrument absorbs is projected out. Two explanations of the readings are compared in this form.
+/// Touches (`same`, `on`) are left out.
 class ReadingsBesideSetUp {
  public:
   /// residual: measured - model of each reading; variance: variance of a weighted reading.

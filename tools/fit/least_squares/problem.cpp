@@ -117,31 +117,62 @@ void FitProblem::hold_size(std::function<Eigen::VectorXd(const Eigen::VectorXd&)
 }
 
 void FitProblem::blind(const Eigen::VectorXd& point, Eigen::VectorXd& gradient) const {
-  if (!size_) return;
-  const Eigen::VectorXd v = size_(point);
-  gradient -= size_dual_ * (v.dot(gradient) / size_dual_.dot(v));
+  if (size_) {
+    const Eigen::VectorXd v = size_(point);
+    gradient -= size_dual_ * (v.dot(gradient) / size_dual_.dot(v));
+  }
+  for (Eigen::Index i = 0; i < gradient.size(); ++i)
+    if (is_unseen(i)) gradient[i] = 0;
 }
 
 void FitProblem::blind(const Eigen::VectorXd& point, NormalEquations& equations) const {
-  if (!size_) return;
   blind(point, equations.gradient);
-  const Eigen::VectorXd v = size_(point), w = size_dual_ / size_dual_.dot(v), seen = equations.normal * v;
-  equations.normal += v.dot(seen) * w * w.transpose() - w * seen.transpose() - seen * w.transpose();
+  if (size_) {
+    const Eigen::VectorXd v = size_(point), w = size_dual_ / size_dual_.dot(v), seen = equations.normal * v;
+    equations.normal += v.dot(seen) * w * w.transpose() - w * seen.transpose() - seen * w.transpose();
+  }
+  for (Eigen::Index i = 0; i < equations.normal.rows(); ++i) {
+    if (!is_unseen(i)) continue;
+    equations.normal.row(i).setZero();
+    equations.normal.col(i).setZero();
+  }
 }
 
 model::Linearisation FitProblem::linearised(const Eigen::VectorXd& point) const {
   model::Linearisation linear =
       model::linearise(at(point), linearizer_, measurement_.observations.size(), parameters_.size());
-  if (!size_) return linear;
-  const Eigen::VectorXd v = size_(point), w = size_dual_ / size_dual_.dot(v);
-  const Eigen::MatrixXd dense(linear.jacobian);
-  linear.jacobian = Eigen::MatrixXd(dense - (dense * v) * w.transpose()).sparseView();
+  if (!size_ && unseen_.empty()) return linear;
+  const auto blinded = [&](Eigen::MatrixXd jacobian) {
+    if (size_) {
+      const Eigen::VectorXd v = size_(point), w = size_dual_ / size_dual_.dot(v);
+      jacobian -= (jacobian * v) * w.transpose();
+    }
+    for (Eigen::Index i = 0; i < jacobian.cols(); ++i)
+      if (is_unseen(i)) jacobian.col(i).setZero();
+    return jacobian;
+  };
+  linear.jacobian = blinded(linear.jacobian).sparseView();
+  if (linear.known_jacobian.rows() > 0) linear.known_jacobian = blinded(linear.known_jacobian);
   return linear;
 }
 
-Eigen::MatrixXd FitProblem::known_normal(const Eigen::VectorXd& point) const {
+Eigen::MatrixXd FitProblem::known_jacobian(const Eigen::VectorXd& point) const {
   if (things().empty()) return {};
-  const Eigen::MatrixXd known = linearised(point).known_jacobian;
+  return linearised(point).known_jacobian;
+}
+
+Eigen::MatrixXd FitProblem::things_jacobian(const Eigen::VectorXd& point) const {
+  if (things().empty()) return {};
+  const model::HeldLinearisation held = model::linearise_held(at(point), measurement_, parameters_);
+  const Eigen::MatrixXd all = weights_.asDiagonal() * held.by_unknown;
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index k = 0; k < all.cols(); ++k)
+    if (all.col(k).squaredNorm() > held.precision[k]) seen.push_back(k);
+  return all(Eigen::all, seen);
+}
+
+Eigen::MatrixXd FitProblem::known_normal(const Eigen::VectorXd& point) const {
+  const Eigen::MatrixXd known = known_jacobian(point);
   if (known.rows() == 0) return {};
   return known.transpose() * known;
 }

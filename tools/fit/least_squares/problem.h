@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "tools/fit/least_squares/levenberg.h"
 #include "tools/model/chain/linearizer.h"
@@ -30,6 +32,10 @@ class FitProblem {
   /// parameters.
   void hold_size(std::function<Eigen::VectorXd(const Eigen::VectorXd&)> direction, Eigen::VectorXd dual);
 
+  /// Makes the readings blind to these parameters (nonzero), which only their noise would move. One number
+  /// for each parameter; empty: none.
+  void hold_unseen(std::vector<char> unseen) { unseen_ = std::move(unseen); }
+
   /// Returns the sum of squared weighted residuals and priors; infinity if the model is undefined at the
   /// point.
   double cost(const Eigen::VectorXd& point) const;
@@ -45,6 +51,12 @@ class FitProblem {
   /// Jacobian of `predicted`.
   Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, model::SparseRows* jacobian) const;
 
+  /// Returns the weighted derivatives of the readings by the unknown values of touched objects: those that
+  /// the readings show better than their known values do. 0 x 0 without touched objects.
+  Eigen::MatrixXd things_jacobian(const Eigen::VectorXd& point) const;
+  /// Returns the derivatives of the known values of touched objects by the parameters, times 1/u; 0 x 0 if
+  /// there are no known values.
+  Eigen::MatrixXd known_jacobian(const Eigen::VectorXd& point) const;
   /// Returns the contribution of known values of touched objects (radius, position with an uncertainty) to
   /// the normal equations; 0 x 0 if there are no known values.
   Eigen::MatrixXd known_normal(const Eigen::VectorXd& point) const;
@@ -66,6 +78,9 @@ class FitProblem {
   model::Linearisation linearised(const Eigen::VectorXd& point) const;
   void blind(const Eigen::VectorXd& point, NormalEquations& equations) const;
   void blind(const Eigen::VectorXd& point, Eigen::VectorXd& gradient) const;
+  bool is_unseen(Eigen::Index i) const {
+    return !unseen_.empty() && unseen_[static_cast<std::size_t>(i)] != 0;
+  }
 
   model::Machine machine_;
   const model::Measurement& measurement_;
@@ -76,6 +91,7 @@ class FitProblem {
   Eigen::VectorXd prior_centre_;
   std::function<Eigen::VectorXd(const Eigen::VectorXd&)> size_;
   Eigen::VectorXd size_dual_;
+  std::vector<char> unseen_;
 };
 
 }  // namespace vernier::fit
