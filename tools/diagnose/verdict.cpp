@@ -58,7 +58,7 @@ class Decision {
     std::string (Decision::*explains)();
     Verdict verdict;
   };
-  static const std::array<Rule, 15> kRules;
+  static const std::array<Rule, 16> kRules;
 
   // The rules, in the order of the table.
 
@@ -80,10 +80,11 @@ class Decision {
     is_noise_ = answer_.remaining.is_noise = down_to_noise();
     pieces_ = pieces_of_one_function(finder_.evidence(), pool_, accepted_);
     if (!pieces_.empty() || (is_noise_ && !exceeds_u())) return {};
-    std::string blamed =
-        outliers_to_blame(answer_.end.machine, rows_, answer_.end.residual, limits_).value_or("");
-    if (!blamed.empty()) answer_.instrument = "outliers";
-    return blamed;
+    const auto blamed = outliers_to_blame(answer_.end.machine, rows_, answer_.end.residual, limits_);
+    // Beside named effects a step may be of the machine: a base that moved within a run.
+    if (!blamed || (blamed->is_step && !accepted_.empty())) return {};
+    answer_.instrument = blamed->is_step ? "step" : "outliers";
+    return blamed->sentence;
   }
 
   std::string instrument_alone() {
@@ -126,6 +127,21 @@ class Decision {
 
   std::string pieces() { return pieces_.empty() ? "" : pieces_in_words(names_of(pieces_)); }
 
+  /// u states the whole uncertainty of a reading. If named effects leave a drift that u does not contain, the
+  /// drift may be another error of the machine that no recorded quantity follows. A name can then be that of
+  /// a quantity which follows this error by chance: the whitened residual does not show it.
+  std::string drift_beyond_u() {
+    if (accepted_.empty() || answer_.noise.drift <= 0 || !fit::has_uncertainty(found_.measurement)) return {};
+    const double square = mean_square_beside_steps();
+    if (square <= limits_.doubtful_uncertainty) return {};
+    return fmt::format(
+        "An error that changes slowly remains, and u does not state it: the residual of the fit rows is "
+        "{:.2g} u (noise model: {}). A drift of the instrument explains it, or an error of the machine that "
+        "follows no recorded quantity. {} is a candidate, not a confirmed cause.{}",
+        std::sqrt(square), ::vernier::fit::in_words(answer_.noise, answer_.noise_unit),
+        pool_.candidate(accepted_.front()).spoken, check_rows_in_words(answer_.ladder, accepted_.size()));
+  }
+
   /// The error of the check rows must not exceed that of the fit rows, except for their own scatter
   /// and the uncertainty of the model's parameters.
   std::string check_contradicts() {
@@ -136,7 +152,12 @@ class Decision {
         fit::has_uncertainty(found_.measurement) ? std::max(1.0, answer_.end.chi_square / freedom) : 1;
     const double ratio = check->rms * check->rms / with_u;
     const double std = std::hypot(check->square_std / with_u, ratio * std::sqrt(2 / freedom));
-    if (ratio < 1 + found_.options.thresholds.proof.carries_sigmas * std) return {};
+    // Noise of the fit rows above u may be a wrong u. If the check rows exceed the largest u that counts as
+    // plausible, they must agree with the fit rows more closely.
+    const bool beyond_u =
+        fit::has_uncertainty(found_.measurement) && check->rms * check->rms > limits_.doubtful_uncertainty;
+    if (ratio < 1 + (beyond_u ? limits_.hit_sigmas : found_.options.thresholds.proof.carries_sigmas) * std)
+      return {};
     return fmt::format(
         "The improvement is not confirmed on held-out rows: the residual of the check rows is {:.2g} times "
         "that of the fit rows.",
@@ -257,6 +278,14 @@ class Decision {
     return names;
   }
 
+  /// Returns the readings of the fit rows: their weight is not zero.
+  static std::vector<std::size_t> readings_of(const Eigen::VectorXd& weights) {
+    std::vector<std::size_t> fitted;
+    for (Eigen::Index i = 0; i < weights.size(); ++i)
+      if (weights[i] > 0) fitted.push_back(static_cast<std::size_t>(i));
+    return fitted;
+  }
+
   /// The residual at the end of the stepwise model (mm, deg) without the correlated errors of the
   /// fit rows: the residual of independent readings.
   Eigen::VectorXd independent_residual() const {
@@ -264,9 +293,7 @@ class Decision {
     Eigen::VectorXd residual = answer_.end.residual;
     if (noise.independent() && noise.own == 1) return residual;
     const Eigen::VectorXd weights = fit::fit_weights(rows_);
-    std::vector<std::size_t> fitted;
-    for (std::size_t i = 0; i < rows_.observations.size(); ++i)
-      if (weights[static_cast<Eigen::Index>(i)] > 0) fitted.push_back(i);
+    const std::vector<std::size_t> fitted = readings_of(weights);
     Eigen::MatrixXd left = weights(fitted).cwiseProduct(residual(fitted));
     const fit::NoiseLayout layout = fit::noise_layout(rows_, fitted, found_.options.thresholds.layout);
     fit::whiten(layout, noise, left);
@@ -288,6 +315,20 @@ class Decision {
     const double unit = fit::has_uncertainty(rows_) ? 1 : noise.own;
     residual(fitted) = unit * left.col(0).cwiseQuotient(weights(fitted));
     return residual;
+  }
+
+  /// Returns the mean square of the weighted residual of the fit rows, correlated errors included, except for
+  /// the steps of the instrument.
+  double mean_square_beside_steps() const {
+    const double freedom = std::max(1.0, answer_.end.freedom);
+    const std::vector<fit::NoiseStep>& steps = answer_.noise.steps;
+    if (steps.empty()) return answer_.end.chi_square / freedom;
+    const Eigen::VectorXd weights = fit::fit_weights(rows_);
+    const std::vector<std::size_t> fitted = readings_of(weights);
+    const Eigen::VectorXd left = weights(fitted).cwiseProduct(answer_.end.residual(fitted));
+    const fit::NoiseLayout layout = fit::noise_layout(rows_, fitted, found_.options.thresholds.layout);
+    const Eigen::MatrixXd columns = fit::step_columns(layout, steps, left.size());
+    return (left - columns * maths::least_norm(columns, left)).squaredNorm() / freedom;
   }
 
   /// Returns a sentence about the instrument if errors correlated in time or by run are as large
@@ -412,7 +453,7 @@ class Decision {
 
 // The order is the precedence: the instrument before the machine, no name before a doubtful name,
 // several names before one.
-const std::array<Decision::Rule, 15> Decision::kRules = {{
+const std::array<Decision::Rule, 16> Decision::kRules = {{
     {&Decision::time_base, Verdict::kInstrument},
     {&Decision::outliers, Verdict::kInstrument},
     {&Decision::instrument_alone, Verdict::kInstrument},
@@ -422,6 +463,7 @@ const std::array<Decision::Rule, 15> Decision::kRules = {{
     {&Decision::effect_of_instrument, Verdict::kInstrument},
     {&Decision::not_down_to_noise, Verdict::kUnexplained},
     {&Decision::pieces, Verdict::kUnexplained},
+    {&Decision::drift_beyond_u, Verdict::kUnexplained},
     {&Decision::check_contradicts, Verdict::kUnexplained},
     {&Decision::terms_without_name, Verdict::kUnexplained},
     {&Decision::shape_contradicts, Verdict::kUnexplained},

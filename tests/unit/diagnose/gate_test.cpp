@@ -100,5 +100,59 @@ TEST(Gate, TwiceTheStatedNoiseDoesNotHideACause) {
   EXPECT_EQ(diagnosed({0, 0, 2, 4, 2}).verdict, Verdict::kConsistent);
 }
 
+// Named before: the fit rows have 1.3 u, and four standard deviations of the ratio excused 1.7 u.
+TEST(Gate, CheckRowsBeyondAPlausibleUAgreeWithTheFitRowsMoreClosely) {
+  const Diagnosis worse = diagnosed({0.004, 0.004, 1.7, 4, 1.3});
+  const Diagnosis alike = diagnosed({0.004, 0.004, 1.3, 4, 1.3});
+
+  EXPECT_EQ(worse.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << worse.explanation;
+  EXPECT_NE(worse.explanation.find("not confirmed on held-out rows"), std::string::npos) << worse.explanation;
+  EXPECT_EQ(alike.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << alike.explanation;
+}
+
+/// An axis that grows with the temperature T, and with a quantity that changes as slowly and that no column
+/// has: um per degC and m, um. u 1 um, four runs, every fourth row a check row.
+std::string warm_survey(double growth, double unlogged) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal(0, 1);
+  std::uniform_real_distribution<double> place(0, 500);
+  std::string text = "X[mm],x[mm],T[degC],t[s],u[um],run,role\n";
+  double warm = 0, hidden = 0;
+  for (int row = 0; row < 480; ++row) {
+    warm = 0.98 * warm + 0.2 * normal(random);
+    hidden = 0.9 * hidden + 0.44 * normal(random);
+    const double x = place(random), part = x / 500;
+    const double off = 1e-3 * ((growth * warm + unlogged * hidden) * part + normal(random));
+    text += fmt::format("{:.3f},{:.6f},{:.3f},{},1,r{},{}\n", x, x + off, 20 + warm, 40 * row, row / 120,
+                        row % 4 == 3 ? "check" : "fit");
+  }
+  return text;
+}
+
+// Named before: the drift of the noise model took the unlogged quantity in, and whitened check rows
+// confirmed.
+TEST(Gate, ANameBesideADriftThatUDoesNotStateIsACandidateOnly) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const auto answer_of = [&](double unlogged, double plausible) {
+    DiagnoseOptions options;
+    options.thresholds.verdict.doubtful_uncertainty = plausible;
+    return diagnose::diagnose(kAxis, machine, parse_measurement(warm_survey(4, unlogged), "m.csv", machine),
+                              options);
+  };
+  const double plausible = VerdictThresholds().doubtful_uncertainty;
+
+  const Diagnosis alone = answer_of(0, plausible), beside = answer_of(5, plausible);
+
+  EXPECT_EQ(alone.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << alone.explanation;
+  ASSERT_GT(beside.noise.drift, 0) << beside.explanation;
+  ASSERT_GT(beside.ladder.size(), 1U) << beside.explanation;
+  EXPECT_EQ(beside.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << beside.explanation;
+  EXPECT_NE(beside.explanation.find("is a candidate, not a confirmed cause"), std::string::npos)
+      << beside.explanation;
+  EXPECT_TRUE(beside.causes.empty());
+  // If u may be three times too small, the name stands: the rule alone withdraws it.
+  EXPECT_EQ(answer_of(5, 9).verdict, Verdict::kMissingEffect);
+}
+
 }  // namespace
 }  // namespace vernier::gate_test
