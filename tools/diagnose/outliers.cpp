@@ -90,7 +90,6 @@ std::optional<Peeled> peel(const model::Machine& machine, const model::Measureme
 /// Successive excluded rows, by index: the first one, and the first row after them.
 struct Group {
   std::size_t begin = 0, end = 0;
-  std::size_t size() const { return end - begin; }
 };
 
 std::vector<Group> excluded_groups(const std::vector<std::size_t>& kept, std::size_t rows) {
@@ -105,6 +104,18 @@ std::vector<Group> excluded_groups(const std::vector<std::size_t>& kept, std::si
   return groups;
 }
 
+/// Joins groups with a single row between them: one reading of a step may be near the model by chance.
+std::vector<Group> joined(const std::vector<Group>& groups) {
+  std::vector<Group> all;
+  for (const Group& one : groups) {
+    if (!all.empty() && one.begin - all.back().end <= 1)
+      all.back().end = one.end;
+    else
+      all.push_back(one);
+  }
+  return all;
+}
+
 /// Returns the sentence about the largest group of excluded rows if the groups are too few for chance; else
 /// empty. The machine or the target moved at the first row of the group. If the group begins a run and ends
 /// within the run, the rest of the run is as the model states, and the motion was after the group.
@@ -113,18 +124,19 @@ std::string step_in_words(const model::Measurement& all, const std::vector<std::
   const std::vector<Group> groups = excluded_groups(kept, all.rows());
   const std::size_t out = all.rows() - kept.size();
   if (kept.empty() || log_p_of_groups(all.rows(), out, groups.size()) >= log_chance) return {};
-  const Group longest = *std::max_element(groups.begin(), groups.end(),
-                                          [](const Group& a, const Group& b) { return a.size() < b.size(); });
+  const std::vector<Group> longer = joined(groups);
+  const Group longest = *std::max_element(longer.begin(), longer.end(), [](const Group& a, const Group& b) {
+    return a.end - a.begin < b.end - b.begin;
+  });
   const std::vector<std::size_t>& run = all.states.run;
   const auto changes_before = [&](std::size_t row) {
     return row == 0 || row == all.rows() || run[row - 1] != run[row];
   };
-  const bool before = changes_before(longest.begin) && !changes_before(longest.end);
+  const bool after = changes_before(longest.begin) && !changes_before(longest.end);
   return fmt::format(
-      "{} successive rows (line {} to {}) differ from the model together: a step at line {}, not outliers. "
-      "Begin a new run at this line.",
-      longest.size(), all.line[longest.begin], all.line[longest.end - 1],
-      all.line[before ? longest.end : longest.begin]);
+      "The rows of lines {} to {} differ from the model together: a step at line {}, not outliers. Begin a "
+      "new run at this line.",
+      all.line[longest.begin], all.line[longest.end - 1], all.line[after ? longest.end : longest.begin]);
 }
 
 /// Returns "12 of 400 rows (line 14, 142, ...)"

@@ -58,7 +58,7 @@ class Decision {
     std::string (Decision::*explains)();
     Verdict verdict;
   };
-  static const std::array<Rule, 16> kRules;
+  static const std::array<Rule, 17> kRules;
 
   // The rules, in the order of the table.
 
@@ -81,10 +81,20 @@ class Decision {
     pieces_ = pieces_of_one_function(finder_.evidence(), pool_, accepted_);
     if (!pieces_.empty() || (is_noise_ && !exceeds_u())) return {};
     const auto blamed = outliers_to_blame(answer_.end.machine, rows_, answer_.end.residual, limits_);
-    // Beside named effects a step may be of the machine: a base that moved within a run.
-    if (!blamed || (blamed->is_step && !accepted_.empty())) return {};
+    if (!blamed) return {};
+    if (blamed->is_step && !accepted_.empty()) {
+      step_ = blamed->sentence;
+      return {};
+    }
     answer_.instrument = blamed->is_step ? "step" : "outliers";
     return blamed->sentence;
+  }
+
+  /// A step beside named effects may be of the machine: a base that moved within a run, not between two runs.
+  std::string step_beside_a_name() {
+    if (step_.empty()) return {};
+    return fmt::format("{} {} is a candidate, not a confirmed cause.", step_,
+                       pool_.candidate(accepted_.front()).spoken);
   }
 
   std::string instrument_alone() {
@@ -152,12 +162,7 @@ class Decision {
         fit::has_uncertainty(found_.measurement) ? std::max(1.0, answer_.end.chi_square / freedom) : 1;
     const double ratio = check->rms * check->rms / with_u;
     const double std = std::hypot(check->square_std / with_u, ratio * std::sqrt(2 / freedom));
-    // Noise of the fit rows above u may be a wrong u. If the check rows exceed the largest u that counts as
-    // plausible, they must agree with the fit rows more closely.
-    const bool beyond_u =
-        fit::has_uncertainty(found_.measurement) && check->rms * check->rms > limits_.doubtful_uncertainty;
-    if (ratio < 1 + (beyond_u ? limits_.hit_sigmas : found_.options.thresholds.proof.carries_sigmas) * std)
-      return {};
+    if (ratio < 1 + found_.options.thresholds.proof.carries_sigmas * std) return {};
     return fmt::format(
         "The improvement is not confirmed on held-out rows: the residual of the check rows is {:.2g} times "
         "that of the fit rows.",
@@ -449,13 +454,15 @@ class Decision {
   const model::Measurement rows_;  // for the machine at the end of the stepwise model
   bool is_noise_ = false;          // is the residual at that end noise?
   std::vector<std::size_t> pieces_;
+  std::string step_;  // sentence about rows that step together, if the residual of the other rows is noise
 };
 
 // The order is the precedence: the instrument before the machine, no name before a doubtful name,
 // several names before one.
-const std::array<Decision::Rule, 16> Decision::kRules = {{
+const std::array<Decision::Rule, 17> Decision::kRules = {{
     {&Decision::time_base, Verdict::kInstrument},
     {&Decision::outliers, Verdict::kInstrument},
+    {&Decision::step_beside_a_name, Verdict::kUnexplained},
     {&Decision::instrument_alone, Verdict::kInstrument},
     {&Decision::nothing_and_not_confirmed, Verdict::kUnexplained},
     {&Decision::nothing_to_add, Verdict::kConsistent},
