@@ -8,6 +8,7 @@
 
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/proof.h"
+#include "tools/diagnose/refit.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::gate_test {
@@ -142,6 +143,26 @@ TEST(Gate, ANameBesideADriftThatUDoesNotStateIsACandidateOnly) {
   EXPECT_TRUE(beside.causes.empty());
   // If u may be three times too small, the name stands: the rule alone withdraws it.
   EXPECT_EQ(answer_of(5, 9).verdict, Verdict::kMissingEffect);
+}
+
+TEST(Gate, AnotherResponseIsNotRejectedIfItFitsAndPredictsBetter) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const Measurement rows = parse_measurement(survey({}), "m.csv", machine);
+  const auto residual = [&](double fit_um, double check_um) {
+    Eigen::VectorXd all(static_cast<Eigen::Index>(rows.observations.size()));
+    for (Eigen::Index i = 0; i < all.size(); ++i)
+      all[i] =
+          1e-3 * (rows.check[rows.observations[static_cast<std::size_t>(i)].row] != 0 ? check_um : fit_um);
+    return all;
+  };
+  const auto better = [&](double fit_um, double check_um) {
+    return fits_and_predicts_better(rows, residual(1, 1), residual(fit_um, check_um), {});
+  };
+
+  EXPECT_TRUE(better(0.99, 0.99));
+  EXPECT_FALSE(better(0.99, 1.01));
+  EXPECT_FALSE(better(1.01, 0.99));
+  EXPECT_FALSE(better(1, 1));
 }
 
 }  // namespace
