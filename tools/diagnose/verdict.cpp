@@ -322,6 +322,18 @@ class Decision {
     return residual;
   }
 
+  /// Can a term repeat a part of a drift? True if the term depends on an input, the time or the run, at any
+  /// position, or if only a search of products found it.
+  bool can_follow_a_drift(std::size_t item) const {
+    const effects::Candidate& candidate = pool_.candidate(item);
+    if (pool_.is_custom(item) || !candidate.choice.runs.empty()) return true;
+    const auto drivers = drivers_of(finder_.evidence().machine(), candidate);
+    return std::any_of(drivers.begin(), drivers.end(), [](const auto& driver) {
+      const auto kind = static_cast<model::SymbolKind>(driver.first);
+      return kind == model::SymbolKind::kInput || kind == model::SymbolKind::kTime;
+    });
+  }
+
   /// Returns the mean square of the weighted residual of the fit rows, correlated errors included, except for
   /// the steps of the instrument.
   double mean_square_beside_steps() const {
