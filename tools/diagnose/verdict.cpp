@@ -93,7 +93,7 @@ class Decision {
   /// A step beside named effects may be of the machine: a base that moved within a run, not between two runs.
   std::string step_beside_a_name() {
     if (step_.empty()) return {};
-    return fmt::format("{} {} is a candidate, not a confirmed cause.", step_,
+    return fmt::format("{} No cause is named; {} is a candidate.", step_,
                        pool_.candidate(accepted_.front()).spoken);
   }
 
@@ -147,7 +147,7 @@ class Decision {
     return fmt::format(
         "An error that changes slowly remains, and u does not state it: the residual of the fit rows is "
         "{:.2g} u (noise model: {}). A drift of the instrument explains it, or an error of the machine that "
-        "follows no recorded quantity. {} is a candidate, not a confirmed cause.{}",
+        "follows no recorded quantity. No cause is named; {} is a candidate.{}",
         std::sqrt(square), ::vernier::fit::in_words(answer_.noise, answer_.noise_unit),
         pool_.candidate(accepted_.front()).spoken, check_rows_in_words(answer_.ladder, accepted_.size()));
   }
