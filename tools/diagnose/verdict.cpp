@@ -138,10 +138,13 @@ class Decision {
   std::string pieces() { return pieces_.empty() ? "" : pieces_in_words(names_of(pieces_)); }
 
   /// u states the whole uncertainty of a reading. If named effects leave a drift that u does not contain, the
-  /// drift may be another error of the machine that no recorded quantity follows. A name can then be that of
-  /// a quantity which follows this error by chance: the whitened residual does not show it.
+  /// drift may be another error of the machine that no recorded quantity follows. An input, the time or the
+  /// run can follow this error by chance: the whitened residual does not show it.
   std::string drift_beyond_u() {
-    if (accepted_.empty() || answer_.noise.drift <= 0 || !fit::has_uncertainty(found_.measurement)) return {};
+    if (answer_.noise.drift <= 0 || !fit::has_uncertainty(found_.measurement)) return {};
+    const auto slow = std::find_if(accepted_.begin(), accepted_.end(),
+                                   [this](std::size_t item) { return can_follow_a_drift(item); });
+    if (slow == accepted_.end()) return {};
     const double square = mean_square_beside_steps();
     if (square <= limits_.doubtful_uncertainty) return {};
     return fmt::format(
@@ -149,7 +152,7 @@ class Decision {
         "{:.2g} u (noise model: {}). A drift of the instrument explains it, or an error of the machine that "
         "follows no recorded quantity. No cause is named; {} is a candidate.{}",
         std::sqrt(square), ::vernier::fit::in_words(answer_.noise, answer_.noise_unit),
-        pool_.candidate(accepted_.front()).spoken, check_rows_in_words(answer_.ladder, accepted_.size()));
+        pool_.candidate(*slow).spoken, check_rows_in_words(answer_.ladder, accepted_.size()));
   }
 
   /// The error of the check rows must not exceed that of the fit rows, except for their own scatter
