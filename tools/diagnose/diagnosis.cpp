@@ -372,6 +372,12 @@ LeftOut left_out_of(const Diagnosis& clean, const model::Measurement& all,
   return left;
 }
 
+bool has_effect_of_runs(const Diagnosis& answer) {
+  return std::any_of(answer.candidates.begin(), answer.candidates.end(), [](const CandidateFinding& one) {
+    return one.accepted && !one.candidate.choice.runs.empty();
+  });
+}
+
 /// Runs the search, and repeats it without gross outliers if these may be the cause.
 Diagnosis searched(const std::string& text, const model::Machine& machine,
                    const model::Measurement& measurement, const DiagnoseOptions& options) {
@@ -386,12 +392,13 @@ Diagnosis searched(const std::string& text, const model::Machine& machine,
   const auto rest =
       without_gross_outliers(all.end.machine, rows, all.end.residual, options.thresholds.verdict);
   if (!rest || rows.rows() != measurement.rows()) return all;
-  if (!rest->step.empty()) {  // the rows left out are no outliers
-    if (all.explanation.find(rest->step) == std::string::npos) all.explanation += " " + rest->step;
-    return all;
-  }
   Diagnosis clean = Diagnoser(text, machine, model::select_rows(measurement, rest->kept), options).run();
   clean.left_out = left_out_of(clean, measurement, rest->kept);
+  if (!rest->step.empty() && all.explanation.find(rest->step) == std::string::npos)
+    all.explanation += " " + rest->step;
+  // Rows that follow each other moved together if an effect of runs is beside them: the motion was within a
+  // run. Other such rows may be the start of a day: the history of a lag before them is unknown.
+  if (!rest->step.empty() && has_effect_of_runs(clean)) return all;
   if (by_spread && clean.verdict == Verdict::kConsistent) {
     clean.verdict = Verdict::kInstrument;
     clean.explanation =
