@@ -357,10 +357,10 @@ bool is_named(Verdict verdict) {
 
 /// Returns the number of excluded rows, and the error of all check rows beside the stepwise model that was
 /// found without them.
-LeftOut left_out_of(const Diagnosis& clean, const model::Measurement& all,
-                    const std::vector<std::size_t>& kept) {
+ExcludedRows left_out_of(const Diagnosis& clean, const model::Measurement& all,
+                         const std::vector<std::size_t>& kept) {
   const auto checked = [&](std::size_t row) { return all.check[row] != 0; };
-  LeftOut left;
+  ExcludedRows left;
   left.rows = all.rows() - kept.size();
   left.check_rows = static_cast<std::size_t>(
       std::count_if(all.check.begin(), all.check.end(), [](char c) { return c != 0; }) -

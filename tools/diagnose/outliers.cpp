@@ -88,12 +88,12 @@ std::optional<Peeled> peel(const model::Machine& machine, const model::Measureme
 }
 
 /// Successive excluded rows, by index: the first one, and the first row after them.
-struct Group {
+struct ExcludedGroup {
   std::size_t begin = 0, end = 0;
 };
 
-std::vector<Group> excluded_groups(const std::vector<std::size_t>& kept, std::size_t rows) {
-  std::vector<Group> groups;
+std::vector<ExcludedGroup> excluded_groups(const std::vector<std::size_t>& kept, std::size_t rows) {
+  std::vector<ExcludedGroup> groups;
   std::size_t next = 0;
   const auto take = [&](std::size_t until) {
     if (next < until) groups.push_back({next, until});
@@ -105,9 +105,9 @@ std::vector<Group> excluded_groups(const std::vector<std::size_t>& kept, std::si
 }
 
 /// Joins groups with a single row between them: one reading of a step may be near the model by chance.
-std::vector<Group> joined(const std::vector<Group>& groups) {
-  std::vector<Group> all;
-  for (const Group& one : groups) {
+std::vector<ExcludedGroup> joined(const std::vector<ExcludedGroup>& groups) {
+  std::vector<ExcludedGroup> all;
+  for (const ExcludedGroup& one : groups) {
     if (!all.empty() && one.begin - all.back().end <= 1)
       all.back().end = one.end;
     else
@@ -121,13 +121,13 @@ std::vector<Group> joined(const std::vector<Group>& groups) {
 /// within the run, the rest of the run is as the model states, and the motion was after the group.
 std::string step_in_words(const model::Measurement& all, const std::vector<std::size_t>& kept,
                           double log_chance) {
-  const std::vector<Group> groups = excluded_groups(kept, all.rows());
+  const std::vector<ExcludedGroup> groups = excluded_groups(kept, all.rows());
   const std::size_t out = all.rows() - kept.size();
   if (kept.empty() || log_p_of_groups(all.rows(), out, groups.size()) >= log_chance) return {};
-  const std::vector<Group> longer = joined(groups);
-  const Group longest = *std::max_element(longer.begin(), longer.end(), [](const Group& a, const Group& b) {
-    return a.end - a.begin < b.end - b.begin;
-  });
+  const std::vector<ExcludedGroup> longer = joined(groups);
+  const ExcludedGroup longest = *std::max_element(
+      longer.begin(), longer.end(),
+      [](const ExcludedGroup& a, const ExcludedGroup& b) { return a.end - a.begin < b.end - b.begin; });
   const std::vector<std::size_t>& run = all.states.run;
   const auto changes_before = [&](std::size_t row) {
     return row == 0 || row == all.rows() || run[row - 1] != run[row];

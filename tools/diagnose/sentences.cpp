@@ -56,7 +56,7 @@ std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_
   return text + ".";
 }
 
-std::string all_check_rows_in_words(const LeftOut& left_out) {
+std::string all_check_rows_in_words(const ExcludedRows& left_out) {
   const bool lengths = left_out.check_rms_um.has_value();
   const std::optional<double>& rms = lengths ? left_out.check_rms_um : left_out.check_rms_urad;
   if (left_out.check_rows == 0 || !rms) return {};

@@ -60,7 +60,7 @@ struct Remaining {
 };
 
 /// Rows that the diagnosis left out as outliers, and the error of all check rows beside the stepwise model.
-struct LeftOut {
+struct ExcludedRows {
   std::size_t rows = 0, check_rows = 0;
   std::optional<double> check_rms_um, check_rms_urad;  // of all check rows, those left out included
 };
@@ -89,7 +89,7 @@ struct Diagnosis {
   std::vector<LadderStep> ladder;
   std::vector<Cause> causes;  // of the first step: all that the data do not reject, most likely first
   Remaining remaining;
-  std::optional<LeftOut> left_out;  // no value: every row was used
+  std::optional<ExcludedRows> left_out;  // no value: every row was used
   std::string instrument;  // kind of the instrument's error (Cause::kind); empty unless it is a cause
   std::vector<std::string> next_measurement;
   std::optional<std::size_t> runner_up;  // index into candidates
