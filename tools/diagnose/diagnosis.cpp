@@ -13,6 +13,7 @@
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/proof.h"
 #include "tools/diagnose/refit.h"
+#include "tools/diagnose/sentences.h"
 #include "tools/diagnose/verdict.h"
 #include "tools/effects/add_string.h"
 #include "tools/effects/fitted_effect.h"
@@ -354,6 +355,29 @@ bool is_named(Verdict verdict) {
   return verdict == Verdict::kMissingEffect || verdict == Verdict::kAmbiguous;
 }
 
+/// Returns the number of excluded rows, and the error of all check rows beside the stepwise model that was
+/// found without them.
+ExcludedRows left_out_of(const Diagnosis& clean, const model::Measurement& all,
+                         const std::vector<std::size_t>& kept) {
+  const auto checked = [&](std::size_t row) { return all.check[row] != 0; };
+  ExcludedRows left;
+  left.rows = all.rows() - kept.size();
+  left.check_rows = static_cast<std::size_t>(
+      std::count_if(all.check.begin(), all.check.end(), [](char c) { return c != 0; }) -
+      std::count_if(kept.begin(), kept.end(), checked));
+  const model::Measurement rows = model::rebind(all, clean.base.machine, clean.end.machine);
+  const fit::RoleStatistics check = fit::role_statistics(rows, fit::residuals(clean.end.machine, rows), true);
+  left.check_rms_um = check.rms_um;
+  left.check_rms_urad = check.rms_urad;
+  return left;
+}
+
+bool has_effect_of_runs(const Diagnosis& answer) {
+  return std::any_of(answer.candidates.begin(), answer.candidates.end(), [](const CandidateFinding& one) {
+    return one.accepted && !one.candidate.choice.runs.empty();
+  });
+}
+
 /// Runs the search, and repeats it without gross outliers if these may be the cause.
 Diagnosis searched(const std::string& text, const model::Machine& machine,
                    const model::Measurement& measurement, const DiagnoseOptions& options) {
@@ -369,15 +393,22 @@ Diagnosis searched(const std::string& text, const model::Machine& machine,
       without_gross_outliers(all.end.machine, rows, all.end.residual, options.thresholds.verdict);
   if (!rest || rows.rows() != measurement.rows()) return all;
   Diagnosis clean = Diagnoser(text, machine, model::select_rows(measurement, rest->kept), options).run();
+  clean.left_out = left_out_of(clean, measurement, rest->kept);
+  if (!rest->step.empty() && all.explanation.find(rest->step) == std::string::npos)
+    all.explanation += " " + rest->step;
+  // Rows that follow each other moved together if an effect of runs is beside them: the motion was within a
+  // run. Other such rows may be the start of a day: the history of a lag before them is unknown.
+  if (!rest->step.empty() && has_effect_of_runs(clean)) return all;
   if (by_spread && clean.verdict == Verdict::kConsistent) {
     clean.verdict = Verdict::kInstrument;
-    clean.explanation = "Outliers, and noise beside them. " + rest->sentence;
+    clean.explanation =
+        "Outliers, and noise beside them. " + rest->sentence + all_check_rows_in_words(*clean.left_out);
     clean.instrument = "outliers";
     clean.causes = {instrument_cause(clean.instrument, 0)};
     return clean;
   }
   if (is_named(clean.verdict) || (by_spread && clean.verdict == all.verdict)) {
-    clean.explanation += " " + rest->sentence;
+    clean.explanation += " " + rest->sentence + all_check_rows_in_words(*clean.left_out);
     return clean;
   }
   if (by_spread) all.explanation += " " + rest->sentence;

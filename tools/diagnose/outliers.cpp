@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "tools/fit/fit.h"
@@ -86,6 +87,58 @@ std::optional<Peeled> peel(const model::Machine& machine, const model::Measureme
   return peeled;
 }
 
+/// Successive excluded rows, by index: the first one, and the first row after them.
+struct ExcludedGroup {
+  std::size_t begin = 0, end = 0;
+};
+
+std::vector<ExcludedGroup> excluded_groups(const std::vector<std::size_t>& kept, std::size_t rows) {
+  std::vector<ExcludedGroup> groups;
+  std::size_t next = 0;
+  const auto take = [&](std::size_t until) {
+    if (next < until) groups.push_back({next, until});
+    next = until + 1;
+  };
+  for (const std::size_t row : kept) take(row);
+  take(rows);
+  return groups;
+}
+
+/// Joins groups with a single row between them: one reading of a step may be near the model by chance.
+std::vector<ExcludedGroup> joined(const std::vector<ExcludedGroup>& groups) {
+  std::vector<ExcludedGroup> all;
+  for (const ExcludedGroup& one : groups) {
+    if (!all.empty() && one.begin - all.back().end <= 1)
+      all.back().end = one.end;
+    else
+      all.push_back(one);
+  }
+  return all;
+}
+
+/// Returns the sentence about the largest group of excluded rows if the groups are too few for chance; else
+/// empty. The machine or the target moved at the first row of the group. If the group begins a run and ends
+/// within the run, the rest of the run is as the model states, and the motion was after the group.
+std::string step_in_words(const model::Measurement& all, const std::vector<std::size_t>& kept,
+                          double log_chance) {
+  const std::vector<ExcludedGroup> groups = excluded_groups(kept, all.rows());
+  const std::size_t out = all.rows() - kept.size();
+  if (kept.empty() || log_p_of_groups(all.rows(), out, groups.size()) >= log_chance) return {};
+  const std::vector<ExcludedGroup> longer = joined(groups);
+  const ExcludedGroup longest = *std::max_element(
+      longer.begin(), longer.end(),
+      [](const ExcludedGroup& a, const ExcludedGroup& b) { return a.end - a.begin < b.end - b.begin; });
+  const std::vector<std::size_t>& run = all.states.run;
+  const auto changes_before = [&](std::size_t row) {
+    return row == 0 || row == all.rows() || run[row - 1] != run[row];
+  };
+  const bool after = changes_before(longest.begin) && !changes_before(longest.end);
+  return fmt::format(
+      "The rows of lines {} to {} differ from the model together: a step at line {}, not outliers. Begin a "
+      "new run at this line.",
+      all.line[longest.begin], all.line[longest.end - 1], all.line[after ? longest.end : longest.begin]);
+}
+
 /// Returns "12 of 400 rows (line 14, 142, ...)"
 std::string rows_in_words(const Peeled& peeled, const model::Measurement& all) {
   constexpr std::ptrdiff_t kNamed = 8;
@@ -97,10 +150,24 @@ std::string rows_in_words(const Peeled& peeled, const model::Measurement& all) {
 
 }  // namespace
 
-std::optional<std::string> outliers_to_blame(const model::Machine& machine,
-                                             const model::Measurement& measurement,
-                                             const Eigen::VectorXd& of_all,
-                                             const VerdictThresholds& thresholds) {
+double log_p_of_groups(std::size_t all, std::size_t out, std::size_t groups) {
+  const auto log_choose = [](double n, double k) {
+    return k < 0 || k > n ? -std::numeric_limits<double>::infinity()
+                          : std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1);
+  };
+  const auto n = static_cast<double>(all), m = static_cast<double>(out);
+  double p = 0;
+  for (std::size_t i = 1; i <= groups; ++i) {
+    const auto g = static_cast<double>(i);
+    p += std::exp(log_choose(m - 1, g - 1) + log_choose(n - m + 1, g) - log_choose(n, m));
+  }
+  return std::log(std::min(p, 1.0));
+}
+
+std::optional<OutliersToBlame> outliers_to_blame(const model::Machine& machine,
+                                                 const model::Measurement& measurement,
+                                                 const Eigen::VectorXd& of_all,
+                                                 const VerdictThresholds& thresholds) {
   if (!fit::has_uncertainty(measurement)) return std::nullopt;  // the expected residual is unknown
   const auto peeled = peel(machine, measurement, of_all, thresholds.outlier_spreads,
                            thresholds.outliers_alone * static_cast<double>(measurement.rows()));
@@ -108,10 +175,14 @@ std::optional<std::string> outliers_to_blame(const model::Machine& machine,
   const double freedom = peeled->fit.freedom;
   if (peeled->fit.chi_square / freedom > 1 + thresholds.noise_sigmas * std::sqrt(2 / freedom))
     return std::nullopt;
-  return fmt::format(
-      "Outliers: without {} the residual is noise. A lost beam or a bumped target is likelier than the "
-      "machine.",
-      rows_in_words(*peeled, measurement));
+  const std::string rows = rows_in_words(*peeled, measurement);
+  if (const std::string step = step_in_words(measurement, peeled->kept, std::log(thresholds.structure));
+      !step.empty())
+    return OutliersToBlame{fmt::format("Without {} the residual is noise. {}", rows, step), true};
+  return OutliersToBlame{fmt::format("Outliers: without {} the residual is noise. A lost beam or a bumped "
+                                     "target is likelier than the machine.",
+                                     rows),
+                         false};
 }
 
 std::optional<WithoutOutliers> without_gross_outliers(const model::Machine& machine,
@@ -124,11 +195,13 @@ std::optional<WithoutOutliers> without_gross_outliers(const model::Machine& mach
   auto peeled =
       peel(machine, measurement, of_all, far, std::max(1.0, share * static_cast<double>(measurement.rows())));
   if (!peeled) return std::nullopt;
+  std::string step = step_in_words(measurement, peeled->kept, std::log(thresholds.structure));
   return WithoutOutliers{
       std::move(peeled->kept),
       fmt::format("Left out: {}, off by more than {:.0f} times the spread of the others, as a lost "
                   "beam or a bumped target is.",
-                  rows_in_words(*peeled, measurement), far)};
+                  rows_in_words(*peeled, measurement), far),
+      std::move(step)};
 }
 
 }  // namespace vernier::diagnose

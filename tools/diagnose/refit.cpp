@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tools/diagnose/proof.h"
 #include "tools/fit/least_squares/statistics.h"
 
 namespace vernier::diagnose {
@@ -17,7 +18,23 @@ double share_apart(const model::Measurement& rows, const DecisionFits& fits, con
   return part > 0 ? apart / part : 1;
 }
 
+/// Are both the responses of structures, with terms that a search found?
+bool are_responses(const Finder& finder, std::size_t a, std::size_t b) {
+  const auto found = [&](std::size_t item) {
+    return finder.pool().candidate(item).choice.effect->has_found_terms();
+  };
+  return found(a) && found(b);
+}
+
 }  // namespace
+
+bool fits_and_predicts_better(const model::Measurement& rows, const Eigen::VectorXd& accepted,
+                              const Eigen::VectorXd& other, const fit::NoiseModel& noise) {
+  const Eigen::VectorXd weights = fit::fit_weights(rows);
+  if (accepted.size() != weights.size() || other.size() != weights.size()) return false;
+  if (weights.cwiseProduct(other).squaredNorm() >= weights.cwiseProduct(accepted).squaredNorm()) return false;
+  return proof_on_check_rows(rows, accepted, other, noise, 1).evidence > 0;
+}
 
 Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
                                   std::size_t most, const DecisionFits& fits) {
@@ -28,14 +45,18 @@ Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::s
   std::vector<std::size_t> set = accepted;
   std::size_t fitted = 0;
   std::erase_if(found.other, [&](Alternative& one) {
-    if (one.distance >= limits.acceptance.distance_of_fits || fitted++ >= most) return false;
+    const bool response = are_responses(finder, one.item, accepted.front());
+    if ((!response && one.distance >= limits.acceptance.distance_of_fits) || fitted++ >= most) return false;
     set.front() = one.item;
     const fit::FitResult fit = fits.of(set);
     if (!fit.converged) return false;
-    if (finder.pool().is_richer(one.item, accepted.front()) &&
+    if (!response && finder.pool().is_richer(one.item, accepted.front()) &&
         share_apart(finder.evidence().measurement(), fits, fit) < limits.pool.held_share)
       return true;
     one.distance = finder.criterion_of_fit(set, fit.chi_square / fits.accepted.chi_square) - own;
+    if (response && fits_and_predicts_better(finder.evidence().measurement(), fits.accepted.residual,
+                                             fit.residual, finder.evidence().noise_of_file()))
+      one.distance = std::min(one.distance, 0.0);
     return false;
   });
   std::stable_sort(found.other.begin(), found.other.end(),

@@ -56,6 +56,15 @@ std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_
   return text + ".";
 }
 
+std::string all_check_rows_in_words(const ExcludedRows& left_out) {
+  const bool lengths = left_out.check_rms_um.has_value();
+  const std::optional<double>& rms = lengths ? left_out.check_rms_um : left_out.check_rms_urad;
+  if (left_out.check_rows == 0 || !rms) return {};
+  return fmt::format(" {} check row{} left out; with {} the residual of the check rows is {:.4g} {}.",
+                     left_out.check_rows, left_out.check_rows == 1 ? " is" : "s are",
+                     left_out.check_rows == 1 ? "this row" : "these rows", *rms, lengths ? "um" : "urad");
+}
+
 std::string cause_in_words(const CandidateFinding& cause, const std::string& next_best, double distance,
                            const std::vector<LadderStep>& steps, std::size_t accepted) {
   std::string text = said_of(cause) + ".";

@@ -24,6 +24,9 @@ std::string where_left(const residual::FailurePicture& left);
 /// text is empty without check rows. `accepted`: number of accepted effects.
 std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_t accepted);
 
+/// Describes the error of all check rows if some of them were left out; else empty. Begins with a blank.
+std::string all_check_rows_in_words(const ExcludedRows& left_out);
+
 /// Describes the cause with its coefficients, the next best other cause with the difference of their BIC, and
 /// the other steps. next_best: empty if there is no other cause. `steps` begins with the given model.
 std::string cause_in_words(const CandidateFinding& cause, const std::string& next_best, double distance,

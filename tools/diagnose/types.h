@@ -59,6 +59,12 @@ struct Remaining {
   bool is_noise = false;
 };
 
+/// Rows that the diagnosis left out as outliers, and the error of all check rows beside the stepwise model.
+struct ExcludedRows {
+  std::size_t rows = 0, check_rows = 0;
+  std::optional<double> check_rms_um, check_rms_urad;  // of all check rows, those left out included
+};
+
 struct LadderStep {
   std::string effect, add, label;                  // empty: the model as given
   std::string said;                                // "Z carriage: lag"
@@ -83,6 +89,7 @@ struct Diagnosis {
   std::vector<LadderStep> ladder;
   std::vector<Cause> causes;  // of the first step: all that the data do not reject, most likely first
   Remaining remaining;
+  std::optional<ExcludedRows> left_out;  // no value: every row was used
   std::string instrument;  // kind of the instrument's error (Cause::kind); empty unless it is a cause
   std::vector<std::string> next_measurement;
   std::optional<std::size_t> runner_up;  // index into candidates

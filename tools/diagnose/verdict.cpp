@@ -58,7 +58,7 @@ class Decision {
     std::string (Decision::*explains)();
     Verdict verdict;
   };
-  static const std::array<Rule, 15> kRules;
+  static const std::array<Rule, 17> kRules;
 
   // The rules, in the order of the table.
 
@@ -80,10 +80,21 @@ class Decision {
     is_noise_ = answer_.remaining.is_noise = down_to_noise();
     pieces_ = pieces_of_one_function(finder_.evidence(), pool_, accepted_);
     if (!pieces_.empty() || (is_noise_ && !exceeds_u())) return {};
-    std::string blamed =
-        outliers_to_blame(answer_.end.machine, rows_, answer_.end.residual, limits_).value_or("");
-    if (!blamed.empty()) answer_.instrument = "outliers";
-    return blamed;
+    const auto blamed = outliers_to_blame(answer_.end.machine, rows_, answer_.end.residual, limits_);
+    if (!blamed) return {};
+    if (blamed->is_step && !accepted_.empty()) {
+      step_ = blamed->sentence;
+      return {};
+    }
+    answer_.instrument = blamed->is_step ? "step" : "outliers";
+    return blamed->sentence;
+  }
+
+  /// A step beside named effects may be of the machine: a base that moved within a run, not between two runs.
+  std::string step_beside_a_name() {
+    if (step_.empty()) return {};
+    return fmt::format("{} No cause is named; {} is a candidate.", step_,
+                       pool_.candidate(accepted_.front()).spoken);
   }
 
   std::string instrument_alone() {
@@ -125,6 +136,24 @@ class Decision {
   }
 
   std::string pieces() { return pieces_.empty() ? "" : pieces_in_words(names_of(pieces_)); }
+
+  /// u states the whole uncertainty of a reading. If named effects leave a drift that u does not contain, the
+  /// drift may be another error of the machine that no recorded quantity follows. An input, the time or the
+  /// run can follow this error by chance: the whitened residual does not show it.
+  std::string drift_beyond_u() {
+    if (answer_.noise.drift <= 0 || !fit::has_uncertainty(found_.measurement)) return {};
+    const auto slow = std::find_if(accepted_.begin(), accepted_.end(),
+                                   [this](std::size_t item) { return can_follow_a_drift(item); });
+    if (slow == accepted_.end()) return {};
+    const double square = mean_square_beside_steps();
+    if (square <= limits_.doubtful_uncertainty) return {};
+    return fmt::format(
+        "An error that changes slowly remains, and u does not state it: the residual of the fit rows is "
+        "{:.2g} u (noise model: {}). A drift of the instrument explains it, or an error of the machine that "
+        "follows no recorded quantity. No cause is named; {} is a candidate.{}",
+        std::sqrt(square), ::vernier::fit::in_words(answer_.noise, answer_.noise_unit),
+        pool_.candidate(*slow).spoken, check_rows_in_words(answer_.ladder, accepted_.size()));
+  }
 
   /// The error of the check rows must not exceed that of the fit rows, except for their own scatter
   /// and the uncertainty of the model's parameters.
@@ -257,6 +286,14 @@ class Decision {
     return names;
   }
 
+  /// Returns the readings of the fit rows: their weight is not zero.
+  static std::vector<std::size_t> readings_of(const Eigen::VectorXd& weights) {
+    std::vector<std::size_t> fitted;
+    for (Eigen::Index i = 0; i < weights.size(); ++i)
+      if (weights[i] > 0) fitted.push_back(static_cast<std::size_t>(i));
+    return fitted;
+  }
+
   /// The residual at the end of the stepwise model (mm, deg) without the correlated errors of the
   /// fit rows: the residual of independent readings.
   Eigen::VectorXd independent_residual() const {
@@ -264,9 +301,7 @@ class Decision {
     Eigen::VectorXd residual = answer_.end.residual;
     if (noise.independent() && noise.own == 1) return residual;
     const Eigen::VectorXd weights = fit::fit_weights(rows_);
-    std::vector<std::size_t> fitted;
-    for (std::size_t i = 0; i < rows_.observations.size(); ++i)
-      if (weights[static_cast<Eigen::Index>(i)] > 0) fitted.push_back(i);
+    const std::vector<std::size_t> fitted = readings_of(weights);
     Eigen::MatrixXd left = weights(fitted).cwiseProduct(residual(fitted));
     const fit::NoiseLayout layout = fit::noise_layout(rows_, fitted, found_.options.thresholds.layout);
     fit::whiten(layout, noise, left);
@@ -288,6 +323,32 @@ class Decision {
     const double unit = fit::has_uncertainty(rows_) ? 1 : noise.own;
     residual(fitted) = unit * left.col(0).cwiseQuotient(weights(fitted));
     return residual;
+  }
+
+  /// Can a term repeat a part of a drift? True if the term depends on an input, the time or the run, at any
+  /// position, or if only a search of products found it.
+  bool can_follow_a_drift(std::size_t item) const {
+    const effects::Candidate& candidate = pool_.candidate(item);
+    if (pool_.is_custom(item) || !candidate.choice.runs.empty()) return true;
+    const auto drivers = drivers_of(finder_.evidence().machine(), candidate);
+    return std::any_of(drivers.begin(), drivers.end(), [](const auto& driver) {
+      const auto kind = static_cast<model::SymbolKind>(driver.first);
+      return kind == model::SymbolKind::kInput || kind == model::SymbolKind::kTime;
+    });
+  }
+
+  /// Returns the mean square of the weighted residual of the fit rows, correlated errors included, except for
+  /// the steps of the instrument.
+  double mean_square_beside_steps() const {
+    const double freedom = std::max(1.0, answer_.end.freedom);
+    const std::vector<fit::NoiseStep>& steps = answer_.noise.steps;
+    if (steps.empty()) return answer_.end.chi_square / freedom;
+    const Eigen::VectorXd weights = fit::fit_weights(rows_);
+    const std::vector<std::size_t> fitted = readings_of(weights);
+    const Eigen::VectorXd left = weights(fitted).cwiseProduct(answer_.end.residual(fitted));
+    const fit::NoiseLayout layout = fit::noise_layout(rows_, fitted, found_.options.thresholds.layout);
+    const Eigen::MatrixXd columns = fit::step_columns(layout, steps, left.size());
+    return (left - columns * maths::least_norm(columns, left)).squaredNorm() / freedom;
   }
 
   /// Returns a sentence about the instrument if errors correlated in time or by run are as large
@@ -408,13 +469,15 @@ class Decision {
   const model::Measurement rows_;  // for the machine at the end of the stepwise model
   bool is_noise_ = false;          // is the residual at that end noise?
   std::vector<std::size_t> pieces_;
+  std::string step_;  // sentence about rows that step together, if the residual of the other rows is noise
 };
 
 // The order is the precedence: the instrument before the machine, no name before a doubtful name,
 // several names before one.
-const std::array<Decision::Rule, 15> Decision::kRules = {{
+const std::array<Decision::Rule, 17> Decision::kRules = {{
     {&Decision::time_base, Verdict::kInstrument},
     {&Decision::outliers, Verdict::kInstrument},
+    {&Decision::step_beside_a_name, Verdict::kUnexplained},
     {&Decision::instrument_alone, Verdict::kInstrument},
     {&Decision::nothing_and_not_confirmed, Verdict::kUnexplained},
     {&Decision::nothing_to_add, Verdict::kConsistent},
@@ -422,6 +485,7 @@ const std::array<Decision::Rule, 15> Decision::kRules = {{
     {&Decision::effect_of_instrument, Verdict::kInstrument},
     {&Decision::not_down_to_noise, Verdict::kUnexplained},
     {&Decision::pieces, Verdict::kUnexplained},
+    {&Decision::drift_beyond_u, Verdict::kUnexplained},
     {&Decision::check_contradicts, Verdict::kUnexplained},
     {&Decision::terms_without_name, Verdict::kUnexplained},
     {&Decision::shape_contradicts, Verdict::kUnexplained},

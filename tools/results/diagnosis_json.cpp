@@ -207,6 +207,11 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
   json["separate_by"] = open ? Json(diagnosis.next_measurement) : Json::array();
   json["remaining"] = {{"chi2_per_dof", diagnosis.remaining.chi_square_per_freedom},
                        {"is_noise", diagnosis.remaining.is_noise}};
+  if (diagnosis.left_out)
+    json["left_out"] = {{"rows", diagnosis.left_out->rows},
+                        {"check_rows", diagnosis.left_out->check_rows},
+                        {"check_rms_um", text::or_null(diagnosis.left_out->check_rms_um)},
+                        {"check_rms_urad", text::or_null(diagnosis.left_out->check_rms_urad)}};
   json["runner_up"] = Json(nullptr);
   if (diagnosis.runner_up) {
     const diagnose::CandidateFinding& runner = diagnosis.candidates[*diagnosis.runner_up];

@@ -8,6 +8,7 @@
 
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/proof.h"
+#include "tools/diagnose/refit.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::gate_test {
@@ -98,6 +99,69 @@ TEST(Gate, TwiceTheStatedNoiseDoesNotHideACause) {
   EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_EQ(answer.ladder.back().effect, "backlash");
   EXPECT_EQ(diagnosed({0, 0, 2, 4, 2}).verdict, Verdict::kConsistent);
+}
+
+/// An axis that grows with the temperature T, and with a quantity that changes as slowly and that no column
+/// has: um per degC and m, um. u 1 um, four runs, every fourth row a check row.
+std::string warm_survey(double growth, double unlogged) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal(0, 1);
+  std::uniform_real_distribution<double> place(0, 500);
+  std::string text = "X[mm],x[mm],T[degC],t[s],u[um],run,role\n";
+  double warm = 0, hidden = 0;
+  for (int row = 0; row < 480; ++row) {
+    warm = 0.98 * warm + 0.2 * normal(random);
+    hidden = 0.9 * hidden + 0.44 * normal(random);
+    const double x = place(random), part = x / 500;
+    const double off = 1e-3 * ((growth * warm + unlogged * hidden) * part + normal(random));
+    text += fmt::format("{:.3f},{:.6f},{:.3f},{},1,r{},{}\n", x, x + off, 20 + warm, 40 * row, row / 120,
+                        row % 4 == 3 ? "check" : "fit");
+  }
+  return text;
+}
+
+// Named before: the drift of the noise model took the unlogged quantity in, and whitened check rows
+// confirmed.
+TEST(Gate, ANameBesideADriftThatUDoesNotStateIsACandidateOnly) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const auto answer_of = [&](double unlogged, double plausible) {
+    DiagnoseOptions options;
+    options.thresholds.verdict.doubtful_uncertainty = plausible;
+    return diagnose::diagnose(kAxis, machine, parse_measurement(warm_survey(4, unlogged), "m.csv", machine),
+                              options);
+  };
+  const double plausible = VerdictThresholds().doubtful_uncertainty;
+
+  const Diagnosis alone = answer_of(0, plausible), beside = answer_of(5, plausible);
+
+  EXPECT_EQ(alone.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << alone.explanation;
+  ASSERT_GT(beside.noise.drift, 0) << beside.explanation;
+  ASSERT_GT(beside.ladder.size(), 1U) << beside.explanation;
+  EXPECT_EQ(beside.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << beside.explanation;
+  EXPECT_NE(beside.explanation.find("No cause is named"), std::string::npos) << beside.explanation;
+  EXPECT_TRUE(beside.causes.empty());
+  // If u may be three times too small, the name stands: the rule alone withdraws it.
+  EXPECT_EQ(answer_of(5, 9).verdict, Verdict::kMissingEffect);
+}
+
+TEST(Gate, AnotherResponseIsNotRejectedIfItFitsAndPredictsBetter) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const Measurement rows = parse_measurement(survey({}), "m.csv", machine);
+  const auto residual = [&](double fit_um, double check_um) {
+    Eigen::VectorXd all(static_cast<Eigen::Index>(rows.observations.size()));
+    for (Eigen::Index i = 0; i < all.size(); ++i)
+      all[i] =
+          1e-3 * (rows.check[rows.observations[static_cast<std::size_t>(i)].row] != 0 ? check_um : fit_um);
+    return all;
+  };
+  const auto better = [&](double fit_um, double check_um) {
+    return fits_and_predicts_better(rows, residual(1, 1), residual(fit_um, check_um), {});
+  };
+
+  EXPECT_TRUE(better(0.99, 0.99));
+  EXPECT_FALSE(better(0.99, 1.01));
+  EXPECT_FALSE(better(1.01, 0.99));
+  EXPECT_FALSE(better(1, 1));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/outliers.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 
@@ -261,6 +262,56 @@ TEST(Verdict, AGrossOutlierDoesNotHideACause) {
     EXPECT_EQ(answer.ladder.back().effect, "backlash");
     EXPECT_NE(answer.explanation.find("line 79"), std::string::npos) << answer.explanation;
   }
+}
+
+/// Four runs of 100 rows, every fifth a check row, with reversal error. `off`: further error of a row, mm.
+Measurement rows_with(const std::function<double(int)>& off, const Machine& machine) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "X[mm],dirX,x[mm],u[um],run,role\n";
+  for (int i = 0; i < 400; ++i) {
+    const double x = 5.0 * (i % 100), dir = (i / 3) % 2 == 0 ? 1 : -1;
+    text += fmt::format("{},{},{:.6f},1,r{},{}\n", x, dir, x + 0.002 * dir + off(i) + noise(random), i / 100,
+                        i % 5 == 4 ? "check" : "fit");
+  }
+  return parse_measurement(text, "m.csv", machine);
+}
+
+/// Missing-effect before, with eight "outliers": the check figure was that of the other rows.
+TEST(Verdict, RowsThatStepTogetherAreNoOutliers) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  // The base moves within the first run: at line 94, eight rows before the second run.
+  const Measurement rows = rows_with([](int i) { return i >= 92 ? 0.03 : 0.0; }, machine);
+
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, rows);
+
+  EXPECT_NE(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_NE(answer.explanation.find("a step at line 94"), std::string::npos) << answer.explanation;
+  EXPECT_FALSE(answer.left_out.has_value());
+}
+
+TEST(Verdict, TheErrorOfAllCheckRowsIsStatedBesideOutliers) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const Measurement rows = rows_with([](int i) { return i == 44 || i == 301 ? 0.5 : 0.0; }, machine);
+
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, rows);
+
+  ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  ASSERT_TRUE(answer.left_out.has_value());
+  EXPECT_EQ(answer.left_out->rows, 2U);
+  EXPECT_EQ(answer.left_out->check_rows, 1U);
+  // One of 80 check rows is off by 500 um: 500 / sqrt(80) = 56 um, beside noise of 1 um.
+  EXPECT_NEAR(answer.left_out->check_rms_um.value_or(0), 56, 1);
+  EXPECT_LT(answer.ladder.back().check_rms_um.value_or(99), 2);
+  EXPECT_NE(answer.explanation.find("1 check row is left out"), std::string::npos) << answer.explanation;
+}
+
+TEST(Verdict, ChanceOfSuccessiveRowsIsThatOfTheRunsTest) {
+  // Two of four rows: three of the six pairs are neighbours.
+  EXPECT_NEAR(std::exp(log_p_of_groups(4, 2, 1)), 0.5, 1e-12);
+  EXPECT_NEAR(std::exp(log_p_of_groups(4, 2, 2)), 1, 1e-12);
+  // Six successive rows of 300: 295 of C(300, 6) = 962822846700 sets.
+  EXPECT_NEAR(log_p_of_groups(300, 6, 1), std::log(295 / 962822846700.0), 1e-9);
 }
 
 TEST(Verdict, RowsOutOfTheOrderOfTimeAreToldWithTheirLine) {

@@ -366,9 +366,12 @@ struct VerdictThresholds {
   /// effects.
   double noise_sigmas = 4, hit_sigmas = 2;
   std::size_t few_effects = 2;
-  /// Significance level below which the residual has structure, corrected for the number of tests.
+  /// Significance level below which the residual has structure, corrected for the number of tests. Also the
+  /// level of the runs test for excluded rows that follow each other: a step, not outliers.
   double structure = 1e-4;
-  /// chi^2 per degree of freedom up to which the stated uncertainty may be too small: 1.4 of u.
+  /// chi^2 per degree of freedom up to which the stated uncertainty may be too small: 1.4 of u. With a drift
+  /// and chi^2 above it, an accepted effect is a candidate only. Experiment (structures that warm through,
+  /// errors outside the catalogue): 1.0 to 1.3 beside the 18 true names, 2.0 to 3.5 beside 10 false ones.
   double doubtful_uncertainty = 2;
   /// chi^2 per degree of freedom above which a too small uncertainty is excluded as the cause: a stated
   /// uncertainty is not three times too small.
