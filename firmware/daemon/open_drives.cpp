@@ -255,9 +255,10 @@ OutputOpener canopen_output_of(const std::vector<OutputAxis>& axes) {
     numbers.fail_at("range", "range must be at least one count (scale)");
   const AnalogueScale scale = number_scale(numbers, axis.rotary);
   CanopenSettings settings = settings_of(*axis.source);
-  // One more, because both ends of a change are rounded.
-  const std::int64_t most = std::min<std::int64_t>(axis.most_per_tick, INT32_MAX);
-  settings.most_per_sync = RoundedRatio(scale.codes, scale.span).of(most) + 1;
+  const double counts = static_cast<double>(std::min<std::int64_t>(axis.most_per_tick, INT32_MAX)) *
+                        static_cast<double>(scale.codes) / static_cast<double>(scale.span);
+  settings.parts_per_sync =
+      std::max<std::int64_t>(1, std::llround(counts * static_cast<double>(CanopenSettings::kPartsOfCount)));
   const CanopenPlace place{axis.source->text("interface"),
                            static_cast<std::uint32_t>(axis.source->whole("node", 1, kLastNode)),
                            object_of(*axis.source), test_pdos(*axis.source)};

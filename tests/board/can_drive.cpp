@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
   scale.codes = 1'000'000, scale.span = 1'000'000'000'000 / 1'000;
   scale.zero = 1 << 30, scale.low = scale.zero - 1'000'000, scale.high = scale.zero + 1'000'000;
   CanopenSettings settings;
-  settings.most_per_sync = kMost;
+  settings.parts_per_sync = kMost * CanopenSettings::kPartsOfCount;
   settings.sync_timeout = InstantNs(1'000'000'000), settings.heartbeat_time = InstantNs(3'000'000'000);
   std::vector<std::int32_t> written;
   std::vector<std::int32_t> used;

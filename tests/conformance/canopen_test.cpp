@@ -12,6 +12,7 @@
 #include <mutex>
 #include <random>
 #include <thread>
+#include <vector>
 
 #include "hal/linux/can/canopen_axes.h"
 #include "hal/linux/can/canopen_output.h"
@@ -45,7 +46,7 @@ can_frame emergency_frame(int code) { return frame(0x81, {code & 0xff, code >> 8
 
 CanopenSettings settings() {
   CanopenSettings made;
-  made.most_per_sync = kMost;
+  made.parts_per_sync = kMost * CanopenSettings::kPartsOfCount;
   return made;
 }
 
@@ -66,6 +67,8 @@ bool has_torque(int status) {
 /// refusal the wanted correction is zero.
 class Rig {
  public:
+  explicit Rig(const CanopenSettings& made = settings()) : drive(made) {}
+
   bool sync = true, tpdo = true, heartbeat = true, bus = true;
   bool overtaken = false;  // the next SYNC comes before the offset
   std::uint16_t status = kEnabled;
@@ -136,7 +139,7 @@ class Rig {
   std::int64_t largest() const { return largest_; }
   bool latched() const { return latched_; }
   InstantNs now() const { return now_; }
-  CanopenDrive drive{settings()};
+  CanopenDrive drive;
 
  private:
   void arrive(std::int32_t offset) {
@@ -172,6 +175,31 @@ class Rig {
   bool late_is_there_ = false;  // an offset that waits for the bus
   bool repeat_ = false, latched_ = false, torque_before_ = false;
 };
+
+/// A count of 10 um and a limit of 0.2 um a SYNC: a whole count every 50 SYNCs, not a count at each.
+TEST(Canopen, ALimitBelowOneCountHoldsOverSeveralSyncs) {
+  for (const std::int64_t parts :
+       {CanopenSettings::kPartsOfCount / 50, CanopenSettings::kPartsOfCount * 3 / 2}) {
+    CanopenSettings made = settings();
+    made.parts_per_sync = parts;
+    Rig rig(made);
+    rig.run(120);
+    rig.target = 1000;
+    std::vector<std::int64_t> applied;
+    for (int i = 0; i < 500; ++i) {
+      rig.tick();
+      applied.push_back(rig.applied());
+    }
+    for (std::size_t first = 0; first < applied.size(); ++first)
+      for (std::size_t last = first + 1; last < applied.size(); last += 7) {
+        const double allowed = static_cast<double>(parts) * static_cast<double>(last - first) /
+                               static_cast<double>(CanopenSettings::kPartsOfCount);
+        ASSERT_LE(static_cast<double>(applied[last] - applied[first]), allowed + 1)
+            << "the limit over " << last - first << " SYNCs, rounded to a count";
+      }
+    EXPECT_GT(applied.back(), parts < CanopenSettings::kPartsOfCount ? 7 : 700) << "and it is used";
+  }
+}
 
 TEST(Canopen, EachSyncTakesTheOffsetOfTheTickBeforeToTheCount) {
   Rig rig;

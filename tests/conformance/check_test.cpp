@@ -160,6 +160,9 @@ TEST_F(Check, NamesACalibrationThatIsNotThere) {
       << said.text;
   EXPECT_NE(said.text.find("1 file: 1 missing\n"), std::string::npos) << said.text;
   EXPECT_EQ(run("--seconds 0.1").status, 2) << "it does not run uncalibrated";
+  files_.put("typo.toml", "span = 0.25\npolarity = \"normal\"\n");
+  EXPECT_NE(run("--check").text.find("zero is missing"), std::string::npos) << "code 0 is no zero";
+  EXPECT_NE(run("--seconds 0.1").status, 0);
   files_.put("typo.toml", "span = 0.25\nzero = 25000\npolarity = \"normal\"\n");
   EXPECT_EQ(run("--check").status, 0) << run("--check").text;
 }

@@ -199,6 +199,7 @@ void apply_calibration(const std::string& board_path, SignalSource& output) {
   if (!std::filesystem::exists(output.texts["calibration"])) return;
   const toml::table table = read_toml(output.texts["calibration"]);
   Table settings(table, output.texts["calibration"], "calibration");
+  if (!settings.has("zero")) settings.fail("zero is missing; make the file with vernierd --calibrate");
   output.numbers["span"] = settings.number("span", 0, 1e-9, 1e4);
   output.numbers[output.kind == "pwm" ? "zero_ns" : "zero"] = settings.number("zero", 0, 0, 1e9);
   output.texts["polarity"] = settings.text("polarity", "");

@@ -38,7 +38,9 @@ void CanopenDrive::take(const can_frame& frame, InstantNs now) noexcept {
     // A drive that has sent no TPDO since the SYNC before may have taken no offset either.
     synced_ = true;
     const bool confirmed = answered_;
+    const std::int64_t before = applied_;
     if (confirmed) applied_ = on_bus_;
+    give_allowance(std::abs(applied_ - before));
     if (!confirmed) doubt_ = Doubt::kRepeat;
     if (doubt_ == Doubt::kInDrive) doubt_ = Doubt::kNone;
     answered_ = false;
@@ -119,6 +121,14 @@ const char* CanopenDrive::missing(InstantNs now) const noexcept {
   return nullptr;
 }
 
+/// A limit below one count, or of a count and a half, is kept over several SYNCs: what one SYNC does not use
+/// is kept for the next, up to less than a count.
+void CanopenDrive::give_allowance(std::int64_t moved) noexcept {
+  const std::int64_t most = settings_.parts_per_sync + CanopenSettings::kPartsOfCount - 1;
+  allowance_ = std::clamp<std::int64_t>(
+      allowance_ - moved * CanopenSettings::kPartsOfCount + settings_.parts_per_sync, 0, most);
+}
+
 void CanopenDrive::forget() noexcept {
   sync_.known = tpdo_.known = heartbeat_.known = pending_ = false;
   status_ = 0;
@@ -165,10 +175,9 @@ CanopenDrive::Step CanopenDrive::step(std::int64_t wanted, InstantNs now) noexce
   if (pending_) return {};  // one frame waits for the bus at a time
   const bool in_doubt = without_torque_ > 0 && without_torque_ < kSure;
   std::int64_t next = goal(wanted, well);
+  const std::int64_t most = allowance_ / CanopenSettings::kPartsOfCount;
   if (without_torque_ < kSure)
-    next = again || in_doubt ? sent_
-                             : std::clamp<std::int64_t>(next, applied_ - settings_.most_per_sync,
-                                                        applied_ + settings_.most_per_sync);
+    next = again || in_doubt ? sent_ : std::clamp<std::int64_t>(next, applied_ - most, applied_ + most);
   follows_ = next == wanted;
   return {HalFault::kNone, true, static_cast<std::int32_t>(next)};
 }

@@ -19,7 +19,10 @@ struct CanopenSettings {
   std::uint32_t rpdo = 0x501;             // the offset (32 bits)
   InstantNs sync_timeout{20'000'000};     // longest time without SYNC, and without the TPDO
   InstantNs heartbeat_time{200'000'000};  // longest time without a heartbeat
-  std::int64_t most_per_sync = 1;         // largest change of the offset from one SYNC to the next, counts
+  /// Largest change of the offset from one SYNC to the next, in parts of a count of the object. A limit that
+  /// is no whole number of counts holds over several SYNCs.
+  static constexpr std::int64_t kPartsOfCount = 1 << 20;
+  std::int64_t parts_per_sync = kPartsOfCount;
 };
 
 /// Counters of one drive; each counter only increases.
@@ -40,10 +43,10 @@ struct CanopenCounts {
 ///
 /// The drive uses an offset from the next SYNC on (RPDO transmission type 0 to 240). The board also receives
 /// the frames that it sends, in the order on the bus: a SYNC may overtake an offset that waits for the bus.
-///   Operation enabled                    the offset follows, within most_per_sync; it stays while
+///   Operation enabled                    the offset follows, within parts_per_sync; it stays while
 ///                                        the drive leaves out a TPDO
-///   Quick stop, fault reaction           the offset goes to zero within most_per_sync; the drive still moves
-///   any other state, in one TPDO         the offset stays: a wrong bit of a statusword makes no step
+///   Quick stop, fault reaction           the offset goes to zero within parts_per_sync; the drive still
+///   moves any other state, in one TPDO         the offset stays: a wrong bit of a statusword makes no step
 ///   any other state, in two TPDOs        zero: the drive has no torque
 ///   after a loss                         one write is refused; then the offset only decreases, until the
 ///                                        wanted offset is zero
@@ -120,6 +123,7 @@ class CanopenDrive {
   bool is_well(InstantNs now) const noexcept;
   std::int64_t goal(std::int64_t wanted, bool well) noexcept;
   void forget() noexcept;
+  void give_allowance(std::int64_t moved) noexcept;
   static bool has_torque(std::uint16_t status) noexcept {
     return (status & kStateMask) == kOperationEnabled || (status & kStateMask) == kQuickStopActive ||
            (status & kReactionMask) == kFaultReactionActive;
@@ -140,10 +144,11 @@ class CanopenDrive {
   bool fading_ = false;  // the board still removes its correction after a loss
   bool follows_ = true, fresh_ = false;
   std::int32_t position_ = 0;
-  std::int32_t applied_ = 0;  // offset of the last SYNC
-  std::int32_t on_bus_ = 0;   // newest offset that has come back
-  std::int32_t sent_ = 0;     // newest offset
-  bool pending_ = false;      // it has not come back
+  std::int32_t applied_ = 0;                                 // offset of the last SYNC
+  std::int32_t on_bus_ = 0;                                  // newest offset that has come back
+  std::int32_t sent_ = 0;                                    // newest offset
+  std::int64_t allowance_ = CanopenSettings::kPartsOfCount;  // change until the next SYNC, parts of a count
+  bool pending_ = false;                                     // it has not come back
   InstantNs pending_since_;
   CanopenCounts counts_;
 };
