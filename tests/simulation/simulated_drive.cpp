@@ -14,7 +14,7 @@ constexpr std::uint32_t kEnabled = 0x1637, kFault = 0x1618;
 SimulatedDrive::SimulatedDrive(std::mt19937_64& random, TimeUs tick, std::int64_t most) : random_(random) {
   settings_.sync_timeout = InstantNs(kTimeoutTicks * tick.count * kNsPerUs);
   settings_.heartbeat_time = InstantNs(3 * kHeartbeatTicks * tick.count * kNsPerUs);
-  settings_.most_per_sync = most;
+  settings_.parts_per_sync = most * CanopenSettings::kPartsOfCount;
   start();
 }
 
