@@ -286,14 +286,6 @@ class Decision {
     return names;
   }
 
-  /// Returns the readings of the fit rows: their weight is not zero.
-  static std::vector<std::size_t> readings_of(const Eigen::VectorXd& weights) {
-    std::vector<std::size_t> fitted;
-    for (Eigen::Index i = 0; i < weights.size(); ++i)
-      if (weights[i] > 0) fitted.push_back(static_cast<std::size_t>(i));
-    return fitted;
-  }
-
   /// The residual at the end of the stepwise model (mm, deg) without the correlated errors of the
   /// fit rows: the residual of independent readings.
   Eigen::VectorXd independent_residual() const {
@@ -301,7 +293,7 @@ class Decision {
     Eigen::VectorXd residual = answer_.end.residual;
     if (noise.independent() && noise.own == 1) return residual;
     const Eigen::VectorXd weights = fit::fit_weights(rows_);
-    const std::vector<std::size_t> fitted = readings_of(weights);
+    const std::vector<std::size_t> fitted = fit::fitted_readings(weights);
     Eigen::MatrixXd left = weights(fitted).cwiseProduct(residual(fitted));
     const fit::NoiseLayout layout = fit::noise_layout(rows_, fitted, found_.options.thresholds.layout);
     fit::whiten(layout, noise, left);
@@ -344,7 +336,7 @@ class Decision {
     const std::vector<fit::NoiseStep>& steps = answer_.noise.steps;
     if (steps.empty()) return answer_.end.chi_square / freedom;
     const Eigen::VectorXd weights = fit::fit_weights(rows_);
-    const std::vector<std::size_t> fitted = readings_of(weights);
+    const std::vector<std::size_t> fitted = fit::fitted_readings(weights);
     const Eigen::VectorXd left = weights(fitted).cwiseProduct(answer_.end.residual(fitted));
     const fit::NoiseLayout layout = fit::noise_layout(rows_, fitted, found_.options.thresholds.layout);
     const Eigen::MatrixXd columns = fit::step_columns(layout, steps, left.size());

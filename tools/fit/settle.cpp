@@ -286,9 +286,7 @@ class Settler {
         5e7;  // 400 MB of numbers: beyond this limit, rows are taken as independent
     const model::Measurement& rows = problem_.measurement();
     const VectorXd& weights = problem_.weights();
-    std::vector<std::size_t> fitted;
-    for (std::size_t i = 0; i < rows.observations.size(); ++i)
-      if (weights[static_cast<Eigen::Index>(i)] > 0) fitted.push_back(i);
+    const std::vector<std::size_t> fitted = fitted_readings(weights);
     const double n = static_cast<double>(fitted.size()), p = static_cast<double>(data.cols());
     const bool given_independent = noise_ && noise_->independent();
     if (given_independent || n * p > kMostNumbers || p < 1) {

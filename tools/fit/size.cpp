@@ -257,8 +257,7 @@ std::string size_sentence(const SizeOfMachine& size) {
   constexpr std::size_t kMostNames = 8;
   if (!size.known)
     return "No reading has a known length: the size of the machine stays at nominal. Give the distance of "
-           "two "
-           "points, or an artefact with a known radius or known places.";
+           "two points, or an artefact with a known radius or known places.";
   std::string names;
   for (std::size_t i = 0; i < size.fixed.size() && i < kMostNames; ++i)
     names += (i > 0 ? ", " : "") + size.fixed[i];
@@ -266,8 +265,7 @@ std::string size_sentence(const SizeOfMachine& size) {
   if (size.from == "machine")
     return fmt::format(
         "The size of the machine comes from lengths that the fit does not change ({}): an error of 1 % in "
-        "them "
-        "is an error of 1 % in the size.",
+        "them is an error of 1 % in the size.",
         names);
   std::string text = fmt::format("The size of the machine comes from the {}: {:.2g} um/m{}.", size.from,
                                  kPartsPerMillion * size.relative_std,

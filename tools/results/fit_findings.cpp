@@ -27,16 +27,14 @@ bool contradicts_fit(const model::FitRecord::Finding& finding) {
                    {"something-missing", "disturbed", "not-varied", "not-distinguished", "size-unknown"});
 }
 
-/// Share of the parameters of the machine, set-ups excluded, that the readings determine at least in part;
-/// nullopt: no such parameter was free.
-std::optional<double> determined_by_data(const fit::FitResult& result) {
-  double count = 0, determined = 0;
-  for (std::size_t i = 0; i < result.estimates.size(); ++i) {
-    if (model::is_set_up(result.parameters[i].kind)) continue;
-    ++count;
-    determined += result.estimates[i].from == fit::Origin::kPrior ? 0 : 1;
-  }
-  return count > 0 ? std::optional(determined / count) : std::nullopt;
+/// True if the readings determine a parameter of the machine at least in part; set-ups do not count. nullopt:
+/// no such parameter was free.
+std::optional<bool> determines_the_machine(const fit::FitResult& result) {
+  std::optional<bool> determined;
+  for (std::size_t i = 0; i < result.estimates.size(); ++i)
+    if (!model::is_set_up(result.parameters[i].kind))
+      determined = determined.value_or(false) || result.estimates[i].from != fit::Origin::kPrior;
+  return determined;
 }
 
 }  // namespace
@@ -91,8 +89,8 @@ text::Assurance assurance_of(const fit::FitResult& result) {
     word.not_covered(
         "Touches do not show whether an effect depends on an axis that hardly moved between them: at other "
         "positions of the axes, compare the fitted machine with new readings.");
-  if (const auto share = determined_by_data(result))
-    word.require("determined", *share > 0, "The readings determine at least one parameter of the machine.");
+  if (const auto determined = determines_the_machine(result))
+    word.require("determined", *determined, "The readings determine at least one parameter of the machine.");
   std::string open;
   for (const fit::ParameterEstimate& item : result.estimates)
     if (item.from == fit::Origin::kPrior) open += (open.empty() ? "" : ", ") + item.name;

@@ -45,8 +45,8 @@ struct CanopenCounts {
 /// the frames that it sends, in the order on the bus: a SYNC may overtake an offset that waits for the bus.
 ///   Operation enabled                    the offset follows, within parts_per_sync; it stays while
 ///                                        the drive leaves out a TPDO
-///   Quick stop, fault reaction           the offset goes to zero within parts_per_sync; the drive still
-///   moves any other state, in one TPDO         the offset stays: a wrong bit of a statusword makes no step
+///   Quick stop, fault reaction           the offset goes to zero within parts_per_sync: the drive moves
+///   any other state, in one TPDO         the offset stays: a wrong bit of a statusword makes no step
 ///   any other state, in two TPDOs        zero: the drive has no torque
 ///   after a loss                         one write is refused; then the offset only decreases, until the
 ///                                        wanted offset is zero

@@ -72,9 +72,7 @@ class MoveSearch {
       : measurement_(rows) {
     const VectorXd weights = fit_weights(rows);
     const auto p = static_cast<double>(parameters.size());
-    std::vector<std::size_t> all;
-    for (std::size_t i = 0; i < rows.observations.size(); ++i)
-      if (weights[static_cast<Index>(i)] > 0) all.push_back(i);
+    const std::vector<std::size_t> all = fitted_readings(weights);
     const auto stride = static_cast<std::size_t>(
         std::max(1.0, std::ceil(static_cast<double>(all.size()) * (p + 60) * (p + 60) / kMostProducts)));
     for (std::size_t i = 0; i < all.size(); i += stride) kept_.push_back(all[i]);

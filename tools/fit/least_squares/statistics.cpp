@@ -167,4 +167,11 @@ Eigen::VectorXd fit_weights(const model::Measurement& m) {
   return weights;
 }
 
+std::vector<std::size_t> fitted_readings(const Eigen::VectorXd& weights) {
+  std::vector<std::size_t> fitted;
+  for (Eigen::Index i = 0; i < weights.size(); ++i)
+    if (weights[i] > 0) fitted.push_back(static_cast<std::size_t>(i));
+  return fitted;
+}
+
 }  // namespace vernier::fit

@@ -45,6 +45,9 @@ NoiseUnit noise_unit(const model::Measurement& m);
 /// multiplies the residual.
 Eigen::VectorXd fit_weights(const model::Measurement& m);
 
+/// Returns the indices of the readings of the fit rows: their weight is not zero.
+std::vector<std::size_t> fitted_readings(const Eigen::VectorXd& weights);
+
 /// True if u is given for every fit row.
 bool has_uncertainty(const model::Measurement& m);
 
