@@ -141,10 +141,13 @@ enum class ImageState : std::uint8_t {
   kTrial = 2,      // the image on trial
   kLost = 3,       // an image is confirmed and cannot be loaded: Fault::kImageLost
 };
-/// Flags for the stored settings of the operator (operator_record.h).
+/// Flags for the records of the store (operator_record.h, slots.h).
 enum SettingFlag : std::uint8_t {
   kSettingDamaged = 1u << 0,  // a record was damaged at the start: deactivated until an operator activates
   kSettingRefused = 1u << 1,  // the medium refuses the newest setting: a start may restore an older one
+  /// A record of the images was damaged at the start: the image may be one that was replaced; deactivated
+  /// until an operator activates.
+  kImageRecordDamaged = 1u << 2,
 };
 struct LinkState {
   std::uint64_t fingerprint;  // of the running image; 0: no image

@@ -29,7 +29,7 @@ bool is_valid(const OperatorRecord& record) noexcept {
 OperatorRecords OperatorRecords::load(const OperatorPlace& first, const OperatorPlace& second) noexcept {
   OperatorRecords records;
   if (!first.written && !second.written) return records;
-  records.places_ = OperatorRecordsState::kDamaged;
+  records.places_ = StoredPair::kDamaged;
   const bool one = first.written && is_valid(first.record), two = second.written && is_valid(second.record);
   if (!one && !two) return records;
   // The sequences of one store differ by one; the unsigned distance stays correct when they wrap.
@@ -38,7 +38,7 @@ OperatorRecords OperatorRecords::load(const OperatorPlace& first, const Operator
   records.next_place_ = second_counts ? kOperatorPlace : kOperatorPlace + 1;
   const OperatorRecord& other = second_counts ? first.record : second.record;
   if (one && two && records.now_.sequence == sequence_after(other.sequence))
-    records.places_ = OperatorRecordsState::kIntact;
+    records.places_ = StoredPair::kIntact;
   return records;
 }
 
@@ -50,7 +50,7 @@ OperatorChange OperatorRecords::change_to(const OperatorState& state) const noex
 
 void OperatorRecords::stored(const OperatorChange& change) noexcept {
   // The other place has the record before this change, if there was one.
-  places_ = known() ? OperatorRecordsState::kIntact : OperatorRecordsState::kDamaged;
+  places_ = known() ? StoredPair::kIntact : StoredPair::kDamaged;
   now_ = change.record;
   next_place_ = 2 * kOperatorPlace + 1 - change.place;
 }

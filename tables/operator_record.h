@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "comp/equation.h"
+#include "tables/stored_place.h"
 
 namespace vernier {
 
@@ -50,29 +51,18 @@ struct OperatorChange {
   OperatorRecord record;
 };
 
-/// Contents of one place of the store.
-struct OperatorPlace {
-  bool written = false;  // something is there, valid or not; erased flash (ones) is not written
-  OperatorRecord record{};
-};
-
-/// State of the two places of the store.
-enum class OperatorRecordsState : std::uint8_t {
-  kNothing = 0,  // no place was ever written: the operator has set nothing
-  kIntact = 1,   // two valid records, one change apart
-  kDamaged = 2,  // all other contents: a setting was made, and the newest may be lost
-};
+using OperatorPlace = StoredPlace<OperatorRecord>;
 
 /// The two records of the operator's state, without access to the medium. A change overwrites the older
-/// record; the first change writes both. After a power failure at any byte of a write the state is kIntact
-/// with the state before or after the change, or kDamaged.
+/// record; the first change writes both: intact are two valid records, one change apart. After a power
+/// failure at any byte of a write the pair is intact with the state before or after the change, or damaged.
 class OperatorRecords {
  public:
   /// Loads the newer valid record of the two places. Not real-time safe.
   static OperatorRecords load(const OperatorPlace& first, const OperatorPlace& second) noexcept;
   /// State of the places since load() and the changes stored since. A damaged pair is intact after at
   /// most two changes.
-  OperatorRecordsState places() const noexcept { return places_; }
+  StoredPair places() const noexcept { return places_; }
   /// True if a record is stored. Otherwise state() is the default state (no setting of an operator).
   bool known() const noexcept { return now_.sequence != 0; }
   const OperatorState& state() const noexcept { return now_.state; }
@@ -84,7 +74,7 @@ class OperatorRecords {
  private:
   OperatorRecord now_{kOperatorMagic, 0, {}, 0};
   std::uint32_t next_place_ = kOperatorPlace;
-  OperatorRecordsState places_ = OperatorRecordsState::kNothing;
+  StoredPair places_ = StoredPair::kNothing;
 };
 
 /// True for a record that a board may use: magic, checksum, sequence. Not real-time safe.

@@ -35,14 +35,22 @@ bool is_valid(const SlotRecord& record) noexcept {
          (record.trial == kNoSlot || record.trial != record.confirmed);
 }
 
-Slots Slots::load(const SlotRecord& first, const SlotRecord& second) noexcept {
+Slots Slots::load(const SlotPlace& first, const SlotPlace& second) noexcept {
   Slots slots;
-  const bool one = is_valid(first), two = is_valid(second);
+  if (!first.written && !second.written) return slots;
+  slots.places_ = StoredPair::kDamaged;
+  const bool one = first.written && is_valid(first.record), two = second.written && is_valid(second.record);
   if (!one && !two) return slots;
   // Sequences differ by one in a store that this machine wrote; unsigned distance survives their wrap.
-  const bool second_counts = two && (!one || second.sequence - first.sequence < UINT32_MAX / 2);
-  slots.now_ = second_counts ? second : first;
+  const bool second_counts = two && (!one || second.record.sequence - first.record.sequence < UINT32_MAX / 2);
+  slots.now_ = second_counts ? second.record : first.record;
   slots.next_place_ = second_counts ? 0 : 1;
+  const SlotPlace& other = second_counts ? first : second;
+  const bool pair = one && two && slots.now_.sequence == other.record.sequence + 1;
+  if (pair || (!other.written && slots.now_.sequence == 1))
+    slots.places_ = StoredPair::kIntact;
+  else
+    slots.now_.trial = kNoSlot, slots.now_.trial_issued = 0;
   return slots;
 }
 
@@ -85,6 +93,8 @@ SlotChange Slots::revert() const noexcept {
 }
 
 void Slots::stored(const SlotChange& change) noexcept {
+  // The other place has the record before this change, if there was one.
+  if (now_.sequence != 0 || places_ == StoredPair::kNothing) places_ = StoredPair::kIntact;
   now_ = change.record;
   next_place_ = 1 - change.place;
 }

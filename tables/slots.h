@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "tables/stored_place.h"
+
 namespace vernier {
 
 /// The value "no slot": no confirmed image yet, or no trial.
@@ -54,6 +56,8 @@ static_assert(offsetof(SlotRecordV1, magic) == 0 && offsetof(SlotRecordV1, seque
               offsetof(SlotRecordV1, reserved) == 26 && offsetof(SlotRecordV1, checksum) == 28);
 constexpr std::uint32_t kSlotMagicV1 = 0x544f4c53;  // "SLOT"
 
+using SlotPlace = StoredPlace<SlotRecord>;
+
 /// A record and the place (0 or 1) where it must be stored.
 struct SlotChange {
   std::uint32_t place;
@@ -61,16 +65,20 @@ struct SlotChange {
 };
 
 /// State machine of the two slots, without access to the medium. Slots returns the record to be stored for a
-/// change, and applies the change only after the record is stored. After a power failure at any byte of any
-/// write the state is the state before or after the change.
+/// change, and applies the change only after the record is stored. Intact are two valid records, one change
+/// apart, or the first record alone. After a power failure at any byte of any write the state is the state
+/// before or after the change; or the state before it, of a damaged pair.
 ///
 ///   confirmed A ── (image written to B) ── try ──► confirmed A, trial B ── confirm ──► confirmed B
 ///                                                          └──── revert, or a reset ──► confirmed A
 class Slots {
  public:
-  /// Loads the newer valid record of the two; without a valid record, there is no confirmed image.
-  /// Not real-time safe.
-  static Slots load(const SlotRecord& first, const SlotRecord& second) noexcept;
+  /// Loads the newer valid record of the two; without a valid record, there is no confirmed image. A damaged
+  /// pair has no trial: a reset ends it. Not real-time safe.
+  static Slots load(const SlotPlace& first, const SlotPlace& second) noexcept;
+  /// State of the places since load() and the changes stored since. A damaged pair is intact after at most
+  /// two changes.
+  StoredPair places() const noexcept { return places_; }
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }
   std::uint8_t trial() const noexcept { return now_.trial; }
@@ -99,6 +107,7 @@ class Slots {
 
   SlotRecord now_{kSlotMagic, 0, 0, 0, 0, 0, kNoSlot, kNoSlot, 0, 0, 0};
   std::uint32_t next_place_ = 0;
+  StoredPair places_ = StoredPair::kNothing;
 };
 
 /// Converts a valid record of version 1 to the present version; an invalid record gives no record.

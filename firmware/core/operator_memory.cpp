@@ -3,37 +3,17 @@
 
 #include <cstring>
 
+#include "firmware/core/read_place.h"
 #include "tables/link_format.h"
 
 namespace vernier {
 namespace {
-
-constexpr std::uint8_t kErased = 0xff;  // flash memory
 
 std::uint32_t number_of(const Wiring::Axis& axis) noexcept {
   return operator_axis(axis.name.c_str(), static_cast<std::uint32_t>(axis.name.size()));
 }
 
 }  // namespace
-
-// Erased flash reads as ones. A store of an earlier version has no such place. A file that is longer than a
-// record was not written by this board, also if the bytes behind the record are ones.
-OperatorPlace OperatorMemory::read(std::uint32_t number) noexcept {
-  OperatorPlace place;
-  constexpr std::uint32_t kSize = sizeof(OperatorRecord);
-  std::uint8_t bytes[kSize + 1];
-  const HalFault first = store_.read_record(number, bytes, 1);
-  if (first == HalFault::kNoReading || first == HalFault::kNoDevice) return place;
-  place.written = true;
-  if (store_.read_record(number, bytes, kSize + 1) == HalFault::kNone &&
-      (bytes[kSize] != kErased || !store_.reads_ones_where_erased()))
-    return place;
-  if (store_.read_record(number, bytes, kSize) != HalFault::kNone) return place;
-  place.written = false;
-  for (std::uint32_t i = 0; i < kSize; ++i) place.written = place.written || bytes[i] != kErased;
-  std::memcpy(&place.record, bytes, sizeof(place.record));
-  return place;
-}
 
 OperatorState OperatorMemory::present() const noexcept {
   const std::uint32_t said = exchange_.operator_said.load(std::memory_order_acquire);
@@ -49,9 +29,10 @@ OperatorState OperatorMemory::present() const noexcept {
 }
 
 OperatorState OperatorMemory::load() noexcept {
-  records_ = OperatorRecords::load(read(kOperatorPlace), read(kOperatorPlace + 1));
+  records_ = OperatorRecords::load(read_place<OperatorRecord>(store_, kOperatorPlace),
+                                   read_place<OperatorRecord>(store_, kOperatorPlace + 1));
   found_ = records_.places();
-  damaged_.store(found_ == OperatorRecordsState::kDamaged, std::memory_order_relaxed);
+  damaged_.store(found_ == StoredPair::kDamaged, std::memory_order_relaxed);
   stored_ = records_.known() ? records_.state() : present();
   OperatorState state = stored_;
   if (damaged()) state.out = 1;
@@ -79,9 +60,9 @@ bool OperatorMemory::store(const OperatorState& state) noexcept {
 // record, and a record that is lost or unreadable shows.
 bool OperatorMemory::store_changes(const OperatorState& now) noexcept {
   if (now != stored_ && !store(now)) return false;
-  if (records_.places() != OperatorRecordsState::kDamaged) return true;
+  if (records_.places() != StoredPair::kDamaged) return true;
   if (!store(now)) return false;
-  return records_.places() != OperatorRecordsState::kDamaged || store(now);
+  return records_.places() != StoredPair::kDamaged || store(now);
 }
 
 void OperatorMemory::save() noexcept {

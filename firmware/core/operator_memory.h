@@ -32,13 +32,12 @@ class OperatorMemory {
   std::uint32_t stored_ticks() const noexcept { return stored_ticks_.load(std::memory_order_acquire); }
   std::uint32_t refused_ticks() const noexcept { return refused_ticks_.load(std::memory_order_acquire); }
   /// State of the records that load() found.
-  OperatorRecordsState found() const noexcept { return found_; }
+  StoredPair found() const noexcept { return found_; }
   /// True if load() found damaged records, until an operator activates the correction.
   bool damaged() const noexcept { return damaged_.load(std::memory_order_relaxed); }
 
  private:
   OperatorState present() const noexcept;
-  OperatorPlace read(std::uint32_t number) noexcept;
   bool store(const OperatorState& state) noexcept;
   bool store_changes(const OperatorState& now) noexcept;
 
@@ -47,7 +46,7 @@ class OperatorMemory {
   Exchange& exchange_;
   OperatorRecords records_;
   OperatorState stored_;
-  OperatorRecordsState found_ = OperatorRecordsState::kNothing;
+  StoredPair found_ = StoredPair::kNothing;
   std::atomic<bool> refused_{false}, damaged_{false};
   std::atomic<std::uint32_t> stored_ticks_{0}, refused_ticks_{0};
 };

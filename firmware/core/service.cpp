@@ -198,10 +198,11 @@ void Service::publish_health() noexcept {
 }
 
 // The values that a hold kept are lost: a start after a hold waits for an operator, as after a deactivation.
+// So does a start with an image that may be one that was replaced.
 void Service::restore() noexcept {
   const OperatorState state = operator_.load();
   const bool known = state.fault < kFaultCount;
-  taken_out_ = state.out != 0 || state.holding != 0 || !known;
+  taken_out_ = state.out != 0 || state.holding != 0 || !known || uploader_.damaged();
   if (known && state.fault != 0) {
     cycle_.restore(static_cast<Fault>(state.fault));
     activated_ = true;  // before the fault: clearing the fault does not activate
@@ -244,6 +245,8 @@ bool Service::tell_settings() noexcept {
 bool Service::look_after_store() noexcept {
   uploader_.look_after_store();
   operator_.save();
+  if (uploader_.damaged() && (exchange_.operator_said.load(std::memory_order_acquire) & 1) == 0)
+    uploader_.repair();
   const bool told = tell_settings();
   if (!desk_.asked()) return told;
   if (!answered_) answer_size_ = link_.answer(desk_.request(), desk_.size(), desk_.reply(), now());

@@ -225,7 +225,13 @@ void Devices::Parts::make_register_axes(const std::string& block, std::vector<Ro
 
 void Devices::Parts::make_counter(std::uint32_t axis, std::vector<Route<AxisReader>>& routes) {
   std::string error;
-  auto counter = open_counter_axis({&file.axes[axis].position, file.axes[axis].wiring.rotary}, error);
+  const SignalSource& source = file.axes[axis].position;
+  auto counter =
+      open_counter_axis({&source, file.axes[axis].wiring.rotary}, file.service.limits.axis[axis].limits,
+                        file.service.upload.tick, clock, error);
+  for (const auto& other : counters)
+    if (counter && other->place() == counter->place())
+      source.fail_at("device", "device: another axis has the counter " + counter->place());
   routes[axis] = {counter.get(), 0};
   note(std::string("axis.") + file.axes[axis].wiring.name.c_str() + ".position  counter", error,
        [this, counter = counter.get()] {

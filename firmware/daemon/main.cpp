@@ -164,7 +164,15 @@ bool all_there(Devices& devices) {
   return all;
 }
 
-void say_image(const UploadResult& result, const Service& service) {
+void say_image(const UploadResult& result, const Service& service, const BoardFile& file) {
+  if (service.uploader().damaged())
+    std::fprintf(
+        stderr,
+        "vernierd: a record of the images (%s/record0, record1) is damaged or missing: the image may "
+        "be one that was replaced, and the correction stays deactivated; compare the fingerprint "
+        "and test the medium of the store, then upload the image again or activate the correction "
+        "(vernier board activate)\n",
+        file.store.c_str());
   if (result.fault != UploadFault::kNone)
     std::fprintf(stderr, "vernierd: the confirmed image is not used: %s\n", describe(result).c_str());
   else if (service.uploader().record().confirmed == kNoSlot)
@@ -178,15 +186,15 @@ void say_image(const UploadResult& result, const Service& service) {
 }
 
 void say_operator(const Service& service, const BoardFile& file) {
-  const OperatorRecordsState found = service.operator_memory().found();
-  if (found == OperatorRecordsState::kDamaged)
+  const StoredPair found = service.operator_memory().found();
+  if (found == StoredPair::kDamaged)
     std::fprintf(
         stderr,
         "vernierd: a stored setting of the operator (%s/record2, record3) is damaged or missing: the "
         "correction stays deactivated, and the weights may be older; test the weights and the medium "
         "of the store, then activate the correction (vernier board activate)\n",
         file.store.c_str());
-  else if (found == OperatorRecordsState::kNothing && file.service.activate &&
+  else if (found == StoredPair::kNothing && file.service.activate &&
            service.uploader().record().confirmed != kNoSlot)
     std::fputs(
         "vernierd: no setting of an operator is stored: the correction is activated (activate = true)\n",
@@ -318,7 +326,7 @@ int run_board(const Arguments& arguments) {
   Board board = devices.board();
   board.identity = own_key.get();
   const auto service = std::make_unique<Service>(file.service, board, store);
-  say_image(service->boot(), *service);
+  say_image(service->boot(), *service, file);
   say_operator(*service, file);
   ServiceManager manager;
   keep_stacks_small();

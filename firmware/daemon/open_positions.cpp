@@ -20,7 +20,8 @@ constexpr std::int64_t kPeriodsWithout =
 
 }  // namespace
 
-std::unique_ptr<CounterAxis> open_counter_axis(const PositionAxis& axis, std::string& error) {
+std::unique_ptr<CounterAxis> open_counter_axis(const PositionAxis& axis, const AxisLimits& limits,
+                                               TimeUs tick, Clock& clock, std::string& error) {
   const SignalSource& source = *axis.source;
   source.only({"root", "device", "count", "bits", "scale", "offset"});
   const PositionScale scale = position_scale(source, axis.rotary);
@@ -30,7 +31,8 @@ std::unique_ptr<CounterAxis> open_counter_axis(const PositionAxis& axis, std::st
   // A counter has its name where a device of IIO has it.
   const std::string device = find_iio_device(source.text("root", kCounterRoot), source.text("device"), error);
   if (device.empty()) return nullptr;
-  return CounterAxis::open(device + "/count" + std::to_string(number), bits, scale, error);
+  return CounterAxis::open(device + "/count" + std::to_string(number), bits, scale,
+                           {limits.step, tick, limits.missing_ticks}, clock, error);
 }
 
 std::string modbus_axes_block(const SignalSource& source) {

@@ -674,5 +674,32 @@ TEST(CanopenPdos, AreComparedWithThoseOfTheDrive) {
   EXPECT_EQ(sdo.read({}, value), "the drive does not answer a request for 0x60B0:00");
 }
 
+TEST(CanopenPdos, OfTwentyNineBitsOrRareOrWrittenTwiceAreRefused) {
+  Dictionary drive;
+  CanopenSdo sdo = drive.client();
+  const std::uint32_t rpdo = 0x501, tpdo = 0x381;
+  drive.set(0x1403, 1, rpdo | 0x20000000);
+  EXPECT_EQ(sdo.check_offset(rpdo, {}), "RPDO 0x1403: the identifier 0x501 has 29 bits, needed are 11");
+  drive.set(0x1403, 1, rpdo), drive.set(0x1403, 2, 240);
+  EXPECT_EQ(sdo.check_offset(rpdo, {}), "") << "each synchronous type of an RPDO: with the next SYNC";
+  drive.set(0x1802, 1, tpdo | 0x20000000);
+  EXPECT_EQ(sdo.check_position(tpdo), "TPDO 0x1802: the identifier 0x381 has 29 bits, needed are 11");
+  drive.set(0x1802, 1, tpdo);
+  for (const std::uint32_t type : {0u, 2u, 240u}) {
+    drive.set(0x1802, 2, type);
+    EXPECT_EQ(sdo.check_position(tpdo),
+              "TPDO 0x1802: transmission type " + std::to_string(type) + ", needed is 1: with each SYNC");
+  }
+  drive.set(0x1400, 1, 0x201), drive.set(0x1600, 0, 2), drive.set(0x1600, 1, 0x60400010);
+  EXPECT_EQ(sdo.check_offset(rpdo, {}), "");
+  drive.set(0x1600, 2, 0x60b00020);
+  EXPECT_EQ(sdo.check_offset(rpdo, {}),
+            "RPDO 0x1600: object 0x60B00020 is mapped there too; only the RPDO of the board may write it");
+  drive.set(0x1400, 1, 0x80000201);
+  EXPECT_EQ(sdo.check_offset(rpdo, {}), "") << "that one is off";
+  drive.set(0x1404, 1, rpdo);
+  EXPECT_EQ(sdo.check_offset(rpdo, {}), "two active RPDOs of the drive have the identifier 0x501");
+}
+
 }  // namespace
 }  // namespace vernier::canopen_test

@@ -943,6 +943,38 @@ TEST_F(Check, RegistersOfAControllerHaveOneUse) {
   }
 }
 
+// Whatever the names of its directory.
+TEST_F(Check, OneCounterHasOneAxis) {
+  for (const int counter : {0, 1}) {
+    const std::string at = "counter" + std::to_string(counter);
+    files_.put(at + "/name", "ctr" + std::to_string(counter)), files_.put(at + "/count0/count", "7"),
+        files_.put(at + "/count1/count", "7"), files_.put(at + "/count0/ceiling", "4294967295"),
+        files_.put(at + "/count1/ceiling", "4294967295");
+  }
+  std::filesystem::create_directory_symlink(files_.path() + "/counter0", files_.path() + "/link");
+  const auto board = [](const std::string& second) {
+    const auto axis = [](const char* name, const std::string& source) {
+      return std::string("[axis.") + name + "]\nlow = 0\nhigh = 100\nposition = { kind = \"counter\", " +
+             source + ", scale = 0.1 }\noutput = { kind = \"sim\" }\n";
+    };
+    return "[board]\nname = \"m\"\n" + axis("X", "device = \"ROOT/counter0/\"") + axis("Y", second);
+  };
+  for (const char* const wrong :
+       {"device = \"ROOT/counter0/\"", "device = \"ROOT/link/\"", "root = \"ROOT\", device = \"ctr0\"",
+        "device = \"ROOT/counter1/../counter0/\""}) {
+    write(board(wrong));
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << wrong << said.text;
+    EXPECT_NE(said.text.find("another axis has the counter"), std::string::npos) << wrong << said.text;
+  }
+  for (const char* const right : {"device = \"ROOT/counter1/\"", "device = \"ROOT/counter0/\", count = 1"}) {
+    write(board(right));
+    const Said said = run("--check");
+    EXPECT_EQ(said.text.find("another axis"), std::string::npos) << right << said.text;
+    EXPECT_NE(said.text.find("ok       axis.Y.position  counter"), std::string::npos) << right << said.text;
+  }
+}
+
 // Two clients on a serial line disturb each other, under whatever names.
 TEST_F(Check, SerialLineOfABlockHasOneUse) {
   files_.put("tty", "");

@@ -4,6 +4,9 @@
 #include "hal/linux/modbus/modbus_output.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -412,7 +415,7 @@ TEST_F(ModbusOutputLoss, RestartOfTheControllerWithinTheTimeOutMakesNoStep) {
   ticks_->run(20ms, 20'000);
   const std::size_t before = plc_.blocks().size();
   plc_.gone = false;
-  ticks_->run(100ms, 20'000);
+  ticks_->run(400ms, 20'000);
   const auto blocks = plc_.blocks();
   ASSERT_GT(blocks.size(), before);
   // The first block after the restart is not valid, and no valid one is far from zero.
@@ -553,6 +556,90 @@ TEST_F(ModbusOutputLoss, TicksThatStandStillLeaveNothingValid) {
   std::this_thread::sleep_for(kDetected);
   EXPECT_EQ(plc_.blocks().back().valid & 1, 0);
   EXPECT_EQ(ticks_->step(20'000), HalFault::kRefused) << "the tick learns of it";
+  expect_return_without_a_step(plc_, *output_, *ticks_);
+}
+
+// Everything of the process stands still, as in a debugger or under load: the controller has removed the
+// correction meanwhile. One block can be on its way.
+TEST_F(ModbusOutputLoss, StandstillOfTheProcessLeavesNothingValid) {
+  ticks_->run(200ms, 20'000);
+  ASSERT_EQ(plc_.blocks().back().valid & 1, 1);
+  const auto before = Clock::now();
+  const pid_t here = getpid(), child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    kill(here, SIGSTOP);
+    std::this_thread::sleep_for(2 * kTimeout);
+    kill(here, SIGCONT);
+    _exit(0);
+  }
+  ticks_->run(300ms, 20'000);
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
+  std::size_t after = 0, valid = 0;
+  auto newest = before;
+  for (const Plc::Block& block : plc_.blocks()) {
+    if (after == 0 && block.when - newest < kTimeout) {
+      newest = std::max(newest, block.when);
+      continue;
+    }
+    ++after;
+    valid += (block.valid & 1) != 0 && block.values[0] != 0 ? 1 : 0;
+  }
+  EXPECT_GT(after, 10u);
+  EXPECT_LE(valid, 1u);
+  expect_return_without_a_step(plc_, *output_, *ticks_);
+}
+
+/// Another board at the same block of a controller.
+class OtherBoard {
+ public:
+  explicit OtherBoard(const Plc& plc)
+      : line_(ModbusLine::tcp("127.0.0.1", plc.port(), TimeUs(20'000), error_)) {}
+  bool write(std::chrono::milliseconds time) {
+    bool all = true;
+    for (const auto end = Clock::now() + time; Clock::now() < end; std::this_thread::sleep_for(5ms)) {
+      const std::uint16_t block[] = {++sequence_, 1, 0, 1900};
+      all = line_->write(1, Plc::kBlock, 4, block) && all;
+    }
+    return all;
+  }
+  std::uint16_t sequence() const { return sequence_; }
+
+ private:
+  std::string error_;
+  std::shared_ptr<ModbusLine> line_;
+  std::uint16_t sequence_ = 40'000;
+};
+std::size_t blocks_of_others(const std::vector<Plc::Block>& blocks, std::size_t from, std::uint16_t last) {
+  std::size_t count = 0;
+  for (std::size_t i = from; i < blocks.size(); ++i)
+    count += static_cast<std::uint16_t>(last - blocks[i].sequence) > 1000 ? 1 : 0;
+  return count;
+}
+
+TEST_F(ModbusOutputLoss, AnotherBoardIsDetectedAndNotWrittenOver) {
+  OtherBoard other(plc_);
+  ASSERT_TRUE(other.write(50ms));
+  EXPECT_EQ(ticks_->step(20'000), HalFault::kRefused) << "within 50 ms";
+  const std::size_t before = plc_.blocks().size();
+  ASSERT_TRUE(other.write(400ms));
+  EXPECT_EQ(blocks_of_others(plc_.blocks(), before, other.sequence()), 0u);
+  EXPECT_EQ(ticks_->step(20'000), HalFault::kRefused);
+  expect_return_without_a_step(plc_, *output_, *ticks_);
+  EXPECT_EQ(output_->account().find(" 0 numbers of another"), std::string::npos) << output_->account();
+}
+
+// Another board may have begun while the controller could not be reached.
+TEST_F(ModbusOutputLoss, AnotherBoardThatBeganInALossIsNotWrittenOver) {
+  plc_.stuck = true;
+  ticks_->until_refused(20'000);
+  OtherBoard other(plc_);
+  ASSERT_TRUE(other.write(50ms));
+  const std::size_t before = plc_.blocks().size();
+  plc_.stuck = false;
+  ASSERT_TRUE(other.write(400ms));
+  EXPECT_EQ(blocks_of_others(plc_.blocks(), before, other.sequence()), 0u);
+  EXPECT_EQ(ticks_->step(20'000), HalFault::kRefused);
   expect_return_without_a_step(plc_, *output_, *ticks_);
 }
 

@@ -19,6 +19,7 @@
 
 #include "hal/linux/counter_axis.h"
 #include "hal/linux/modbus/modbus_axes.h"
+#include "hal/sim/sim_clock.h"
 #include "tests/conformance/linux_devices.h"
 
 namespace vernier::positions_test {
@@ -61,10 +62,16 @@ class Counter : public testing::Test {
         files_.put("counter0/count0/enable", "1");
   }
   std::unique_ptr<CounterAxis> open(int bits = 0) {
-    return CounterAxis::open(files_.path() + "/counter0/count0", bits, {100, 1, 5'000, false}, error_);
+    return open_at("counter0/count0", bits, {100, 1, 5'000, false});
+  }
+  // 16 bits of 100 nm, at most 10 um a tick: half the range in 327.68 ms.
+  std::unique_ptr<CounterAxis> open_at(const std::string& place, int bits, const PositionScale& scale) {
+    const CounterAxis::Speed speed{10'000, TimeUs(1000), 3};
+    return CounterAxis::open(files_.path() + "/" + place, bits, scale, speed, clock_, error_);
   }
   void count(const std::string& text) { files_.put("counter0/count0/count", text); }
   std::string error_;
+  SimClock clock_;
   const SysfsDirectory files_{testing::TempDir() + "counter_" + std::to_string(getpid()) + "_" +
                               testing::UnitTest::GetInstance()->current_test_info()->name()};
 };
@@ -117,8 +124,39 @@ TEST_F(Counter, CounterThatIsOffOrMissingIsNamed) {
   files_.put("counter0/count0/enable", "0");
   EXPECT_EQ(open(), nullptr);
   EXPECT_NE(error_.find("the counter does not count: write 1 to"), std::string::npos) << error_;
-  EXPECT_EQ(CounterAxis::open(files_.path() + "/counter1/count0", 0, {}, error_), nullptr);
+  EXPECT_EQ(open_at("counter1/count0", 0, {}), nullptr);
   EXPECT_NE(error_.find("counter1/count0/count: No such file"), std::string::npos) << error_;
+}
+
+// The counts say the shortest way; the axis may have gone the other one.
+TEST_F(Counter, LongTimeWithoutAReadingIsALostReference) {
+  const auto axis = open();
+  ASSERT_NE(axis, nullptr) << error_;
+  const auto referenced = [&] {
+    AxisReading reading;
+    axis->begin_tick();
+    EXPECT_EQ(axis->read_axis(0, reading), HalFault::kNone);
+    return reading.referenced;
+  };
+  clock_.spend(InstantNs(10'000'000'000));
+  EXPECT_TRUE(referenced()) << "the first reading";
+  clock_.spend(InstantNs(327'000'000));
+  count("");
+  EXPECT_EQ(tick(*axis), kNothing);
+  count("32000");
+  EXPECT_TRUE(referenced()) << "less than half the range at the largest speed";
+  clock_.spend(InstantNs(327'679'999));
+  EXPECT_TRUE(referenced());
+  clock_.spend(InstantNs(327'680'000));
+  EXPECT_FALSE(referenced());
+  EXPECT_FALSE(referenced()) << "until the board starts again";
+}
+
+TEST_F(Counter, CounterThatTheAxisPassesTooFastIsRefused) {
+  EXPECT_EQ(open(8), nullptr);
+  EXPECT_NE(error_.find("half its range in 1.28 ms, and a reading may be 4 ms old"), std::string::npos)
+      << error_;
+  EXPECT_NE(open(10), nullptr) << error_;
 }
 
 /// A controller whose registers libmodbus's own server serves: sequence in 10, positions in 12 and 14.

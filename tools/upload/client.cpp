@@ -283,6 +283,11 @@ std::string settings_text(std::uint8_t settings) {
     text +=
         "DEACTIVATED: a stored setting of the operator was damaged or missing at the start; the weights may "
         "be older. Test the weights and the store of the board, then activate the correction\n";
+  if ((settings & kImageRecordDamaged) != 0)
+    text +=
+        "DEACTIVATED: a record of the images was damaged or missing at the start; the image may be one that "
+        "was replaced. Compare the fingerprint, test the store of the board, then upload the image again or "
+        "activate the correction\n";
   if ((settings & kSettingRefused) != 0)
     text +=
         "NOT STORED: the store of the board refuses the newest setting of the operator; a start may restore "

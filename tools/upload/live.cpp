@@ -115,6 +115,7 @@ nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, c
       {"running_since_t", state.since_s},
       {"weight", state.weight},
       {"settings_damaged", (state.settings & kSettingDamaged) != 0},
+      {"image_record_damaged", (state.settings & kImageRecordDamaged) != 0},
       {"settings_refused", (state.settings & kSettingRefused) != 0}};
   for (std::size_t i = 0; i < info.axes.size(); ++i)
     result["axes"][info.axes[i].name] = {{"position", tick.position[i]},

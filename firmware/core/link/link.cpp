@@ -311,6 +311,11 @@ Link::Running Link::running(const LoadedProgram* program) const {
   return found;
 }
 
+std::uint32_t Link::setting_flags() const noexcept {
+  const std::uint32_t flags = exchange_.setting_flags.load(std::memory_order_relaxed);
+  return uploader_.damaged() ? flags | kImageRecordDamaged : flags;
+}
+
 LinkStatus Link::state(Writer& out) {
   StateRecord record;
   if (exchange_.ticks.count() == 0 || !exchange_.state.read(record)) return LinkStatus::kNotReady;
@@ -320,7 +325,7 @@ LinkStatus Link::state(Writer& out) {
                     record.since_us,
                     record.weight,
                     static_cast<std::uint8_t>(now.image),
-                    static_cast<std::uint8_t>(exchange_.setting_flags.load(std::memory_order_relaxed)),
+                    static_cast<std::uint8_t>(setting_flags()),
                     {}});
   for (std::size_t i = 0; i < wiring_.axes.size(); ++i)
     out.put(LinkAxisState{record.wanted[i], record.achieved[i],
@@ -472,7 +477,7 @@ void Link::fill_registers(std::uint16_t* values) {
   values[kLiveMode] = tick.mode;
   values[kLiveFault] = tick.fault;
   values[kLiveHolding] = tick.holding;
-  values[kLiveSettings] = static_cast<std::uint16_t>(exchange_.setting_flags.load(std::memory_order_relaxed));
+  values[kLiveSettings] = static_cast<std::uint16_t>(setting_flags());
   fill_state(values, tick);
   put_pair(values + kLiveTicks, static_cast<std::int32_t>(static_cast<std::uint32_t>(count)));
   put_pair(values + kLiveOverruns, static_cast<std::int64_t>(health.overruns));

@@ -64,6 +64,7 @@ class Link {
   };
   Running running(const LoadedProgram* program) const;
   LinkStatus state(Writer& out);
+  std::uint32_t setting_flags() const noexcept;
   void fill_state(std::uint16_t* values, const TickRecord& tick);
   LinkStatus shares(Reader& in, Writer& out);
   bool work_out_shares(const LoadedProgram& program);

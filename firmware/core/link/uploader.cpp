@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "comp/fixed.h"
+#include "firmware/core/read_place.h"
 
 namespace vernier {
 namespace {
@@ -16,24 +17,11 @@ UploadResult refused(UploadFault fault) {
 }
 
 // A store of an earlier version has shorter records.
-SlotRecord read_record(SlotStore& store, std::uint32_t place) {
-  SlotRecord record{};
-  std::uint8_t bytes[sizeof(SlotRecord)];
-  if (store.read_record(place, bytes, sizeof(bytes)) == HalFault::kNone)
-    std::memcpy(&record, bytes, sizeof(record));
-  if (is_valid(record) || store.read_record(place, bytes, sizeof(SlotRecordV1)) != HalFault::kNone)
-    return record;
-  SlotRecordV1 old;
-  std::memcpy(&old, bytes, sizeof(old));
-  return old.magic == kSlotMagicV1 ? upgraded(old) : record;
-}
-
-// A place that contains data, valid or not. Erased flash reads as ones.
-bool is_written(SlotStore& store, std::uint32_t place) {
-  std::uint8_t bytes[sizeof(SlotRecord)];
-  if (store.read_record(place, bytes, 1) == HalFault::kNoReading) return false;
-  if (store.read_record(place, bytes, sizeof(bytes)) != HalFault::kNone) return true;
-  return std::any_of(std::begin(bytes), std::end(bytes), [](std::uint8_t byte) { return byte != 0xff; });
+SlotPlace read_slot_place(SlotStore& store, std::uint32_t number) noexcept {
+  const SlotPlace place = read_place<SlotRecord>(store, number);
+  if (is_valid(place.record)) return place;
+  const StoredPlace<SlotRecordV1> old = read_place<SlotRecordV1>(store, number);
+  return old.record.magic == kSlotMagicV1 ? SlotPlace{old.written, upgraded(old.record)} : place;
 }
 
 bool names(const char (&board)[kBoardNameBytes], const Name& name) {
@@ -78,6 +66,7 @@ bool Uploader::store(const SlotChange& change) {
   std::memcpy(bytes, &change.record, sizeof(bytes));
   if (store_.write_record(change.place, bytes, sizeof(bytes)) != HalFault::kNone) return false;
   slots_.stored(change);
+  if (damaged_) damaged_ = slots_.places() == StoredPair::kDamaged;
   return true;
 }
 
@@ -182,14 +171,21 @@ UploadResult Uploader::load_v1(std::uint8_t slot, LoadedProgram& loaded) {
 }
 
 // A reset ends a trial. If even that cannot be stored, the state on the medium gives the same result next
-// time.
+// time. A damaged pair stays as it is until repair(): a start before that finds the damage again.
 void Uploader::read_slots() {
-  const SlotRecord first = read_record(store_, 0), second = read_record(store_, 1);
-  // A power failure may have cut the first record that was ever written; no image was confirmed by then.
-  records_lost_ = !is_valid(first) && !is_valid(second) && is_written(store_, 0) && is_written(store_, 1);
+  const SlotPlace first = read_slot_place(store_, 0), second = read_slot_place(store_, 1);
   slots_ = Slots::load(first, second);
-  if (slots_.trial() != kNoSlot) store(slots_.revert());
+  // A power failure may have cut the first record that was ever written; no image was confirmed by then.
+  records_lost_ = first.written && second.written && !is_valid(first.record) && !is_valid(second.record);
+  if (slots_.places() != StoredPair::kDamaged && slots_.trial() != kNoSlot) store(slots_.revert());
   publish();
+}
+
+bool Uploader::repair() {
+  for (int i = 0; i < 2 && damaged(); ++i)
+    if (!store(slots_.revert())) return false;
+  publish();
+  return true;
 }
 
 UploadResult Uploader::boot_with(std::span<const std::uint8_t> image) {
@@ -215,6 +211,7 @@ UploadResult Uploader::boot_with(std::span<const std::uint8_t> image) {
 UploadResult Uploader::boot() {
   read_slots();
   image_lost_ = records_lost_;
+  damaged_ = slots_.places() == StoredPair::kDamaged && !records_lost_;
   if (records_lost_) {
     UploadResult lost = refused(UploadFault::kStore);
     lost.offender = "both records";

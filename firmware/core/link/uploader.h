@@ -60,8 +60,8 @@ class Uploader {
   // ---- the store
   /// Call boot() once after power-on. boot() reverts a correction image that was on trial, checks the
   /// confirmed image, and starts the confirmed image. The result gives the reason if no image runs. kNone:
-  /// also if no image was ever confirmed; kStore: no record of the store can be read, so the state is not
-  /// known. Not real-time safe.
+  /// also if no image was ever confirmed, and if damaged(); kStore: no record of the store can be read, so
+  /// the state is not known. Not real-time safe.
   UploadResult boot();
   /// Starts like boot(), but runs a correction image that the operator gives at the start of the board. This
   /// image is not signed, and the function does not change the medium. Not real-time safe.
@@ -76,6 +76,9 @@ class Uploader {
   /// Records that a trial is over; true if the record is written. If the record cannot be written, the next
   /// call tries again. Until then a reset gives the same result as the present medium. Not real-time safe.
   bool look_after_store();
+  /// Writes the records of the store again after a damage; true if they are written. Call it when an operator
+  /// has activated the image that runs. Not real-time safe.
+  bool repair();
   /// Reads bytes of the confirmed upload (header and image) from the medium. kNoReading: the offset is beyond
   /// the upload. Not real-time safe.
   HalFault read_confirmed(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept;
@@ -93,6 +96,9 @@ class Uploader {
   SlotsRecord record() const noexcept;
   /// True if a confirmed image could not be loaded and no other runs instead.
   bool image_lost() const noexcept { return image_lost_.load(); }
+  /// True if boot() found a record that is damaged or missing, until the next record is written: the image
+  /// may be one that was replaced.
+  bool damaged() const noexcept { return damaged_.load(); }
   /// Returns the remaining time of the trial; 0 without a trial.
   TimeUs trial_left(TimeUs now) const noexcept;
   std::uint32_t capacity() const noexcept { return store_.capacity(); }
@@ -124,7 +130,7 @@ class Uploader {
   std::unique_ptr<ImageWorkspace> workspace_;
   Published<SlotsRecord> published_;
   SlotsRecord record_;
-  std::atomic<bool> image_lost_{false};
+  std::atomic<bool> image_lost_{false}, damaged_{false};
   bool records_lost_ = false;
   // The links', until finish().
   ProgramRef coming_;

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 
@@ -16,8 +17,9 @@ namespace {
 constexpr std::uint32_t kRequest = 0x600, kAnswer = 0x580;  // + node
 constexpr std::uint8_t kUpload = 0x40, kAbort = 0x80, kExpedited = 0x43, kBytes = 8;
 constexpr std::uint16_t kRpdo = 0x1400, kTpdo = 0x1800, kMapping = 0x200, kMostPdos = 8;
-constexpr std::uint32_t kIdMask = 0x1fffffff, kPdoOff = 0x80000000;
+constexpr std::uint32_t kIdMask = 0x1fffffff, kExtended = 0x20000000, kPdoOff = 0x80000000;
 constexpr std::uint32_t kLastSyncType = 240;  // transmission types up to this one are synchronous
+constexpr std::uint32_t kMostMapped = 64;
 constexpr std::uint32_t kStatusword = 0x60410010, kPositionActual = 0x60640020;
 
 std::string hex(std::uint32_t value, int digits = 4) {
@@ -75,47 +77,83 @@ std::string CanopenSdo::read(CanopenObject object, std::uint32_t& value) {
   return "the drive does not answer a request for " + name_of(object);
 }
 
-std::string CanopenSdo::check_mapping(const char* name, std::uint16_t communication, std::uint32_t id,
-                                      const std::uint32_t* mapped, std::uint8_t count,
-                                      std::uint8_t lowest_type) {
-  for (std::uint16_t pdo = 0; pdo < kMostPdos; ++pdo) {
-    const auto at = static_cast<std::uint16_t>(communication + pdo);
-    std::uint32_t value = 0;
-    if (const std::string error = read({at, 1}, value); !error.empty()) {
+/// Finds the PDO with this identifier. Empty, or how it differs from `pdo`.
+std::string CanopenSdo::check_mapping(const Pdo& pdo) {
+  bool found = false;
+  std::string elsewhere;
+  for (std::uint16_t number = 0; number < kMostPdos; ++number) {
+    const auto at = static_cast<std::uint16_t>(pdo.communication + number);
+    std::uint32_t id = 0;
+    if (const std::string error = read({at, 1}, id); !error.empty()) {
       if (silent_) return error;
       continue;  // a drive may leave numbers out
     }
-    if ((value & kIdMask) != id || (value & kPdoOff) != 0) continue;
-    if (const std::string error = read({at, 2}, value); !error.empty()) return error;
-    if (value < lowest_type || value > kLastSyncType)
-      return std::string(name) + " " + hex(at) + ": transmission type " + std::to_string(value) +
-             ", needed is 1: with each SYNC";
-    const auto map = static_cast<std::uint16_t>(at + kMapping);
-    if (const std::string error = read({map, 0}, value); !error.empty()) return error;
-    if (value != count)
-      return std::string(name) + " " + hex(map) + ": " + std::to_string(value) +
-             " mapped objects, needed are " + std::to_string(count);
-    for (std::uint8_t i = 0; i < count; ++i) {
-      if (const std::string error = read({map, static_cast<std::uint8_t>(i + 1)}, value); !error.empty())
-        return error;
-      if (value != mapped[i])
-        return std::string(name) + " " + hex(map) + ": object " + hex(value, 8) + " is mapped, needed is " +
-               hex(mapped[i], 8);
+    if ((id & kPdoOff) != 0) continue;
+    std::string error;
+    if ((id & kIdMask) != pdo.id) {
+      if (pdo.is_alone && elsewhere.empty()) elsewhere = check_other(pdo, at);
+      if (silent_) error = elsewhere;
+    } else if ((id & kExtended) != 0) {
+      error = std::string(pdo.name) + " " + hex(at) + ": the identifier " + hex(pdo.id, 3) +
+              " has 29 bits, needed are 11";
+    } else if (found) {
+      error = std::string("two active ") + pdo.name + "s of the drive have the identifier " + hex(pdo.id, 3);
+    } else {
+      error = check_contents(pdo, at);
+      found = true;
     }
-    return "";
+    if (!error.empty()) return error;
   }
-  return std::string("no active ") + name + " of the drive has the identifier " + hex(id, 3);
+  return found ? elsewhere
+               : std::string("no active ") + pdo.name + " of the drive has the identifier " + hex(pdo.id, 3);
+}
+
+std::string CanopenSdo::check_contents(const Pdo& pdo, std::uint16_t at) {
+  std::uint32_t value = 0;
+  if (const std::string error = read({at, 2}, value); !error.empty()) return error;
+  if (value < pdo.first_type || value > pdo.last_type)
+    return std::string(pdo.name) + " " + hex(at) + ": transmission type " + std::to_string(value) +
+           ", needed is 1: with each SYNC";
+  const auto map = static_cast<std::uint16_t>(at + kMapping);
+  if (const std::string error = read({map, 0}, value); !error.empty()) return error;
+  if (value != pdo.mapped.size())
+    return std::string(pdo.name) + " " + hex(map) + ": " + std::to_string(value) +
+           " mapped objects, needed are " + std::to_string(pdo.mapped.size());
+  for (std::uint8_t i = 0; i < pdo.mapped.size(); ++i) {
+    if (const std::string error = read({map, static_cast<std::uint8_t>(i + 1)}, value); !error.empty())
+      return error;
+    if (value != pdo.mapped[i])
+      return std::string(pdo.name) + " " + hex(map) + ": object " + hex(value, 8) + " is mapped, needed is " +
+             hex(pdo.mapped[i], 8);
+  }
+  return "";
+}
+
+/// Another PDO must not write the objects of `pdo`. An entry that cannot be read is none.
+std::string CanopenSdo::check_other(const Pdo& pdo, std::uint16_t at) {
+  const auto map = static_cast<std::uint16_t>(at + kMapping);
+  std::uint32_t count = 0, value = 0;
+  if (const std::string error = read({map, 0}, count); !error.empty()) return silent_ ? error : "";
+  for (std::uint32_t i = 1; i <= std::min(count, kMostMapped); ++i) {
+    if (const std::string error = read({map, static_cast<std::uint8_t>(i)}, value); !error.empty())
+      return silent_ ? error : "";
+    for (const std::uint32_t own : pdo.mapped)
+      if (value >> 8 == own >> 8)
+        return std::string(pdo.name) + " " + hex(map) + ": object " + hex(value, 8) +
+               " is mapped there too; only the " + pdo.name + " of the board may write it";
+  }
+  return "";
 }
 
 std::string CanopenSdo::check_offset(std::uint32_t rpdo, CanopenObject object) {
   const std::uint32_t mapped =
       static_cast<std::uint32_t>(object.index) << 16 | static_cast<std::uint32_t>(object.subindex) << 8 | 32u;
-  return check_mapping("RPDO", kRpdo, rpdo, &mapped, 1, 0);
+  // Each synchronous type of an RPDO means: in use with the next SYNC (CiA 301, object 0x1400).
+  return check_mapping({"RPDO", kRpdo, rpdo, {mapped}, 0, kLastSyncType, true});
 }
 
 std::string CanopenSdo::check_position(std::uint32_t tpdo) {
-  const std::uint32_t mapped[] = {kStatusword, kPositionActual};
-  return check_mapping("TPDO", kTpdo, tpdo, mapped, 2, 1);
+  return check_mapping({"TPDO", kTpdo, tpdo, {kStatusword, kPositionActual}, 1, 1, false});
 }
 
 }  // namespace vernier

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "hal/linux/can/canopen_drive.h"
 
@@ -29,7 +30,8 @@ class CanopenSdo {
   /// Reads a value of 1 to 4 bytes. Returns empty, or the reason. Waits at most kWait. Not real-time safe.
   std::string read(CanopenObject object, std::uint32_t& value);
   /// Finds the RPDO with this identifier. Empty, or how its mapping differs from one value of 32 bits of
-  /// `object` that the drive uses with the next SYNC. Not real-time safe.
+  /// `object` that the drive uses with the next SYNC, or which other RPDO also writes `object`.
+  /// Not real-time safe.
   std::string check_offset(std::uint32_t rpdo, CanopenObject object);
   /// As check_offset() for the TPDO: statusword, then position actual value, with each SYNC.
   /// Not real-time safe.
@@ -38,8 +40,18 @@ class CanopenSdo {
   static constexpr int kWaitMs = 300;
 
  private:
-  std::string check_mapping(const char* name, std::uint16_t communication, std::uint32_t id,
-                            const std::uint32_t* mapped, std::uint8_t count, std::uint8_t lowest_type);
+  /// What the board needs of a PDO.
+  struct Pdo {
+    const char* name;
+    std::uint16_t communication;  // index of the parameters of the first one
+    std::uint32_t id;
+    std::vector<std::uint32_t> mapped;
+    std::uint32_t first_type, last_type;  // transmission types
+    bool is_alone;                        // no other PDO may have its objects
+  };
+  std::string check_mapping(const Pdo& pdo);
+  std::string check_contents(const Pdo& pdo, std::uint16_t at);
+  std::string check_other(const Pdo& pdo, std::uint16_t at);
 
   int socket_;
   std::uint32_t node_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <random>
 
 #include "hal/support/rounded_ratio.h"
 
@@ -15,8 +16,10 @@ using std::chrono::microseconds;
 
 constexpr std::size_t kDelayBins = 10'000;  // of 0.1 ms: one second
 constexpr int kTries = 10;                  // of the first exchange
+constexpr std::uint64_t kLookEvery = 4;     // exchanges
 using Block = std::array<std::uint16_t, ModbusOutputSettings::kValues + 2 * ModbusOutputSettings::kPlaces>;
-/// Another board writes at least once in its period.
+/// Another board writes at least once in its period. The sequence numbers of a start begin anywhere: those of
+/// two boards are not neighbours.
 constexpr std::chrono::milliseconds kLookForAnother(4 * ModbusOutputSettings::kLongestPeriod_ms);
 
 std::int64_t ns_of(Steady::time_point when) {
@@ -73,14 +76,17 @@ std::string ModbusOutput::begin() {
     if (before != after) return "in use: another board writes the sequence number";
   }
   if (!take_left_overs()) return "the controller gives no valid answer any more: " + line_->why();
-  sequence_ = kept_ = before;
+  found_ = before;
+  sequence_ = kept_ = static_cast<std::uint16_t>(std::random_device{}());
   good_ = written_ = Clock::now();
   for (const auto end = Clock::now() + span_of(settings_.timeout) + std::chrono::seconds(1);
        !healthy_ && Clock::now() < end;) {
     exchange();
     std::this_thread::sleep_for(span_of(settings_.period));
   }
-  return healthy_ ? "" : "the controller does not return the sequence number: does its program run?";
+  if (healthy_) return "";
+  return foreign_ > 0 ? "in use: another board writes the sequence number"
+                      : "the controller does not return the sequence number: does its program run?";
 }
 
 /// Registers of the block, as far as the last place that has an axis.
@@ -208,18 +214,44 @@ void ModbusOutput::judge(bool answered, std::uint16_t echo, Clock::time_point no
   losses_ += silent || corrects ? 1 : 0;
 }
 
-/// Reads the block's sequence number after an exchange without an answer; false: no answer. A controller that
-/// was restarted has none of the blocks since the last one that it surely took, and applies no correction: a
-/// loss.
-bool ModbusOutput::find_restart() {
-  std::uint16_t now = 0;
-  if (!line_->read(settings_.unit, ModbusLine::Registers::kHolding, settings_.address, 1, &now)) return false;
-  if (static_cast<std::uint16_t>(now - kept_) <= static_cast<std::uint16_t>(sequence_ - kept_)) return true;
+/// The block, or its echo, has a number of another writer, or of a controller that was restarted and applies
+/// no correction.
+void ModbusOutput::lose_controller() {
   for (Place& place : places_) place.left_over = false;
   lose();
-  kept_ = sequence_;
+  still_since_ = Clock::now();
   const std::scoped_lock lock(guard_);
-  ++losses_;
+  ++foreign_;
+  losses_ += healthy_.exchange(false) ? 1 : 0;
+}
+
+/// Before a block is written: the block in the controller must have a number of this board, or one that
+/// stands still. Without an answer only a block without valid bits is written: perhaps only the answers do
+/// not arrive.
+bool ModbusOutput::may_write(Clock::time_point began, bool ticks_are_on) {
+  std::uint16_t now = 0;
+  if (!line_->read(settings_.unit, ModbusLine::Registers::kHolding, settings_.address, 1, &now)) {
+    {
+      const std::scoped_lock lock(guard_);
+      ++exchanges_, ++failed_;
+    }
+    judge(false, 0, Clock::now(), ticks_are_on);
+    if (still_since_) still_since_ = Clock::now();
+    if (!healthy_ && !still_since_) write_block(began);
+    return false;
+  }
+  const bool ours = static_cast<std::uint16_t>(now - kept_) <= static_cast<std::uint16_t>(sequence_ - kept_);
+  if (!still_since_ && ours) return true;
+  if (now != found_) {
+    lose_controller();
+    found_ = now;
+    const std::scoped_lock lock(guard_);
+    ++exchanges_;
+    return false;
+  }
+  if (still_since_ && Clock::now() - *still_since_ < kLookForAnother) return false;
+  still_since_.reset();
+  kept_ = sequence_;
   return true;
 }
 
@@ -243,22 +275,17 @@ bool ModbusOutput::write_block(Clock::time_point began) {
 void ModbusOutput::exchange(bool last) {
   const Clock::time_point began = Clock::now();
   const bool ticks_are_on = ticks_run(began);
-  // A board without a valid bit has nothing that a restart could lose: it only says that nothing is valid.
-  if (unanswered_ && healthy_ && !last && !find_restart()) {
-    {
-      const std::scoped_lock lock(guard_);
-      ++exchanges_, ++failed_;
-    }
-    judge(false, 0, Clock::now(), ticks_are_on);
-    // Perhaps only the answers do not arrive: then the controller learns here that nothing is valid.
-    if (!healthy_) write_block(began);
-    return;
-  }
+  // A process that stood still may not write the values of before.
+  if (!last) judge(false, 0, began, ticks_are_on);
+  if (last && still_since_) return;
+  // The echo alone can hide another writer: a fast controller returns each number at once.
+  const bool look = unanswered_ || !healthy_ || exchanges_ % kLookEvery == 0;
+  if (look && !last && !may_write(began, ticks_are_on)) return;
   const std::int64_t stored = stored_ns_.load();
   if (!repeat_ && !last) choose_values(began, ticks_are_on);
   const bool written = write_block(began);
   const Clock::time_point answered_at = Clock::now();
-  if (written) written_ = began, kept_ = sequence_;
+  if (written) written_ = began, kept_ = sequence_, found_.reset();
   repeat_ = !written;
   std::uint16_t echo = 0;
   const bool answered =
@@ -274,6 +301,9 @@ void ModbusOutput::exchange(bool last) {
       ++delays_[static_cast<std::size_t>(std::clamp<std::int64_t>(tenths, 0, kDelayBins - 1))];
     }
   }
+  // An echo that none of this board's blocks can have caused.
+  if (answered && healthy_ && static_cast<std::uint16_t>(sequence_ - echo) >= sent_at_.size())
+    return lose_controller();
   judge(answered, echo, Clock::now(), ticks_are_on);
 }
 
@@ -292,23 +322,24 @@ std::string ModbusOutput::attempt(std::uint32_t) {
 }
 
 std::string ModbusOutput::trial() const {
-  return "blocks with valid bits 0 were written, with the values that the registers had; the controller "
-         "removes a correction that it has";
+  return "blocks with valid bits 0 were written, with the values that the registers had (at most the range); "
+         "the controller removes a correction that it has";
 }
 
 std::string ModbusOutput::account() const {
   const std::scoped_lock lock(guard_);
   std::uint64_t all = 0;
   for (const std::uint64_t one : delays_) all += one;
-  char text[300];
-  std::snprintf(
-      text, sizeof text,
-      "modbus-out register %d: %llu exchanges, %llu failed, %llu losses; from the tick to the answer "
-      "median %.1f ms, 99 %% %.1f ms, largest %.1f ms; a value stays %.3g ms more",
-      settings_.address, static_cast<unsigned long long>(exchanges_),
-      static_cast<unsigned long long>(failed_), static_cast<unsigned long long>(losses_),
-      share_of(delays_, all, 0.5), share_of(delays_, all, 0.99), share_of(delays_, all, 1.0),
-      1e-3 * static_cast<double>(settings_.period.count));
+  char text[340];
+  std::snprintf(text, sizeof text,
+                "modbus-out register %d: %llu exchanges, %llu failed, %llu losses, %llu numbers of another "
+                "writer; from the tick to the answer "
+                "median %.1f ms, 99 %% %.1f ms, largest %.1f ms; a value stays %.3g ms more",
+                settings_.address, static_cast<unsigned long long>(exchanges_),
+                static_cast<unsigned long long>(failed_), static_cast<unsigned long long>(losses_),
+                static_cast<unsigned long long>(foreign_), share_of(delays_, all, 0.5),
+                share_of(delays_, all, 0.99), share_of(delays_, all, 1.0),
+                1e-3 * static_cast<double>(settings_.period.count));
   return text;
 }
 

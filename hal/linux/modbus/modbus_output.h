@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,8 +42,12 @@ struct ModbusOutputSettings {
 /// echo; a tick only leaves its value and never waits. If no new sequence number comes back in `timeout`, the
 /// thread clears the valid bits and all writes are refused. The valid bit of an axis is set again when the
 /// board's own correction of the axis is zero: the return of a connection causes no step. So it is if a
-/// controller was restarted within the time-out and has lost the block. A value that an earlier process left
-/// in the block stays there without its valid bit, until writes move it to zero.
+/// controller was restarted within the time-out and has lost the block, and if the process stood still for
+/// longer than the time-out. A value that an earlier process left in the block stays there without its valid
+/// bit, until writes move it to zero.
+/// Only one board writes a block. An echo that is none of the last sequence numbers is a loss: another board
+/// writes, or the controller was restarted. After a loss the thread writes nothing until the sequence number
+/// has stood still for as long as another board may need for a block.
 class ModbusOutput : public OutputDevice {
  public:
   /// Longest time for an answer, as the lines of `settings` must have it. A serial line is quiet for as long
@@ -101,7 +106,8 @@ class ModbusOutput : public OutputDevice {
   void run();
   bool write_block(Clock::time_point began);
   void exchange(bool last = false);
-  bool find_restart();
+  void lose_controller();
+  bool may_write(Clock::time_point began, bool ticks_are_on);
   void choose_values(Clock::time_point now, bool ticks_are_on);
   bool echo_is_new(std::uint16_t echo, Clock::time_point now) const;
   void judge(bool answered, std::uint16_t echo, Clock::time_point now, bool ticks_are_on);
@@ -115,14 +121,17 @@ class ModbusOutput : public OutputDevice {
   std::atomic<bool> healthy_{false}, stop_{false};
   std::atomic<std::int64_t> stored_ns_{INT64_MIN};  // when a tick left its value
   std::uint16_t sequence_ = 0;
-  std::uint16_t kept_ = 0;   // of the last block that the controller surely took
+  std::uint16_t kept_ = 0;  // of the last block that the controller surely took
+  /// The number that the block had when this board was about to write its first block, until it has.
+  std::optional<std::uint16_t> found_;
   bool repeat_ = false;      // the controller may have the last block or the one before
   bool unanswered_ = false;  // the last exchange
   Clock::time_point good_, written_;
+  std::optional<Clock::time_point> still_since_;  // found_ stands still; nothing is written meanwhile
   std::array<Clock::time_point, 256> sent_at_{};  // by the low byte of the sequence number
 
   mutable std::mutex guard_;  // of the figures below
-  std::uint64_t exchanges_ = 0, failed_ = 0, losses_ = 0;
+  std::uint64_t exchanges_ = 0, failed_ = 0, losses_ = 0, foreign_ = 0;
   std::vector<std::uint64_t> delays_;  // in tenths of a millisecond
   std::int64_t delayed_ = INT64_MIN;   // tick whose delay was counted last
   std::thread thread_;

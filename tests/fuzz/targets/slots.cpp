@@ -11,17 +11,20 @@ namespace {
 
 /// Both records of a store, with their sums put right where the byte before them is odd.
 void take(Bytes bytes) {
-  SlotRecord records[kSlotRecordCount] = {};
+  SlotPlace places[kSlotRecordCount] = {};
   Pieces pieces(bytes);
-  for (SlotRecord& record : records) {
-    const bool mend = pieces.byte() % 2 == 1;
+  for (SlotPlace& place : places) {
+    const int kind = pieces.byte();
+    const bool mend = kind % 2 == 1;
+    place.written = kind % 4 != 2;
+    SlotRecord& record = place.record;
     auto* const raw = reinterpret_cast<std::uint8_t*>(&record);
     for (std::size_t i = 0; i < sizeof record; ++i) raw[i] = pieces.byte();
     if (!mend) continue;
     record.magic = kSlotMagic;
     record.checksum = crc32c(raw, offsetof(SlotRecord, checksum));
   }
-  Slots slots = Slots::load(records[0], records[1]);
+  Slots slots = Slots::load(places[0], places[1]);
   const std::uint64_t floor = slots.newest_issued();
   const std::uint32_t security = slots.security();
   if (floor == UINT64_MAX) return;  // no upload can be above it: the uploader refuses them all

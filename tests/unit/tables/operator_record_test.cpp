@@ -10,7 +10,7 @@
 namespace vernier::operator_record_test {
 namespace {
 
-using State = OperatorRecordsState;
+using State = StoredPair;
 
 /// The two places of a store.
 struct Store {
