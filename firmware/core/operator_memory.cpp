@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "firmware/core/read_place.h"
+#include "firmware/core/link/read_place.h"
 #include "tables/link_format.h"
 
 namespace vernier {

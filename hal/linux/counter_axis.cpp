@@ -29,7 +29,7 @@ std::int64_t range_of(const std::string& count, int bits, std::string& error) {
 /// Time in which the axis passes half the range of the counter at its largest speed, ns.
 double time_of_half(std::int64_t range, const PositionScale& scale, const CounterAxis::Speed& speed) {
   const double travel =
-      static_cast<double>(range / 2) * static_cast<double>(scale.span) / static_cast<double>(scale.counts);
+      0.5 * static_cast<double>(range) * static_cast<double>(scale.span) / static_cast<double>(scale.counts);
   return travel / static_cast<double>(std::max<std::int64_t>(speed.most_per_tick, 1)) * 1e3 *
          static_cast<double>(speed.tick.count);
 }

@@ -951,7 +951,8 @@ TEST_F(Check, OneCounterHasOneAxis) {
         files_.put(at + "/count1/count", "7"), files_.put(at + "/count0/ceiling", "4294967295"),
         files_.put(at + "/count1/ceiling", "4294967295");
   }
-  std::filesystem::create_directory_symlink(files_.path() + "/counter0", files_.path() + "/link");
+  std::filesystem::create_directory(files_.path() + "/links");
+  std::filesystem::create_directory_symlink(files_.path() + "/counter0", files_.path() + "/links/x");
   const auto board = [](const std::string& second) {
     const auto axis = [](const char* name, const std::string& source) {
       return std::string("[axis.") + name + "]\nlow = 0\nhigh = 100\nposition = { kind = \"counter\", " +
@@ -960,7 +961,7 @@ TEST_F(Check, OneCounterHasOneAxis) {
     return "[board]\nname = \"m\"\n" + axis("X", "device = \"ROOT/counter0/\"") + axis("Y", second);
   };
   for (const char* const wrong :
-       {"device = \"ROOT/counter0/\"", "device = \"ROOT/link/\"", "root = \"ROOT\", device = \"ctr0\"",
+       {"device = \"ROOT/counter0/\"", "device = \"ROOT/links/x/\"", "root = \"ROOT\", device = \"ctr0\"",
         "device = \"ROOT/counter1/../counter0/\""}) {
     write(board(wrong));
     const Said said = run("--check");

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "comp/fixed.h"
-#include "firmware/core/read_place.h"
+#include "firmware/core/link/read_place.h"
 
 namespace vernier {
 namespace {

@@ -119,7 +119,7 @@ std::string CanopenSdo::check_contents(const Pdo& pdo, std::uint16_t at) {
   if (value != pdo.mapped.size())
     return std::string(pdo.name) + " " + hex(map) + ": " + std::to_string(value) +
            " mapped objects, needed are " + std::to_string(pdo.mapped.size());
-  for (std::uint8_t i = 0; i < pdo.mapped.size(); ++i) {
+  for (std::size_t i = 0; i < pdo.mapped.size(); ++i) {
     if (const std::string error = read({map, static_cast<std::uint8_t>(i + 1)}, value); !error.empty())
       return error;
     if (value != pdo.mapped[i])
