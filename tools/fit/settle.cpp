@@ -260,14 +260,29 @@ class Settler {
     result_.normal = std::move(data);
   }
 
-  /// Orthonormal directions of the readings that the parameters and the touched objects can follow. A column
-  /// that moves the readings by no more than rounding, at the scale of its parameter, is no direction.
+  /// Orthonormal directions of the readings that the touched objects and the parameters can follow. A
+  /// direction of the parameters that moves the readings, at the scale of its parameters and beside the
+  /// objects, by a small part of the standard deviation of one reading is no direction. Where the objects
+  /// follow a parameter, only a linear map of the residuals is left of it: such directions can reproduce
+  /// every residual.
   MatrixXd fitted_directions(const MatrixXd& jacobian, const MatrixXd& of_things, double size) const {
     constexpr double kRoundingOfResidual = 1e-6;  // of the residual
-    MatrixXd columns(jacobian.rows(), jacobian.cols() + of_things.cols());
-    columns << jacobian * scale_.asDiagonal(), of_things;
-    for (Eigen::Index k = 0; k < columns.cols(); ++k)
-      if (!(columns.col(k).norm() > kRoundingOfResidual * size)) columns.col(k).setZero();
+    constexpr double kOfResidual = 4;             // of the residual, at the scale of the parameters
+    MatrixXd moved = jacobian * scale_.asDiagonal();
+    if (of_things.cols() == 0) {
+      for (Eigen::Index k = 0; k < moved.cols(); ++k)
+        if (!(moved.col(k).norm() > kRoundingOfResidual * size)) moved.col(k).setZero();
+      return maths::orthonormal(moved, kRoundingOfResidual, nullptr);
+    }
+    const MatrixXd followed = maths::orthonormal(of_things, kRoundingOfResidual, nullptr);
+    moved -= followed * (followed.transpose() * moved);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(moved.transpose() * moved);
+    const double least = kOfResidual * size;
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index k = 0; k < moved.cols(); ++k)
+      if (parts.eigenvalues()[k] > least * least) kept.push_back(k);
+    MatrixXd columns(moved.rows(), followed.cols() + static_cast<Eigen::Index>(kept.size()));
+    columns << followed, moved * parts.eigenvectors()(Eigen::all, kept);
     return maths::orthonormal(columns, kRoundingOfResidual, nullptr);
   }
 
