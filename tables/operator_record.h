@@ -54,8 +54,9 @@ struct OperatorChange {
 using OperatorPlace = StoredPlace<OperatorRecord>;
 
 /// The two records of the operator's state, without access to the medium. A change overwrites the older
-/// record; the first change writes both: intact are two valid records, one change apart. After a power
-/// failure at any byte of a write the pair is intact with the state before or after the change, or damaged.
+/// record, and the board writes each setting to both places: intact are two valid records, one change apart.
+/// After a power failure at any byte of a write the pair is intact with the state before or after the change,
+/// or damaged.
 class OperatorRecords {
  public:
   /// Loads the newer valid record of the two places. Not real-time safe.

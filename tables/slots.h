@@ -10,7 +10,7 @@ namespace vernier {
 /// The value "no slot": no confirmed image yet, or no trial.
 constexpr std::uint8_t kNoSlot = 0xff;
 constexpr std::uint32_t kSlotCount = 2;
-/// The store contains the record twice; a change overwrites the older copy.
+/// The store contains the record twice; a change overwrites the older copy, then the other one.
 constexpr std::uint32_t kSlotRecordCount = 2;
 
 /// Record of the slots of a board for correction images: the confirmed slot, and the slot on trial.
@@ -99,6 +99,8 @@ class Slots {
   SlotChange confirm() const noexcept;
   /// Reverts the image on trial. Not real-time safe.
   SlotChange revert() const noexcept;
+  /// Writes the present state once more, to the other place. Not real-time safe.
+  SlotChange again() const noexcept { return change_to(now_); }
   /// Reports to the object that the change is on the medium. Not real-time safe.
   void stored(const SlotChange& change) noexcept;
 

@@ -56,12 +56,16 @@ bool OperatorMemory::store(const OperatorState& state) noexcept {
   return true;
 }
 
-// The first setting and the first one after a damage are written twice: from then on each place has a
-// record, and a record that is lost or unreadable shows.
+// Every setting is written to both places: a record that is lost or unreadable shows, and one that is an
+// older copy is not the newest, or no neighbour of the other.
 bool OperatorMemory::store_changes(const OperatorState& now) noexcept {
-  if (now != stored_ && !store(now)) return false;
-  if (records_.places() != StoredPair::kDamaged) return true;
+  if (now != stored_) {
+    if (!store(now)) return false;
+    once_ = true;
+  }
+  if (!once_ && records_.places() != StoredPair::kDamaged) return true;
   if (!store(now)) return false;
+  once_ = false;
   return records_.places() != StoredPair::kDamaged || store(now);
 }
 

@@ -57,6 +57,8 @@ void Service::read_enable() noexcept {
   const bool before = enabled_;
   enabled_ = board_.enable->read_line(on) == HalFault::kNone && on;
   if (enabled_ && !before) activated_ = false, to_clear_ = options_.clear_on_enable;
+  // The values that a hold kept are removed now; only an operator brings a correction back.
+  if (!enabled_ && before && cycle_.holding()) taken_out_ = true;
 }
 
 void Service::tell_health(const TickReport& report) noexcept {
@@ -85,6 +87,10 @@ Command Service::next_command() noexcept {
   const bool in = mode == Mode::kActive || (mode == Mode::kReady && cycle_.weight() != WeightQ16{});
   // A command that the cycle refuses has no effect later either. A deactivation always has one: without a
   // correction it keeps the correction out.
+  if (asked == Command::kActivate && !enabled_) {
+    cycle_.refuse_command();
+    asked = Command::kNone;
+  }
   if (asked == Command::kActivate && mode == Mode::kReady) taken_out_ = false;
   if (asked == Command::kDeactivate) taken_out_ = true;
   // After a clear the board waits for the next activation, also if it starts again or its enable line comes

@@ -1114,6 +1114,40 @@ TEST_F(Check, WrongSettingsAreNamedWithTheirLine) {
   }
 }
 
+// A limit was rounded to a whole number of counts, and up to the first one.
+TEST_F(Check, LimitThatIsBelowOneCountIsRefused) {
+  const std::pair<const char*, const char*> kSmall[] = {
+      {"max_acceleration = 5",
+       "max_acceleration is too small: the smallest limit of a correction is 1 count"},
+      {"max_acceleration = 9.9", "max_acceleration must be at least 10"},
+      {"max_step = 0.9e-6", "max_step must be at least 1e-06"},
+      {"max_speed = 0.005", "max_speed must be at least 0.01"}};
+  const auto board = [](const std::string& limit) {
+    return "[board]\nname = \"m\"\n[axis.X]\nlow = 0\nhigh = 9\n" + limit +
+           "\nposition = { kind = \"sim\" }\noutput = { kind = \"sim\" }\n";
+  };
+  for (const auto& [limit, said_of_it] : kSmall) {
+    write(board(limit));
+    const Said said = run("--check");
+    EXPECT_EQ(said.status, 1) << limit << said.text;
+    EXPECT_NE(said.text.find(said_of_it), std::string::npos) << limit << said.text;
+  }
+  for (const char* const enough : {"max_acceleration = 10", "max_step = 1e-6", "max_speed = 0.01"}) {
+    write(board(enough));
+    EXPECT_EQ(run("--check").status, 0) << enough;
+  }
+}
+
+TEST_F(Check, RelativePathOfADeviceBeginsInTheFolderOfTheBoardFile) {
+  files_.put("counter0/name", "eqep"), files_.put("counter0/count0/count", "7"),
+      files_.put("counter0/count0/ceiling", "4294967295");
+  write(
+      "[board]\nname = \"m\"\n[axis.X]\nlow = 0\nhigh = 100\noutput = { kind = \"sim\" }\n"
+      "position = { kind = \"counter\", device = \"counter0/\", scale = 0.1 }\n");
+  const Said said = run("--check");
+  EXPECT_EQ(said.status, 0) << said.text;
+}
+
 TEST_F(Check, CalibrationIsStoredAndUsed) {
   const std::string uncalibrated = "codes = 255, calibration = \"y.toml\", high = 254 }";
   write(replaced(kBoard, "codes = 255, span = 0.25, zero = 127, high = 254 }", uncalibrated));

@@ -81,6 +81,8 @@ class Cycle {
   Fault latched() const noexcept { return mode_.latched(); }
   /// Returns the fault of the last tick, latched or not; while checking, the condition that is not met yet.
   Fault found() const noexcept { return found_; }
+  /// Counts a command that was refused before it came here. Real-time safe.
+  void refuse_command() noexcept { ++health_.refused_commands; }
   /// Returns the share of the correction that is applied now.
   WeightQ16 weight() const noexcept { return mode_.weight(); }
   Health& health() noexcept { return health_; }

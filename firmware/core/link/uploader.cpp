@@ -61,11 +61,19 @@ Uploader::Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, c
   publish();
 }
 
-bool Uploader::store(const SlotChange& change) {
+bool Uploader::write(const SlotChange& change) {
   std::uint8_t bytes[sizeof(SlotRecord)];
   std::memcpy(bytes, &change.record, sizeof(bytes));
   if (store_.write_record(change.place, bytes, sizeof(bytes)) != HalFault::kNone) return false;
   slots_.stored(change);
+  return true;
+}
+
+// To both places: an older copy of one record is not the newest, or no neighbour of the other. If the medium
+// refuses the second one, the change counts, and the next one writes both.
+bool Uploader::store(const SlotChange& change) {
+  if (!write(change)) return false;
+  write(slots_.again());
   if (damaged_) damaged_ = slots_.places() == StoredPair::kDamaged;
   return true;
 }
@@ -182,8 +190,7 @@ void Uploader::read_slots() {
 }
 
 bool Uploader::repair() {
-  for (int i = 0; i < 2 && damaged(); ++i)
-    if (!store(slots_.revert())) return false;
+  if (damaged() && !store(slots_.revert())) return false;
   publish();
   return true;
 }
@@ -221,7 +228,12 @@ UploadResult Uploader::boot() {
   image_lost_ = true;
   ProgramRef loaded = programs_.take();
   if (loaded == nullptr) return refused(UploadFault::kStore);
-  const UploadResult result = load(slots_.confirmed(), *loaded, Origin::kStored);
+  UploadResult result = load(slots_.confirmed(), *loaded, Origin::kStored);
+  // Another image in the slot, also one of this board, is not the one that was confirmed.
+  if (result.fault == UploadFault::kNone && loaded->header.issued != slots_.issued()) {
+    result = refused(UploadFault::kStore);
+    result.offender = "not the image confirmed";
+  }
   if (result.fault != UploadFault::kNone) return result;
   record_.confirmed_fingerprint = loaded->header.fingerprint;
   publish();

@@ -119,6 +119,7 @@ class Uploader {
   bool within_budget(const ImageView& view) const noexcept;
   UploadResult write_slot(std::uint8_t slot);
   UploadFault judge_history(const UploadHeader& header) const noexcept;
+  bool write(const SlotChange& change);
   bool store(const SlotChange& change);
   void publish() noexcept;
 

@@ -128,6 +128,18 @@ class Table {
   std::set<std::string> asked_;
 };
 
+std::string beside(const std::string& board_path, const std::string& path) {
+  const std::filesystem::path given(path);
+  if (given.is_absolute()) return path;
+  return (std::filesystem::path(board_path).parent_path() / given).string();
+}
+
+/// A setting that may be a path: a file or directory of a device. Without a `/` it is a name.
+bool is_path(const std::string& setting, const std::string& value) {
+  static const std::set<std::string> kPaths = {"root", "device", "devices", "path", "interface", "chip"};
+  return kPaths.contains(setting) && value.find('/') != std::string::npos;
+}
+
 /// others: settings of the table that do not belong to the device.
 SignalSource source_of(const toml::table* table, const std::string& file, const std::string& where,
                        const Words& others = {}) {
@@ -147,7 +159,7 @@ SignalSource source_of(const toml::table* table, const std::string& file, const 
     const SettingType type = type_of_setting(source.kind, name);
     if (const auto text = node.value_exact<std::string>();
         text && type != SettingType::kNumber && type != SettingType::kWholeNumber)
-      source.texts[name] = *text;
+      source.texts[name] = is_path(name, *text) ? beside(file, *text) : *text;
     else if (type == SettingType::kText)
       settings.fail(name + " must be a text", &node);
     else
@@ -167,27 +179,31 @@ AxisSetting setting_of(Table& settings, bool rotary, TimeUs tick) {
   const double speed = settings.number("max_speed", 0, 1e-6, 1e6);
   const double acceleration = settings.number("max_acceleration", 0, 1e-6, 1e9);
   const double share = settings.number("correction_share", 0.1, 1e-6, 1);
+  // A limit is a whole number of counts, never above its setting.
+  const auto limit = [&](const char* name, double value, double whole) {
+    const double most = std::floor(value * (1 + 1e-12));
+    if (most >= 1) return static_cast<std::int64_t>(std::min<double>(most, INT32_MAX));
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "%s is too small: the smallest limit of a correction is 1 count (%s) in a tick; %s must be "
+                  "at least %.3g",
+                  name, rotary ? "0.084 udeg" : "1 nm", name, whole / value);
+    settings.fail(text);
+  };
   if (speed > 0) {
     setting.limits.step = std::max<std::int64_t>(counts(speed * tick_s * scale), 1);
-    setting.motion.slew = std::clamp<std::int64_t>(counts(share * speed * tick_s * scale), 1, INT32_MAX);
+    setting.motion.slew = limit("max_speed", share * speed * tick_s * scale, speed);
   }
   const double step = settings.number("max_step", 0, 1e-9, 1e3);
-  if (step > 0)
-    setting.motion.slew = std::min(setting.motion.slew, std::max<std::int64_t>(counts(step * scale), 1));
+  if (step > 0) setting.motion.slew = std::min(setting.motion.slew, limit("max_step", step * scale, step));
   if (acceleration > 0)
     setting.motion.acceleration =
-        std::clamp<std::int64_t>(counts(share * acceleration * tick_s * tick_s * scale), 1, INT32_MAX);
+        limit("max_acceleration", share * acceleration * tick_s * tick_s * scale, acceleration);
   const double largest = settings.number("max_correction", 0, 1e-6, 1e3);
   if (largest > 0) setting.largest = std::clamp<std::int64_t>(counts(largest * scale), 1, INT32_MAX);
   setting.limits.missing_ticks =
       static_cast<std::uint32_t>(settings.whole("missing_ticks", setting.limits.missing_ticks, 0, 10000));
   return setting;
-}
-
-std::string beside(const std::string& board_path, const std::string& path) {
-  const std::filesystem::path given(path);
-  if (given.is_absolute()) return path;
-  return (std::filesystem::path(board_path).parent_path() / given).string();
 }
 
 /// The results of a calibration override the settings of the board file. A missing calibration file is
@@ -408,6 +424,7 @@ void read_board(BoardFile& board, const toml::table& table) {
   board.service.overruns.lost_share_q16 =
       static_cast<std::uint32_t>(65536 * settings.number("max_lost_ticks", 0.05, 0, 0.99));
   board.watchdog = settings.text("watchdog", "");
+  if (!board.watchdog.empty()) board.watchdog = beside(board.path, board.watchdog);
   const toml::table* const sync = settings.table("sync");
   board.sync = source_of(sync, board.path, "board.sync");
   if (sync != nullptr)

@@ -103,6 +103,9 @@ bool ModbusLine::finish(bool done) noexcept {
   if (errno == EMBBADDATA || errno == EMBBADSLAVE || errno == EMBBADCRC) ++wrong_answers_;
   after_silence_ = serial_ && !exception;
   if (exception || (serial_ && errno != EBADF && errno != EIO)) return false;
+  // Without a reset the system would send an unanswered request again when the network is back.
+  const linger reset{.l_onoff = 1, .l_linger = 0};
+  if (!serial_) ::setsockopt(modbus_get_socket(context_), SOL_SOCKET, SO_LINGER, &reset, sizeof(reset));
   modbus_close(context_);
   open_ = false;
   return false;

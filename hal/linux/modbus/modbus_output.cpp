@@ -17,6 +17,7 @@ using std::chrono::microseconds;
 constexpr std::size_t kDelayBins = 10'000;  // of 0.1 ms: one second
 constexpr int kTries = 10;                  // of the first exchange
 constexpr std::uint64_t kLookEvery = 4;     // exchanges
+constexpr std::uint16_t kOwnBefore = 1024;  // numbers of this board, before the newest one
 using Block = std::array<std::uint16_t, ModbusOutputSettings::kValues + 2 * ModbusOutputSettings::kPlaces>;
 /// Another board writes at least once in its period. The sequence numbers of a start begin anywhere: those of
 /// two boards are not neighbours.
@@ -242,6 +243,13 @@ bool ModbusOutput::may_write(Clock::time_point began, bool ticks_are_on) {
   }
   const bool ours = static_cast<std::uint16_t>(now - kept_) <= static_cast<std::uint16_t>(sequence_ - kept_);
   if (!still_since_ && ours) return true;
+  // A block of this board that the network held back: the controller must not use it for longer.
+  if (!still_since_ && now != found_ && static_cast<std::uint16_t>(sequence_ - now) < kOwnBefore) {
+    lose();
+    const std::scoped_lock lock(guard_);
+    losses_ += healthy_.exchange(false) ? 1 : 0;
+    return true;
+  }
   if (now != found_) {
     lose_controller();
     found_ = now;
@@ -279,7 +287,7 @@ void ModbusOutput::exchange(bool last) {
   if (!last) judge(false, 0, began, ticks_are_on);
   if (last && still_since_) return;
   // The echo alone can hide another writer: a fast controller returns each number at once.
-  const bool look = unanswered_ || !healthy_ || exchanges_ % kLookEvery == 0;
+  const bool look = unanswered_ || (!healthy_ && losses_ > 0) || still_since_ || exchanges_ % kLookEvery == 0;
   if (look && !last && !may_write(began, ticks_are_on)) return;
   const std::int64_t stored = stored_ns_.load();
   if (!repeat_ && !last) choose_values(began, ticks_are_on);

@@ -75,6 +75,28 @@ TEST_F(Digital, NobodyActivatesAgainstTheEnableLine) {
   rig_.run(500);
   EXPECT_EQ(mode(), Mode::kReady);
   EXPECT_EQ(rig_.service().cycle().weight(), WeightQ16{});
+  EXPECT_EQ(rig_.service().cycle().health().refused_commands, 1u) << "the operator learns of it";
+}
+
+// The line came on, and the board forgot that an operator had held the corrections.
+TEST_F(Digital, HeldCorrectionStaysOutWhenTheLineComesOnAgain) {
+  enable_.on = true;
+  rig_.run(3000);
+  const_cast<Exchange&>(rig_.service().exchange()).command = Command::kHold;
+  rig_.run(500);
+  ASSERT_TRUE(rig_.service().cycle().holding());
+  enable_.on = false;
+  rig_.run(3000);
+  enable_.on = true;
+  rig_.run(3000);
+  EXPECT_EQ(mode(), Mode::kReady);
+  EXPECT_EQ(rig_.plant().written(1), AxisTravel{});
+  UploadRig again(store_, key_, TimeUs(5'000'000), &enable_, &healthy_);
+  again.run(3000);
+  EXPECT_EQ(again.service().cycle().mode(), Mode::kReady);
+  const_cast<Exchange&>(again.service().exchange()).command = Command::kActivate;
+  again.run(3000);
+  EXPECT_EQ(again.service().cycle().mode(), Mode::kActive);
 }
 
 // The line that came on made the board forget that it had been active: clearing the fault activated it.

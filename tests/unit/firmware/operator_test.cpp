@@ -307,6 +307,64 @@ TEST_F(OperatorSetting, ActivationRepairsTheImageRecords) {
   EXPECT_EQ(mode(rig), Mode::kActive);
 }
 
+// An older copy of one record, or a write that the medium lost, undoes nothing.
+TEST_F(OperatorSetting, OlderCopyOfOneRecordUndoesNothing) {
+  std::vector<SimSlotStore> history = {store_};
+  const auto keep = [&](auto act) {
+    SimSlotStore store = history.back();
+    UploadRig rig(store, key_);
+    rig.run(3000);
+    act(rig);
+    history.push_back(store);
+  };
+  keep([](UploadRig& rig) { give(rig, Command::kDeactivate); });
+  keep([](UploadRig& rig) { give(rig, Command::kActivate); });
+  keep([&](UploadRig& rig) {
+    EXPECT_EQ(rig.send(make_upload(small_image_bytes(3e-5), key_, 6, 0)).fault, UploadFault::kNone);
+    EXPECT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  });
+  keep([](UploadRig& rig) { give(rig, Command::kDeactivate); });
+  const std::uint64_t newest = UploadRig(history.back(), key_).uploader().record().confirmed_fingerprint;
+  const auto copy = [](SimSlotStore& from, SimSlotStore& to, std::uint32_t place, std::uint32_t size) {
+    std::vector<std::uint8_t> bytes(size);
+    if (from.read_record(place, bytes.data(), size) != HalFault::kNone) return false;
+    return to.write_record(place, bytes.data(), size) == HalFault::kNone;
+  };
+  int copies = 0;
+  for (SimSlotStore& old : history)
+    for (const std::uint32_t place : {0u, 1u, kOperatorPlace, kOperatorPlace + 1}) {
+      SimSlotStore store = history.back();
+      if (!copy(old, store, place, place < kOperatorPlace ? sizeof(SlotRecord) : sizeof(OperatorRecord)))
+        continue;
+      ++copies;
+      UploadRig rig(store, key_);
+      EXPECT_TRUE(rig.service().deactivated()) << place;
+      EXPECT_EQ(rig.uploader().record().confirmed_fingerprint, newest) << place;
+    }
+  EXPECT_GT(copies, 12);
+}
+
+TEST_F(OperatorSetting, AnotherImageInTheSlotIsALostImage) {
+  SimSlotStore store = store_;
+  {
+    UploadRig rig(store, key_);
+    rig.run(3000);
+    EXPECT_EQ(rig.send(make_upload(small_image_bytes(3e-5), key_, 6, 0)).fault, UploadFault::kNone);
+    EXPECT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  }
+  UploadHeader header;
+  std::vector<std::uint8_t> bytes(sizeof(header));
+  store.read_image(0, 0, bytes.data(), sizeof(header));
+  std::memcpy(&header, bytes.data(), sizeof(header));
+  bytes.resize(sizeof(header) + header.image_bytes);
+  store.read_image(0, 0, bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  store.write_image(1, 0, bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  UploadRig rig(store, key_);
+  EXPECT_TRUE(rig.uploader().image_lost());
+  rig.run(3000);
+  EXPECT_EQ(rig.plant().written(0), AxisTravel{});
+}
+
 // Half a record was begun: its setting is unknown.
 TEST_F(OperatorSetting, PowerLostInADeactivationNeverActivates) {
   for (const bool first : {true, false}) {
@@ -343,7 +401,7 @@ TEST_F(OperatorSetting, PowerLostAtAnyByteLeavesTheOldOrTheNewSetting) {
     rig.run(10);
   }
   std::set<std::int32_t> found;
-  for (std::uint64_t cut = 0; cut <= sizeof(OperatorRecord); ++cut) {
+  for (std::uint64_t cut = 0; cut <= 2 * sizeof(OperatorRecord); ++cut) {
     SimSlotStore store = store_;
     {
       UploadRig rig(store, key_);
@@ -351,7 +409,7 @@ TEST_F(OperatorSetting, PowerLostAtAnyByteLeavesTheOldOrTheNewSetting) {
       store.cut_power_after(cut);
       exchange(rig).axis_weight[0] = kFullWeight.count / 2;
       rig.run(10);
-      EXPECT_EQ(rig.service().operator_memory().refused(), cut < sizeof(OperatorRecord));
+      EXPECT_EQ(rig.service().operator_memory().refused(), cut < 2 * sizeof(OperatorRecord));
     }
     store.restore_power();
     UploadRig rig(store, key_);

@@ -198,9 +198,9 @@ std::vector<EstimatedThing> estimate_things(const Machine& machine, const Measur
       const Eigen::MatrixXd follow = follows(things, at, cluster, raw.jacobian);
       for (const std::size_t thing : things.things(cluster)) {
         if (touches[thing] == 0) continue;
-        const Eigen::Index first = things.first_of(thing), count = unknowns_of(m.things[thing].artefact);
-        list.push_back({thing, touches[thing], at.shape(thing), own.block(first, first, count, count),
-                        follow.middleRows(first, count)});
+        const std::vector<Eigen::Index>& values = things.unknowns_of_thing(thing);
+        list.push_back(
+            {thing, touches[thing], at.shape(thing), own(values, values), follow(values, Eigen::all)});
       }
     }
   };

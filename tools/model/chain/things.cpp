@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <string>
 
 #include "tools/maths/decompositions.h"
 #include "tools/model/parameters.h"
@@ -28,6 +30,14 @@ constexpr double kNegligibleDecrease = 1e-18;
 std::size_t root_of(std::vector<std::size_t>& parent, std::size_t at) {
   while (parent[at] != at) at = parent[at] = parent[parent[at]];
   return at;
+}
+
+/// Slopes of unknown values at these indices: in one piece, or with the last one apart.
+std::vector<UnknownSlope> slopes(const std::vector<Index>& at, const ThingUnknowns& slope) {
+  const Index count = slope.size();
+  if (count == 0) return {};
+  if (at.back() == at.front() + count - 1) return {{at.front(), slope}};
+  return {{at.front(), slope.head(count - 1)}, {at.back(), slope.tail(1)}};
 }
 
 }  // namespace
@@ -70,6 +80,15 @@ void Things::connect() {
   for (const Observation& o : m.observations)
     if (o.kind == ObservationKind::kDistance && m.is_between_things(o.row))
       parent[root_of(parent, m.thing[o.row])] = root_of(parent, m.thing[m.other_end[o.row]]);
+  std::map<std::string, std::size_t> place_of;  // first place of each artefact whose radius is uncertain
+  std::vector<std::size_t> radius_of(m.things.size(), kNoThing);
+  for (std::size_t thing = 0; thing < m.things.size(); ++thing) {
+    if (m.things[thing].artefact.u_radius <= 0) continue;
+    const auto [first, is_new] = place_of.try_emplace(m.things[thing].label, thing);
+    if (is_new) continue;
+    radius_of[thing] = first->second;
+    parent[root_of(parent, thing)] = root_of(parent, first->second);
+  }
   std::vector<std::size_t> number(parent.size(), kNoThing);
   for (std::size_t thing = 0; thing < parent.size(); ++thing) {
     std::size_t& at = number[root_of(parent, thing)];
@@ -80,8 +99,11 @@ void Things::connect() {
     Cluster& cluster = clusters_[at];
     cluster_.push_back(at);
     cluster.things.push_back(thing);
-    first_.push_back(cluster.unknowns);
-    cluster.unknowns += unknowns_of(m.things[thing].artefact);
+    std::vector<Index> places(static_cast<std::size_t>(unknowns_of(m.things[thing].artefact)));
+    std::iota(places.begin(), places.end(), cluster.unknowns);
+    cluster.unknowns += static_cast<Index>(places.size());
+    if (radius_of[thing] != kNoThing) places.back() = at_[radius_of[thing]].back(), --cluster.unknowns;
+    at_.push_back(std::move(places));
   }
 }
 
@@ -163,14 +185,15 @@ ThingsAt::Reading ThingsAt::read(const Observation& o) const {
     const Vector3d arm = shapes_[thing].point - shapes_[other].point;
     reading.predicted = arm.norm();
     const Vector3d along = arm.stableNormalized();
-    reading.by_unknown = {{things_.first_of(thing), along}, {things_.first_of(other), -along}};
+    reading.by_unknown = {{things_.unknowns_of_thing(thing).front(), along},
+                          {things_.unknowns_of_thing(other).front(), -along}};
     return reading;
   }
   const TouchReading one = read_at(o, point_[o.row]);
   reading.predicted = one.value;
   reading.by_point = one.by_point;
   reading.by_tip = one.by_tip;
-  reading.by_unknown = {{things_.first_of(thing), one.by_unknown}};
+  reading.by_unknown = slopes(things_.unknowns_of_thing(thing), one.by_unknown);
   return reading;
 }
 
@@ -179,8 +202,8 @@ ThingsAt::Known ThingsAt::known(std::size_t cluster) const {
   Known all{VectorXd::Zero(k), VectorXd::Zero(k)};
   for (const std::size_t thing : things_.things(cluster)) {
     const KnownValues one = known_values(things_.measurement().things[thing].artefact, shapes_[thing]);
-    all.precision.segment(things_.first_of(thing), one.precision.size()) = one.precision;
-    all.off.segment(things_.first_of(thing), one.off.size()) = one.off;
+    all.precision(things_.unknowns_of_thing(thing)) = one.precision;
+    all.off(things_.unknowns_of_thing(thing)) = one.off;
   }
   return all;
 }
@@ -220,7 +243,7 @@ MatrixXd ThingsAt::normal(std::size_t cluster) const {
 void ThingsAt::move(std::size_t cluster, const VectorXd& step) {
   for (const std::size_t thing : things_.things(cluster)) {
     const Artefact& artefact = things_.measurement().things[thing].artefact;
-    const ThingUnknowns own = step.segment(things_.first_of(thing), unknowns_of(artefact));
+    const ThingUnknowns own = step(things_.unknowns_of_thing(thing));
     move_thing(artefact, own, shapes_[thing]);
   }
 }

@@ -20,7 +20,8 @@ struct UnknownSlope {
 };
 
 /// The touched objects of a measurement (`same`, `on`), and the readings of each object. Touched objects that
-/// are connected by a known length are estimated together: a cluster. Keeps a reference to the measurement.
+/// are connected by a known length are estimated together: a cluster. So are the places of one artefact whose
+/// radius has an uncertainty: they have one radius. Keeps a reference to the measurement.
 class Things {
  public:
   Things(const Machine& machine, const Measurement& measurement);
@@ -31,8 +32,9 @@ class Things {
   std::size_t cluster_of(const Observation& observation) const;
   Eigen::Index unknowns(std::size_t cluster) const { return clusters_[cluster].unknowns; }
   const std::vector<std::size_t>& things(std::size_t cluster) const { return clusters_[cluster].things; }
-  /// Index of the first unknown value of a touched object within its cluster.
-  Eigen::Index first_of(std::size_t thing) const { return first_[thing]; }
+  /// Indices of the unknown values of a touched object within its cluster, in their order. They follow each
+  /// other; only a radius may be elsewhere, because another place of the artefact has it.
+  const std::vector<Eigen::Index>& unknowns_of_thing(std::size_t thing) const { return at_[thing]; }
   /// Indices of the readings of a cluster, in their order.
   const std::vector<std::size_t>& readings(std::size_t cluster) const { return clusters_[cluster].readings; }
   /// Index of the constant (static) with the radius of the tip that touches the object; kNoThing: no such
@@ -55,7 +57,7 @@ class Things {
 
   const Measurement& measurement_;
   std::vector<std::size_t> cluster_, tip_;  // of each thing
-  std::vector<Eigen::Index> first_;
+  std::vector<std::vector<Eigen::Index>> at_;
   std::vector<Cluster> clusters_;
   Eigen::VectorXd weight_;
 };
