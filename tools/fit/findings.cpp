@@ -10,6 +10,7 @@
 #include <set>
 
 #include "tools/fit/coverage/reading_direction.h"
+#include "tools/fit/sanity.h"
 #include "tools/fit/size.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/median.h"
@@ -149,6 +150,14 @@ std::string exact_tips(const FitResult& result, const model::Measurement& m) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// Returns the touched artefacts whose radius is known without an uncertainty.
+std::string exact_radii(const model::Measurement& m) {
+  std::set<std::string> names;
+  for (const model::Thing& thing : m.things)
+    if (thing.artefact.radius && thing.artefact.u_radius <= 0) names.insert(thing.label);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 /// Findings about lengths that give the machine its size and whose own errors no reading of this fit shows.
 void add_exact_lengths(const FitResult& result, const model::Measurement& m,
                        std::vector<model::FitRecord::Finding>& list) {
@@ -161,6 +170,12 @@ void add_exact_lengths(const FitResult& result, const model::Measurement& m,
                      "U in mm, add --free {0} --prior {0}=U.",
                      tips)});
   if (!result.size || !result.size->known) return;
+  if (const std::string names = exact_radii(m); result.size->from == "known radius" && !names.empty())
+    list.push_back(
+        {kCode, 0,
+         fmt::format("The radius of {} was taken as exact: an error of 1 % in it is an error of 1 % "
+                     "in the size of the machine. To include its uncertainty, state uradius.",
+                     names)});
   // Without a standard uncertainty no free parameter changes the size: the scales of linear axes are known.
   if (result.size->from == "machine" && result.size->relative_std > 0)
     list.push_back({kCode, 0, size_sentence(*result.size)});
@@ -200,6 +215,9 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   if (result.size && !result.size->known)
     list.push_back({"size-unknown", result.size->relative_std, size_sentence(*result.size)});
   if (!result.absurd.empty()) list.push_back({"absurd", 1, result.absurd});
+  if (const std::string far = far_from_nominal(result.machine, result.parameters, m, result.reach_mm);
+      !far.empty())
+    list.push_back({"far-from-nominal", 1, far});
   add_exact_lengths(result, m, list);
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);

@@ -25,7 +25,8 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// `check-not-independent` (share of the check rows at poses of fit rows), `not-varied` (number of
 /// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`,
 /// `size-unknown` (no reading has a known length; value: the plausible share), `taken-as-exact` (a length
-/// that gives the machine its size, and whose own error no reading shows; value 0). record: with all other
+/// that gives the machine its size, and whose own error no reading shows; value 0), `far-from-nominal` (a fit
+/// of touches gave another machine than that of the file). record: with all other
 /// entries filled.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);

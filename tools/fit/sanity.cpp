@@ -16,6 +16,7 @@
 #include "tools/fit/coverage/pose_readings.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/format/readings.h"
+#include "tools/format/units.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/median.h"
@@ -176,16 +177,17 @@ double spread_of_lengths(const model::Measurement& rows) {
   return count > 0 ? std::sqrt(std::max(0.0, squares) / count) : std::numeric_limits<double>::infinity();
 }
 
-/// The direction in which a machine moves the tool least, compared with another machine at the same poses.
-struct LeastMotion {
-  double share;           // of the motion of the other machine
-  Eigen::Vector3d along;  // unit vector
+/// The directions in which a machine moves the tool least and most, compared with another machine at the same
+/// poses.
+struct Motions {
+  double least = 1, most = 1;  // of the motion of the other machine
+  Eigen::Vector3d along_least = Eigen::Vector3d::Zero(), along_most = along_least;  // unit vectors
 };
 
 /// The linear map from positions of the nominal machine to those of the fitted one, 3 x n each, has one
 /// singular value per direction. Directions in which the nominal machine hardly moves are excluded, because
 /// errors across them would decide.
-LeastMotion least_motion(const Eigen::Matrix3Xd& fitted, const Eigen::Matrix3Xd& nominal) {
+Motions motions_of(const Eigen::Matrix3Xd& fitted, const Eigen::Matrix3Xd& nominal) {
   constexpr double kMoves = 1e-3;  // share of the largest motion
   const Eigen::MatrixXd of_nominal = nominal.colwise() - nominal.rowwise().mean();
   const Eigen::MatrixXd of_fitted = fitted.colwise() - fitted.rowwise().mean();
@@ -193,13 +195,25 @@ LeastMotion least_motion(const Eigen::Matrix3Xd& fitted, const Eigen::Matrix3Xd&
   const Eigen::VectorXd& squares = spread.eigenvalues();  // ascending
   Eigen::Index excluded = 0;
   while (excluded < 3 && !(squares[excluded] > kMoves * kMoves * squares[2])) ++excluded;
-  if (excluded == 3) return {1, Eigen::Vector3d::Zero()};
+  if (excluded == 3) return {};
   const Eigen::MatrixXd directions = spread.eigenvectors().rightCols(3 - excluded);
   const Eigen::MatrixXd map = of_fitted * of_nominal.transpose() * directions *
                               squares.tail(3 - excluded).cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(map, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::Index least = svd.singularValues().size() - 1;
-  return {svd.singularValues()[least], directions * svd.matrixV().col(least)};
+  return {svd.singularValues()[least], svd.singularValues()[0], directions * svd.matrixV().col(least),
+          directions * svd.matrixV().col(0)};
+}
+
+/// Compares two machines at poses over these ranges of the axes.
+Motions motions_over(const model::Machine& fitted, const model::Machine& nominal,
+                     const std::vector<std::array<double, 2>>& ranges) {
+  const model::States states = model::poses_over(nominal, ranges).states;
+  return motions_of(model::forward(fitted, states).position, model::forward(nominal, states).position);
+}
+
+std::array<double, 2> measured_range(const model::Measurement& m, std::size_t axis) {
+  return {m.states.axis[axis].minCoeff(), m.states.axis[axis].maxCoeff()};
 }
 
 /// "along Y", or "along the direction (0.7, 0.7, 0)".
@@ -219,8 +233,7 @@ std::string collapse_of(const model::Machine& fitted, const model::Measurement& 
   const model::Machine nominal = model::nominal_machine(fitted);
   std::vector<std::array<double, 2>> ranges;
   for (std::size_t a = 0; a < fitted.axes.size(); ++a) {
-    const model::Column& position = measurement.states.axis[a];
-    std::array<double, 2> range = {position.minCoeff(), position.maxCoeff()};
+    std::array<double, 2> range = measured_range(measurement, a);
     if (const auto travel = model::work_range(nominal, a)) {
       const double wider = kLeastOfTravel * ((*travel)[1] - (*travel)[0]) - (range[1] - range[0]);
       range[0] -= std::max(0.0, wider) / 2;
@@ -228,15 +241,50 @@ std::string collapse_of(const model::Machine& fitted, const model::Measurement& 
     }
     ranges.push_back(range);
   }
-  const model::States states = model::poses_over(nominal, ranges).states;
-  const LeastMotion least =
-      least_motion(model::forward(fitted, states).position, model::forward(nominal, states).position);
-  if (!(least.share < kLeast)) return {};
+  const Motions motions = motions_over(fitted, nominal, ranges);
+  if (!(motions.least < kLeast)) return {};
   return fmt::format(
       "{} the fitted machine moves the tool by {:.3g} of what the nominal machine does: touches of unknown "
       "points agree best if the machine does not move; perhaps two labels are exchanged, or each point was "
       "touched from positions that do not vary enough",
-      direction_text(least.along), least.share);
+      direction_text(motions.along_least), motions.least);
+}
+
+std::string far_from_nominal(const model::Machine& fitted, const model::ParameterSet& parameters,
+                             const model::Measurement& measurement, double reach_mm) {
+  constexpr double kStretch = 0.05;       // of the motion of the nominal machine, over the travel
+  constexpr double kTurnDeg = 45;         // of a constant
+  constexpr double kShareOfReach = 0.25;  // of a length
+  if (measurement.things.empty()) return {};
+  const model::Machine nominal = model::nominal_machine(fitted);
+  const char* const mend =
+      "Touches of unknown points can agree with another machine than that of the file: check the sign, the "
+      "unit and the motion of each axis. If the machine is really so, write the value into the machine file "
+      "and fit again.";
+  const Eigen::VectorXd now = parameters.get(fitted), before = parameters.get(nominal);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const model::Parameter& one = parameters[i];
+    if (one.kind != model::ParameterKind::kStatic) continue;
+    const auto unit = format::find_unit(one.unit);
+    if (!unit) continue;
+    const double moved = now[static_cast<Eigen::Index>(i)] - before[static_cast<Eigen::Index>(i)];
+    const bool turned =
+        unit->dimension == format::Dimension::kAngle && std::abs(moved * unit->factor) > kTurnDeg;
+    const bool shifted = unit->dimension == format::Dimension::kLength &&
+                         std::abs(moved * unit->factor) > kShareOfReach * reach_mm;
+    if (turned || shifted)
+      return fmt::format("The fit moved {} by {:.4g} {} from its nominal value. {}", one.name, moved,
+                         one.unit, mend);
+  }
+  std::vector<std::array<double, 2>> ranges;
+  for (std::size_t a = 0; a < fitted.axes.size(); ++a)
+    ranges.push_back(model::work_range(nominal, a).value_or(measured_range(measurement, a)));
+  const Motions motions = motions_over(fitted, nominal, ranges);
+  const bool more = motions.most > 1 + kStretch;
+  if (!more && !(motions.least < 1 - kStretch)) return {};
+  return fmt::format("{} the fitted machine moves the tool by {:.3g} of what the nominal machine does. {}",
+                     direction_text(more ? motions.along_most : motions.along_least),
+                     more ? motions.most : motions.least, mend);
 }
 
 double half_travel_mm(const model::Machine& machine) {

@@ -44,6 +44,12 @@ std::string missing_set_up(const model::Machine& machine, const model::Measureme
 /// empty.
 std::string collapse_of(const model::Machine& fitted, const model::Measurement& measurement);
 
+/// Returns the sentence for a fit of touches whose machine is another one than that of the file: a constant
+/// that turned by more than 45 deg or moved by more than a quarter of the reach, or a motion that is 5 %
+/// more or less over the travel of the axes; else empty.
+std::string far_from_nominal(const model::Machine& fitted, const model::ParameterSet& parameters,
+                             const model::Measurement& measurement, double reach_mm);
+
 /// Returns half of the diagonal of the declared ranges of the linear axes, mm; 0 without ranges.
 double half_travel_mm(const model::Machine& machine);
 

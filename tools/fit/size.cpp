@@ -264,9 +264,9 @@ std::string size_sentence(const SizeOfMachine& size) {
   if (size.fixed.size() > kMostNames) names += fmt::format(" and {} more", size.fixed.size() - kMostNames);
   if (size.from == "machine")
     return fmt::format(
-        "The size of the machine comes from lengths that the fit does not change ({}): an error of 1 % in "
+        "The size of the machine comes from lengths that the fit does not change{}: an error of 1 % in "
         "them is an error of 1 % in the size.",
-        names);
+        names.empty() ? "" : " (" + names + ")");
   std::string text = fmt::format("The size of the machine comes from the {}: {:.2g} um/m{}.", size.from,
                                  kPartsPerMillion * size.relative_std,
                                  size.from == "board" ? ", if the size of the board is exact" : "");

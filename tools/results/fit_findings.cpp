@@ -18,13 +18,13 @@ bool is_one_of(const model::FitRecord::Finding& finding, std::initializer_list<c
 
 /// Findings with which no later result holds.
 bool forbids(const model::FitRecord::Finding& finding) {
-  return is_one_of(finding, {"not-converged", "absurd", "no-gain"});
+  return is_one_of(finding, {"not-converged", "absurd", "no-gain", "far-from-nominal"});
 }
 
 /// Further findings with which a fit itself does not hold.
 bool contradicts_fit(const model::FitRecord::Finding& finding) {
-  return is_one_of(finding,
-                   {"something-missing", "disturbed", "not-varied", "not-distinguished", "size-unknown"});
+  return is_one_of(finding, {"something-missing", "disturbed", "not-varied", "not-distinguished",
+                             "size-unknown", "far-from-nominal"});
 }
 
 /// True if the readings determine a parameter of the machine at least in part; set-ups do not count. nullopt:
@@ -79,10 +79,9 @@ text::Assurance assurance_of(const fit::FitResult& result) {
                              result.freedom));
   }
   for (const model::FitRecord::Finding& one : result.machine.fitted->findings) {
-    if (forbids(one)) continue;  // the rules above
     if (contradicts_fit(one))
       word.require(one.code, false, one.text);
-    else
+    else if (!forbids(one))  // those are the rules above
       word.not_covered(one.text);
   }
   if (!result.things.empty())

@@ -292,6 +292,57 @@ TEST(FitOfThings, OneAxisThatCollapsedIsNoResult) {
   EXPECT_EQ(result.absurd.find("along Y the fitted machine moves the tool by"), 0u) << result.absurd;
 }
 
+// A column with the other sign can agree with another machine: a zero that is half a turn off.
+TEST(FitOfThings, AnotherMachineThanThatOfTheFileDoesNotHold) {
+  const auto with = [](const std::string& from, const std::string& to) {
+    std::string text = kArm;
+    text.replace(text.find(from), from.size(), to);
+    const model::Machine arm = model::parse_machine(text, "arm.xml");
+    return vernier::fit::fit(arm, model::parse_measurement(survey(true, 3), "s.csv", arm), {});
+  };
+  EXPECT_FALSE(has(fitted(survey(true, 3)), "far-from-nominal"));
+  const FitResult turned = with("<zero value=\"0\" nominal=\"0\"", "<zero value=\"0\" nominal=\"80\"");
+  ASSERT_TRUE(has(turned, "far-from-nominal"));
+  const auto& list = turned.machine.fitted->findings;
+  const auto found =
+      std::find_if(list.begin(), list.end(), [](const auto& one) { return one.code == "far-from-nominal"; });
+  EXPECT_EQ(found->text.find("The fit moved zero by -7"), 0u) << found->text;
+  const FitResult shorter = with("<b value=\"200\" nominal=\"200\"", "<b value=\"200\" nominal=\"400\"");
+  EXPECT_TRUE(has(shorter, "far-from-nominal"));
+}
+
+// The radius of one ball is uncertain once, also if the ball is touched at many places.
+TEST(FitOfThings, OneBallAtManyPlacesHasOneRadius) {
+  const auto std_of_scale = [](int places) {
+    const model::Machine mill = model::parse_machine(
+        R"XML(<machine name="mill"><variables><static><s value="0" nominal="0" scale="0.01"/>
+  <tip value="3" unit="mm" Hide="true"/></static>
+  <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes>
+  <artefact name="ball" type="sphere" radius="12.5mm" uradius="5um" tip="tip"/></variables>
+  <transforms><sixdof n="1" X="X*(1+s)" Y="Y*(1+s)" Z="Z*(1+s)"/></transforms></machine>)XML",
+        "mill.xml");
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> noise(0, 0.0005);
+    std::uniform_real_distribution<double> anywhere(-1, 1);
+    std::string rows = "X[mm],Y[mm],Z[mm],on,setup,u[um]\n";
+    for (int place = 0; place < places; ++place) {
+      const double x = 300 + 200 * anywhere(random), y = 200 + 100 * anywhere(random);
+      for (int i = 0; i < 20; ++i) {
+        const double turn = 0.7 * i, up = 0.05 + 0.045 * i, flat = std::sqrt(1 - up * up);
+        rows += fmt::format(
+            "{:.6f},{:.6f},{:.6f},ball,p{},0.5\n", x + 15.5 * flat * std::cos(turn) + noise(random),
+            y + 15.5 * flat * std::sin(turn) + noise(random), -200 + 15.5 * up + noise(random), place);
+      }
+    }
+    const FitResult result = vernier::fit::fit(mill, model::parse_measurement(rows, "s.csv", mill), {});
+    EXPECT_EQ(result.things.size(), static_cast<std::size_t>(places));
+    return std::sqrt(result.covariance(0, 0));
+  };
+  // 5 um of 15.5 mm.
+  EXPECT_NEAR(std_of_scale(1), 323e-6, 40e-6);
+  EXPECT_NEAR(std_of_scale(8), 323e-6, 20e-6);
+}
+
 TEST(FitOfThings, ARobustLossIsRefusedByName) {
   FitOptions options;
   options.loss = Loss::kHuber;
