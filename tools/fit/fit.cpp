@@ -154,7 +154,7 @@ double left_mm(const FitResult& result) {
 
 void judge(FitResult& result, const model::Machine& machine, const model::Measurement& measurement,
            const Settled& end, std::size_t readings) {
-  result.absurd = collapse_of(result.machine, measurement);
+  result.absurd = collapse_of(result.machine, result.parameters, measurement);
   result.worst = worst_reading(measurement, result.residual, false);
   result.worst_check = worst_reading(measurement, result.residual, true);
   // A load or a homing error at one place may be large in a measured box that is small.

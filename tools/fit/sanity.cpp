@@ -226,7 +226,8 @@ std::string direction_text(const Eigen::Vector3d& along) {
 
 }  // namespace
 
-std::string collapse_of(const model::Machine& fitted, const model::Measurement& measurement) {
+std::string collapse_of(const model::Machine& fitted, const model::ParameterSet& parameters,
+                        const model::Measurement& measurement) {
   constexpr double kLeast = 0.5;          // no calibration halves a machine
   constexpr double kLeastOfTravel = 0.1;  // positions that vary by noise alone show the machine as well
   if (measurement.things.empty()) return {};
@@ -243,11 +244,25 @@ std::string collapse_of(const model::Machine& fitted, const model::Measurement& 
   }
   const Motions motions = motions_over(fitted, nominal, ranges);
   if (!(motions.least < kLeast)) return {};
+  // A parameter that stops the motion alone.
+  const Eigen::VectorXd values = parameters.get(fitted);
+  const Eigen::VectorXd before = parameters.get(nominal);
+  std::string alone;
+  for (std::size_t i = 0; i < parameters.size() && alone.empty(); ++i) {
+    if (model::is_set_up(parameters[i].kind)) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    Eigen::VectorXd one = before;
+    one[at] = values[at];
+    model::Machine changed = nominal;
+    parameters.set(changed, one);
+    if (motions_over(changed, nominal, ranges).least < kLeast) alone = parameters[i].name;
+  }
   return fmt::format(
-      "{} the fitted machine moves the tool by {:.3g} of what the nominal machine does: touches of unknown "
+      "{} the fitted machine moves the tool by {:.3g} of what the nominal machine does{}: touches of unknown "
       "points agree best if the machine does not move; perhaps two labels are exchanged, or each point was "
-      "touched from positions that do not vary enough",
-      direction_text(motions.along_least), motions.least);
+      "touched from positions that do not vary enough{}",
+      direction_text(motions.along_least), motions.least, alone.empty() ? "" : ", by " + alone + " alone",
+      alone.empty() ? "" : fmt::format(". Hold {} at its nominal value (Hide=\"true\")", alone));
 }
 
 std::string far_from_nominal(const model::Machine& fitted, const model::ParameterSet& parameters,

@@ -42,7 +42,8 @@ std::string missing_set_up(const model::Machine& machine, const model::Measureme
 /// Touches of unknown points agree best if the machine does not move at all. Returns the reason if a fit of
 /// such readings gave a machine that moves the tool much less than the nominal one, in any direction; else
 /// empty.
-std::string collapse_of(const model::Machine& fitted, const model::Measurement& measurement);
+std::string collapse_of(const model::Machine& fitted, const model::ParameterSet& parameters,
+                        const model::Measurement& measurement);
 
 /// Returns the sentence for a fit of touches whose machine is another one than that of the file: a constant
 /// that turned by more than 45 deg or moved by more than a quarter of the reach, or a motion that is 5 %

@@ -290,6 +290,8 @@ TEST(FitOfThings, OneAxisThatCollapsedIsNoResult) {
     }
   const FitResult result = vernier::fit::fit(mill, model::parse_measurement(rows, "s.csv", mill), {});
   EXPECT_EQ(result.absurd.find("along Y the fitted machine moves the tool by"), 0u) << result.absurd;
+  EXPECT_NE(result.absurd.find("by sy alone"), std::string::npos) << result.absurd;
+  EXPECT_NE(result.absurd.find("Hold sy at its nominal value"), std::string::npos) << result.absurd;
 }
 
 // A column with the other sign can agree with another machine: a zero that is half a turn off.
