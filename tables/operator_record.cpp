@@ -39,6 +39,7 @@ OperatorRecords OperatorRecords::load(const OperatorPlace& first, const Operator
   const OperatorRecord& other = second_counts ? first.record : second.record;
   if (one && two && records.now_.sequence == sequence_after(other.sequence))
     records.places_ = StoredPair::kIntact;
+  records.once_ = !(one && two && first.record.state == second.record.state);
   return records;
 }
 

@@ -67,6 +67,9 @@ class OperatorRecords {
   /// True if a record is stored. Otherwise state() is the default state (no setting of an operator).
   bool known() const noexcept { return now_.sequence != 0; }
   const OperatorState& state() const noexcept { return now_.state; }
+  /// True if load() found the state in one place only: the second write did not come, or the first one is not
+  /// on the medium yet.
+  bool once() const noexcept { return once_; }
   /// Returns the change that stores another state. Not real-time safe.
   OperatorChange change_to(const OperatorState& state) const noexcept;
   /// Reports to the object that the change is on the medium. Not real-time safe.
@@ -76,6 +79,7 @@ class OperatorRecords {
   OperatorRecord now_{kOperatorMagic, 0, {}, 0};
   std::uint32_t next_place_ = kOperatorPlace;
   StoredPair places_ = StoredPair::kNothing;
+  bool once_ = false;
 };
 
 /// True for a record that a board may use: magic, checksum, sequence. Not real-time safe.

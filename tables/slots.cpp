@@ -15,6 +15,11 @@ std::uint32_t checksum_of(const SlotRecord& record) noexcept {
 
 bool is_slot(std::uint8_t slot) noexcept { return slot < kSlotCount || slot == kNoSlot; }
 
+bool same_state(const SlotRecord& a, SlotRecord b) noexcept {
+  b.sequence = a.sequence;
+  return checksum_of(a) == checksum_of(b);
+}
+
 }  // namespace
 
 SlotRecord upgraded(const SlotRecordV1& record) noexcept {
@@ -47,6 +52,7 @@ Slots Slots::load(const SlotPlace& first, const SlotPlace& second) noexcept {
   slots.next_place_ = second_counts ? 0 : 1;
   const SlotPlace& other = second_counts ? first : second;
   const bool pair = one && two && slots.now_.sequence == other.record.sequence + 1;
+  slots.once_ = !pair || !same_state(slots.now_, other.record);
   if (pair || (!other.written && slots.now_.sequence == 1))
     slots.places_ = StoredPair::kIntact;
   else

@@ -79,6 +79,8 @@ class Slots {
   /// State of the places since load() and the changes stored since. A damaged pair is intact after at most
   /// two changes.
   StoredPair places() const noexcept { return places_; }
+  /// True if load() found the state in one place only.
+  bool once() const noexcept { return once_; }
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }
   std::uint8_t trial() const noexcept { return now_.trial; }
@@ -110,6 +112,7 @@ class Slots {
   SlotRecord now_{kSlotMagic, 0, 0, 0, 0, 0, kNoSlot, kNoSlot, 0, 0, 0};
   std::uint32_t next_place_ = 0;
   StoredPair places_ = StoredPair::kNothing;
+  bool once_ = false;
 };
 
 /// Converts a valid record of version 1 to the present version; an invalid record gives no record.

@@ -34,6 +34,7 @@ OperatorState OperatorMemory::load() noexcept {
   found_ = records_.places();
   damaged_.store(found_ == StoredPair::kDamaged, std::memory_order_relaxed);
   stored_ = records_.known() ? records_.state() : present();
+  to_write_ = records_.once() ? 2 : 0;
   OperatorState state = stored_;
   if (damaged()) state.out = 1;
   for (std::size_t i = 0; records_.known() && i < wiring_.axes.size(); ++i)
@@ -57,16 +58,17 @@ bool OperatorMemory::store(const OperatorState& state) noexcept {
 }
 
 // Every setting is written to both places: a record that is lost or unreadable shows, and one that is an
-// older copy is not the newest, or no neighbour of the other.
+// older copy is not the newest, or no neighbour of the other. A state that a start found in one place only is
+// written to both again.
 bool OperatorMemory::store_changes(const OperatorState& now) noexcept {
   if (now != stored_) {
     if (!store(now)) return false;
-    once_ = true;
+    to_write_ = 1;
   }
-  if (!once_ && records_.places() != StoredPair::kDamaged) return true;
-  if (!store(now)) return false;
-  once_ = false;
-  return records_.places() != StoredPair::kDamaged || store(now);
+  if (records_.places() == StoredPair::kDamaged) to_write_ = 2;
+  for (; to_write_ > 0; --to_write_)
+    if (!store(now)) return false;
+  return true;
 }
 
 void OperatorMemory::save() noexcept {

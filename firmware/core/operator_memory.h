@@ -47,7 +47,7 @@ class OperatorMemory {
   OperatorRecords records_;
   OperatorState stored_;
   StoredPair found_ = StoredPair::kNothing;
-  bool once_ = false;  // the newest state is in one place only
+  int to_write_ = 0;  // times that the newest state must still be written
   std::atomic<bool> refused_{false}, damaged_{false};
   std::atomic<std::uint32_t> stored_ticks_{0}, refused_ticks_{0};
 };

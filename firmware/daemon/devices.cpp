@@ -584,22 +584,43 @@ void Devices::sample() noexcept {
   for (auto& sensor : parts_->sensors) sensor->sample();
 }
 
-void Devices::take_left_overs_out(const std::atomic<bool>& stop) noexcept {
-  for (const RealOutput& output : parts_->real_outputs) {
-    AxisTravel held;
+bool Devices::take_left_overs_out(const std::atomic<bool>& stop) noexcept {
+  constexpr InstantNs kAfterStop(10'000'000'000);
+  struct OnItsWay {
+    const RealOutput* output;
     MotionLimit motion;
-    MotionBounds bounds = parts_->file.service.limits.axis[output.axis].motion;
-    if (output.device->read_back(output.number, held) == HalFault::kNone) motion.stop_at(held.count);
-    bounds.slew = std::min(bounds.slew, std::abs(held.count) / kTicksToZero + 1);
-    // The zero is written too, because some drivers do not report their value; a refusal appears in the first
-    // ticks.
-    for (bool zero = false; !zero && !stop;) {
-      const AxisTravel next(motion.approach(0, bounds));
-      zero = next == AxisTravel{} || output.device->write_correction(output.number, next) != HalFault::kNone;
-      if (zero) output.device->write_correction(output.number, AxisTravel{});
-      parts_->clock.sleep_until(parts_->clock.now() + instant_ns(parts_->file.service.upload.tick));
-    }
+    MotionBounds bounds;
+    bool at_zero = false;
+  };
+  std::vector<OnItsWay> all;
+  for (const RealOutput& output : parts_->real_outputs) {
+    OnItsWay one{&output, {}, parts_->file.service.limits.axis[output.axis].motion};
+    AxisTravel held;
+    if (output.device->read_back(output.number, held) == HalFault::kNone) one.motion.stop_at(held.count);
+    one.bounds.slew = std::min(one.bounds.slew, std::abs(held.count) / kTicksToZero + 1);
+    all.push_back(one);
   }
+  // A request to end does not leave a value: it only limits the time.
+  InstantNs last(INT64_MAX);
+  for (bool left = !all.empty(); left;) {
+    left = false;
+    for (OnItsWay& one : all) {
+      if (one.at_zero) continue;
+      OutputDevice& device = *one.output->device;
+      const AxisTravel next(one.motion.approach(0, one.bounds));
+      one.at_zero =
+          next == AxisTravel{} || device.write_correction(one.output->number, next) != HalFault::kNone;
+      // The zero is written too, because some drivers do not report their value; a refusal appears in the
+      // first ticks.
+      if (one.at_zero) device.write_correction(one.output->number, AxisTravel{});
+      left = left || !one.at_zero;
+    }
+    const InstantNs now = parts_->clock.now();
+    if (stop && last.count == INT64_MAX) last = now + kAfterStop;
+    if (left && now > last) return false;
+    parts_->clock.sleep_until(now + instant_ns(parts_->file.service.upload.tick));
+  }
+  return true;
 }
 
 std::vector<std::string> Devices::output_budget() const {

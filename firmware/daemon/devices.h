@@ -50,8 +50,9 @@ class Devices {
 
   /// Removes from the drives a correction that a killed daemon left, or the value with which a converter
   /// starts. The removal is before the first tick, within the limits of the axis, and takes at least a
-  /// second. stop: ends the removal early. Not real-time safe.
-  void take_left_overs_out(const std::atomic<bool>& stop) noexcept;
+  /// second. All outputs move together. Returns false if `stop` came and ten seconds later a value is still
+  /// left. Not real-time safe.
+  bool take_left_overs_out(const std::atomic<bool>& stop) noexcept;
   /// Opens the hardware watchdog if the board file names one. Returns the error text, or an empty text: then
   /// the caller must feed the watchdog, and disarm it at an orderly end. Not real-time safe.
   std::string start_watchdog();

@@ -141,9 +141,15 @@ int check_devices(Devices& devices, const BoardFile& file) {
   return missing + missing_files == 0 ? kDone : kAnswerIsNo;
 }
 
+int say_left_over() {
+  std::fputs("vernierd: not at zero: the end came before the outputs had removed the values of before\n",
+             stderr);
+  return kAnswerIsNo;
+}
+
 /// Removes the corrections that an ended daemon left in the outputs, if the outputs are present.
 int take_to_zero(Devices& devices) {
-  devices.take_left_overs_out(stop_asked);
+  if (!devices.take_left_overs_out(stop_asked)) return say_left_over();
   int missing = 0;
   for (const DeviceFinding& finding : devices.findings())
     if (finding.device.find(".output ") != std::string::npos && !finding.missing.empty()) {
@@ -308,7 +314,7 @@ int run_board(const Arguments& arguments) {
   if (arguments.zero) return take_to_zero(devices);
   if (!all_there(devices)) return kAnswerIsNo;
   devices.sample();
-  devices.take_left_overs_out(stop_asked);
+  if (!devices.take_left_overs_out(stop_asked)) return say_left_over();
   const std::unique_ptr<BoardKey> own_key = key_of_board(file.store);
   FileSlotStore store(file.store, file.slot_bytes);
   reserve_settings(store);
@@ -374,8 +380,9 @@ int main(int argc, char** argv) {
   // A medium or a peer that refuses bytes is reported by the call; the signal would end the daemon.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGTERM, [](int) { stop_asked = true; });
-  std::signal(SIGINT, [](int) { stop_asked = true; });
+  // Each of these would else end the daemon and leave the corrections in the outputs.
+  for (const int end : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2, SIGALRM})
+    std::signal(end, [](int) { stop_asked = true; });
   try {
     return arguments.board.empty() ? run_image(arguments) : run_board(arguments);
   } catch (const BoardError& error) {

@@ -12,6 +12,7 @@
 #include "tools/fit/coverage/reading_direction.h"
 #include "tools/fit/sanity.h"
 #include "tools/fit/size.h"
+#include "tools/format/units.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/median.h"
 
@@ -158,6 +159,27 @@ std::string exact_radii(const model::Measurement& m) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// Returns the touched artefacts with a stated direction.
+std::string exact_directions(const model::Measurement& m) {
+  std::set<std::string> names;
+  for (const model::Thing& thing : m.things)
+    if (thing.artefact.direction) names.insert(thing.label);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Returns the inputs in units of length that differ between the touches, as those of two tools.
+std::string varied_lengths(const model::Machine& machine, const model::Measurement& m) {
+  std::set<std::string> names;
+  if (m.things.empty()) return {};
+  for (std::size_t i = 0; i < machine.inputs.size(); ++i) {
+    const auto unit = format::find_unit(machine.inputs[i].unit);
+    if (!unit || unit->dimension != format::Dimension::kLength || i >= m.states.input.size()) continue;
+    const model::Column& values = m.states.input[i];
+    if (values.size() > 0 && values.maxCoeff() > values.minCoeff()) names.insert(machine.inputs[i].name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 /// Findings about lengths that give the machine its size and whose own errors no reading of this fit shows.
 void add_exact_lengths(const FitResult& result, const model::Measurement& m,
                        std::vector<model::FitRecord::Finding>& list) {
@@ -169,6 +191,17 @@ void add_exact_lengths(const FitResult& result, const model::Measurement& m,
                      "radius, and through it the scales of the machine. To include its uncertainty "
                      "U in mm, add --free {0} --prior {0}=U.",
                      tips)});
+  if (const std::string names = exact_directions(m); !names.empty())
+    list.push_back({kCode, 0,
+                    fmt::format("The direction of {} was taken as exact: an error of 1 mrad in it acts as an "
+                                "error of 1 mrad of the machine.",
+                                names)});
+  if (const std::string names = varied_lengths(result.machine, m); !names.empty())
+    list.push_back(
+        {kCode, 0,
+         fmt::format("The values of {} were taken as exact: an error of their difference acts as an "
+                     "error of the machine.",
+                     names)});
   if (!result.size || !result.size->known) return;
   if (const std::string names = exact_radii(m); result.size->from == "known radius" && !names.empty())
     list.push_back(

@@ -451,8 +451,8 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   result.reach_mm = convention.reach_mm;
   FitProblem problem(machine, rows, result.parameters);
   problem.hold_unseen(convention.unseen);
-  result.size = decide_size(problem, machine, result.parameters, convention, convention.centre);
   const StatedPriors stated = stated_priors(result, options, convention);
+  result.size = decide_size(problem, machine, result.parameters, convention, stated, convention.centre);
   const bool with_u = has_uncertainty(measurement);
   Settled end;
   const std::size_t readings = result.before.count - problem.things().eliminated();

@@ -177,17 +177,16 @@ double spread_of_lengths(const model::Measurement& rows) {
   return count > 0 ? std::sqrt(std::max(0.0, squares) / count) : std::numeric_limits<double>::infinity();
 }
 
-/// The directions in which a machine moves the tool least and most, compared with another machine at the same
-/// poses.
-struct Motions {
-  double least = 1, most = 1;  // of the motion of the other machine
-  Eigen::Vector3d along_least = Eigen::Vector3d::Zero(), along_most = along_least;  // unit vectors
+/// The direction in which a machine moves the tool least, compared with another machine at the same poses.
+struct LeastMotion {
+  double share = 1;                                 // of the motion of the other machine
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();  // unit vector
 };
 
 /// The linear map from positions of the nominal machine to those of the fitted one, 3 x n each, has one
 /// singular value per direction. Directions in which the nominal machine hardly moves are excluded, because
 /// errors across them would decide.
-Motions motions_of(const Eigen::Matrix3Xd& fitted, const Eigen::Matrix3Xd& nominal) {
+LeastMotion least_motion(const Eigen::Matrix3Xd& fitted, const Eigen::Matrix3Xd& nominal) {
   constexpr double kMoves = 1e-3;  // share of the largest motion
   const Eigen::MatrixXd of_nominal = nominal.colwise() - nominal.rowwise().mean();
   const Eigen::MatrixXd of_fitted = fitted.colwise() - fitted.rowwise().mean();
@@ -201,15 +200,22 @@ Motions motions_of(const Eigen::Matrix3Xd& fitted, const Eigen::Matrix3Xd& nomin
                               squares.tail(3 - excluded).cwiseInverse().asDiagonal();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(map, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::Index least = svd.singularValues().size() - 1;
-  return {svd.singularValues()[least], svd.singularValues()[0], directions * svd.matrixV().col(least),
-          directions * svd.matrixV().col(0)};
+  return {svd.singularValues()[least], directions * svd.matrixV().col(least)};
 }
 
 /// Compares two machines at poses over these ranges of the axes.
-Motions motions_over(const model::Machine& fitted, const model::Machine& nominal,
-                     const std::vector<std::array<double, 2>>& ranges) {
+LeastMotion least_motion_over(const model::Machine& fitted, const model::Machine& nominal,
+                              const std::vector<std::array<double, 2>>& ranges) {
   const model::States states = model::poses_over(nominal, ranges).states;
-  return motions_of(model::forward(fitted, states).position, model::forward(nominal, states).position);
+  return least_motion(model::forward(fitted, states).position, model::forward(nominal, states).position);
+}
+
+/// The nominal machine with the set-ups of the fitted one, so that it has all its parameters.
+model::Machine nominal_in_set_ups(const model::Machine& fitted) {
+  model::Machine nominal = model::nominal_machine(fitted);
+  nominal.base_shifts = fitted.base_shifts;
+  nominal.tool_shifts = fitted.tool_shifts;
+  return nominal;
 }
 
 std::array<double, 2> measured_range(const model::Measurement& m, std::size_t axis) {
@@ -242,41 +248,75 @@ std::string collapse_of(const model::Machine& fitted, const model::ParameterSet&
     }
     ranges.push_back(range);
   }
-  const Motions motions = motions_over(fitted, nominal, ranges);
-  if (!(motions.least < kLeast)) return {};
+  const LeastMotion least = least_motion_over(fitted, nominal, ranges);
+  if (!(least.share < kLeast)) return {};
   // A parameter that stops the motion alone.
   const Eigen::VectorXd values = parameters.get(fitted);
-  const Eigen::VectorXd before = parameters.get(nominal);
+  const model::Machine here = nominal_in_set_ups(fitted);
+  const Eigen::VectorXd before = parameters.get(here);
   std::string alone;
   for (std::size_t i = 0; i < parameters.size() && alone.empty(); ++i) {
     if (model::is_set_up(parameters[i].kind)) continue;
     const auto at = static_cast<Eigen::Index>(i);
     Eigen::VectorXd one = before;
     one[at] = values[at];
-    model::Machine changed = nominal;
+    model::Machine changed = here;
     parameters.set(changed, one);
-    if (motions_over(changed, nominal, ranges).least < kLeast) alone = parameters[i].name;
+    if (least_motion_over(changed, here, ranges).share < kLeast) alone = parameters[i].name;
   }
   return fmt::format(
       "{} the fitted machine moves the tool by {:.3g} of what the nominal machine does{}: touches of unknown "
       "points agree best if the machine does not move; perhaps two labels are exchanged, or each point was "
       "touched from positions that do not vary enough{}",
-      direction_text(motions.along_least), motions.least, alone.empty() ? "" : ", by " + alone + " alone",
+      direction_text(least.along), least.share, alone.empty() ? "" : ", by " + alone + " alone",
       alone.empty() ? "" : fmt::format(". Hold {} at its nominal value (Hide=\"true\")", alone));
 }
 
+namespace {
+
+/// Ranges of the axes: those of the machine file, or the measured ones.
+std::vector<std::array<double, 2>> ranges_of(const model::Machine& machine, const model::Measurement& m) {
+  std::vector<std::array<double, 2>> ranges;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a)
+    ranges.push_back(model::work_range(machine, a).value_or(measured_range(m, a)));
+  return ranges;
+}
+
+/// Distance of the tool point at the two ends of a linear axis, the other axes in the middle, mm.
+double travel_of(const model::Machine& machine, const model::Measurement& m, std::size_t axis) {
+  model::States states = model::make_states(2, machine);
+  const auto ranges = ranges_of(machine, m);
+  for (std::size_t a = 0; a < ranges.size(); ++a)
+    for (Eigen::Index end = 0; end < 2; ++end)
+      states.axis[a][end] =
+          a == axis ? ranges[a][static_cast<std::size_t>(end)] : (ranges[a][0] + ranges[a][1]) / 2;
+  const Eigen::Matrix3Xd ends = model::forward(machine, states).position;
+  return (ends.col(1) - ends.col(0)).norm();
+}
+
+/// Rms distance of the tool points over the ranges of the axes from their mean, mm.
+double spread_of(const model::Machine& machine, const model::Measurement& m) {
+  const Eigen::Matrix3Xd points =
+      model::forward(machine, model::poses_over(machine, ranges_of(machine, m)).states).position;
+  return (points.colwise() - points.rowwise().mean()).norm() / std::sqrt(static_cast<double>(points.cols()));
+}
+
+}  // namespace
+
 std::string far_from_nominal(const model::Machine& fitted, const model::ParameterSet& parameters,
                              const model::Measurement& measurement, double reach_mm) {
-  constexpr double kStretch = 0.05;       // of the motion of the nominal machine, over the travel
-  constexpr double kTurnDeg = 45;         // of a constant
-  constexpr double kShareOfReach = 0.25;  // of a length
+  constexpr double kStretch = 0.05;      // of the motion of a linear axis, over its travel
+  constexpr double kTurnDeg = 45;        // of a constant
+  constexpr double kShareOfSize = 0.25;  // of a length
   if (measurement.things.empty()) return {};
   const model::Machine nominal = model::nominal_machine(fitted);
   const char* const mend =
       "Touches of unknown points can agree with another machine than that of the file: check the sign, the "
-      "unit and the motion of each axis. If the machine is really so, write the value into the machine file "
-      "and fit again.";
-  const Eigen::VectorXd now = parameters.get(fitted), before = parameters.get(nominal);
+      "unit and the motion of each axis. If the machine is really so, write the fitted value into the "
+      "machine "
+      "file as `nominal` and fit again.";
+  const double size_mm = std::max(reach_mm, spread_of(nominal, measurement));
+  const Eigen::VectorXd now = parameters.get(fitted), before = parameters.get(nominal_in_set_ups(fitted));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const model::Parameter& one = parameters[i];
     if (one.kind != model::ParameterKind::kStatic) continue;
@@ -286,20 +326,19 @@ std::string far_from_nominal(const model::Machine& fitted, const model::Paramete
     const bool turned =
         unit->dimension == format::Dimension::kAngle && std::abs(moved * unit->factor) > kTurnDeg;
     const bool shifted = unit->dimension == format::Dimension::kLength &&
-                         std::abs(moved * unit->factor) > kShareOfReach * reach_mm;
+                         std::abs(moved * unit->factor) > kShareOfSize * size_mm;
     if (turned || shifted)
       return fmt::format("The fit moved {} by {:.4g} {} from its nominal value. {}", one.name, moved,
                          one.unit, mend);
   }
-  std::vector<std::array<double, 2>> ranges;
-  for (std::size_t a = 0; a < fitted.axes.size(); ++a)
-    ranges.push_back(model::work_range(nominal, a).value_or(measured_range(measurement, a)));
-  const Motions motions = motions_over(fitted, nominal, ranges);
-  const bool more = motions.most > 1 + kStretch;
-  if (!more && !(motions.least < 1 - kStretch)) return {};
-  return fmt::format("{} the fitted machine moves the tool by {:.3g} of what the nominal machine does. {}",
-                     direction_text(more ? motions.along_most : motions.along_least),
-                     more ? motions.most : motions.least, mend);
+  for (std::size_t a = 0; a < fitted.axes.size(); ++a) {
+    if (fitted.axes[a].rotary) continue;
+    const double before_mm = travel_of(nominal, measurement, a), now_mm = travel_of(fitted, measurement, a);
+    if (!(before_mm > 0) || std::abs(now_mm / before_mm - 1) < kStretch) continue;
+    return fmt::format("The fit changed the motion of {}: {:.3g} of the nominal motion over its travel. {}",
+                       fitted.axes[a].name, now_mm / before_mm, mend);
+  }
+  return {};
 }
 
 double half_travel_mm(const model::Machine& machine) {

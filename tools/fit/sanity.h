@@ -46,8 +46,8 @@ std::string collapse_of(const model::Machine& fitted, const model::ParameterSet&
                         const model::Measurement& measurement);
 
 /// Returns the sentence for a fit of touches whose machine is another one than that of the file: a constant
-/// that turned by more than 45 deg or moved by more than a quarter of the reach, or a motion that is 5 %
-/// more or less over the travel of the axes; else empty.
+/// that turned by more than 45 deg or moved by more than a quarter of the reach, or a linear axis whose
+/// motion is 5 % more or less over the travel of the axes; else empty.
 std::string far_from_nominal(const model::Machine& fitted, const model::ParameterSet& parameters,
                              const model::Measurement& measurement, double reach_mm);
 

@@ -200,7 +200,7 @@ std::optional<SizeDirection> size_direction(const model::Machine& machine, const
 
 std::optional<SizeOfMachine> decide_size(FitProblem& problem, const model::Machine& machine,
                                          const model::ParameterSet& parameters, const Convention& convention,
-                                         const VectorXd& point) {
+                                         const StatedPriors& stated, const VectorXd& point) {
   const model::Measurement& rows = problem.measurement();
   const bool touched = !problem.things().empty();
   if ((!touched && !reads_board(rows)) || parameters.size() == 0) return std::nullopt;
@@ -235,6 +235,7 @@ std::optional<SizeOfMachine> decide_size(FitProblem& problem, const model::Machi
   if (known.size() > 0) answer += unit.cwiseProduct(problem.known_jacobian(point).transpose() * known);
   MatrixXd normal = unit.asDiagonal() * problem.equations(point).normal * unit.asDiagonal();
   normal.diagonal().array() += 1;
+  normal.diagonal() += unit.cwiseAbs2().cwiseProduct(stated.weight);
   const double information =
       seen.squaredNorm() + known.squaredNorm() - answer.dot(maths::solve_symmetric(normal, answer));
   size.known = !nearest->whole() || !touched || information > v.dot(dual);
@@ -246,6 +247,7 @@ std::optional<SizeOfMachine> decide_size(FitProblem& problem, const model::Machi
     size.from = most_of(shares);
     problem.hold_size({}, {});
   } else {
+    size.has_length = shares.size() > shares.count("machine");
     size.from = "nominal";
     size.relative_std = 1 / std::sqrt(v.dot(dual));
   }
@@ -256,8 +258,12 @@ std::string size_sentence(const SizeOfMachine& size) {
   constexpr double kPartsPerMillion = 1e6;
   constexpr std::size_t kMostNames = 8;
   if (!size.known)
-    return "No reading has a known length: the size of the machine stays at nominal. Give the distance of "
-           "two points, or an artefact with a known radius or known places.";
+    return std::string(size.has_length
+                           ? "The known lengths do not determine the size of the machine: it stays "
+                             "at nominal. Measure a longer length, or its ends from more poses."
+                           : "No reading has a known length: the size of the machine stays at "
+                             "nominal. Give the distance of two points, or an artefact with a "
+                             "known radius or known places.");
   std::string names;
   for (std::size_t i = 0; i < size.fixed.size() && i < kMostNames; ++i)
     names += (i > 0 ? ", " : "") + size.fixed[i];

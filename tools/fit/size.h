@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tools/fit/least_squares/problem.h"
+#include "tools/fit/settle.h"
 #include "tools/fit/types.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
@@ -27,13 +28,13 @@ std::optional<SizeDirection> size_direction(const model::Machine& machine, const
                                             const model::ParameterSet& parameters,
                                             const Convention& convention, const Eigen::VectorXd& point);
 
-/// Finds the lengths that determine the size of the machine, from the readings at `point` and the scales of
-/// all other parameters. If the readings give no more information on the size than the convention, the size
-/// is fixed: `problem` then does not depend on the size. Only for rows with `same` or `on`, or with readings
-/// of a board; nullopt if there are no such rows.
+/// Finds the lengths that determine the size of the machine, from the readings at `point`, the scales of
+/// all other parameters, and their stated priors. If the readings give no more information on the size than
+/// the convention, the size is fixed: `problem` then does not depend on the size. Only for rows with `same`
+/// or `on`, or with readings of a board; nullopt if there are no such rows.
 std::optional<SizeOfMachine> decide_size(FitProblem& problem, const model::Machine& machine,
                                          const model::ParameterSet& parameters, const Convention& convention,
-                                         const Eigen::VectorXd& point);
+                                         const StatedPriors& stated, const Eigen::VectorXd& point);
 
 /// Returns the sentence of the finding `size-unknown`, or the sentence about the lengths that determine the
 /// size.

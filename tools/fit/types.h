@@ -144,6 +144,7 @@ struct ThingEstimate {
 /// The lengths that determine the size of the machine.
 struct SizeOfMachine {
   bool known = false;       // false: held at nominal
+  bool has_length = false;  // of a size at nominal: there are known lengths, and they do not determine it
   double relative_std = 0;  // standard uncertainty of the size, as a share; of nominal: the plausible share
   std::string from;         // "distances", "known radius", "board", "machine", "nominal" ...
   /// Lengths that the fit does not change and that limit the size of the machine: names of constants, scales

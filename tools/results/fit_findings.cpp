@@ -84,6 +84,12 @@ text::Assurance assurance_of(const fit::FitResult& result) {
     else if (!forbids(one))  // those are the rules above
       word.not_covered(one.text);
   }
+  if (std::any_of(result.things.begin(), result.things.end(),
+                  [](const fit::ThingEstimate& one) { return one.type != "same" && one.type != "point"; }))
+    word.not_covered(
+        "An error of the probe that depends on the direction of the touch (lobes, pretravel) acts as an "
+        "error "
+        "of the machine: calibrate the probe first.");
   if (!result.things.empty())
     word.not_covered(
         "Touches do not show whether an effect depends on an axis that hardly moved between them: at other "

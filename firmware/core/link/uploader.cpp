@@ -185,7 +185,8 @@ void Uploader::read_slots() {
   slots_ = Slots::load(first, second);
   // A power failure may have cut the first record that was ever written; no image was confirmed by then.
   records_lost_ = first.written && second.written && !is_valid(first.record) && !is_valid(second.record);
-  if (slots_.places() != StoredPair::kDamaged && slots_.trial() != kNoSlot) store(slots_.revert());
+  if (slots_.places() == StoredPair::kIntact && (slots_.trial() != kNoSlot || slots_.once()))
+    store(slots_.revert());
   publish();
 }
 

@@ -179,11 +179,13 @@ void ModbusOutput::lose() {
 
 /// Values of the next block: within the change that ticks make in a period; after a late exchange, of two.
 void ModbusOutput::choose_values(Clock::time_point now, bool ticks_are_on) {
-  const double periods =
-      std::clamp(std::chrono::duration<double>(now - written_) / span_of(settings_.period), 1.0, 2.0);
+  const double passed =
+      std::max(1.0, std::chrono::duration<double>(now - written_) / span_of(settings_.period));
   for (std::size_t k = 0; k < settings_.axes.size(); ++k) {
     Place& place = places_[k];
     const std::int64_t wanted = place.wanted.load();
+    // A left-over value has no valid bit: the controller does not use it, however slow the exchange is.
+    const double periods = place.left_over ? passed : std::min(passed, 2.0);
     const auto most = static_cast<std::int64_t>(static_cast<double>(place.most_per_period) * periods);
     if (place.valid || place.left_over)
       place.sent = static_cast<std::int32_t>(std::clamp(wanted, place.sent - most, place.sent + most));

@@ -243,6 +243,48 @@ TEST(FeatureInputs, RefuseWhatCannotBeServed) {
   EXPECT_TRUE(refused({.input = 2, .of = 0, .window = 2050}));
   EXPECT_TRUE(refused({.input = 2, .of = 0, .every = 0}));
   EXPECT_TRUE(refused({.input = 2, .of = 0, .lsb = InputMicro(0)}));
+  EXPECT_FALSE(refused({.input = 2, .of = 0, .lsb = InputMicro(std::int64_t{1} << 30)}));
+  EXPECT_TRUE(refused({.input = 2, .of = 0, .lsb = InputMicro((std::int64_t{1} << 30) + 1)}));
+  EXPECT_TRUE(refused({.input = 2, .of = 3})) << "of an input beyond the board";
+  EXPECT_EQ(FeatureInputs(source, 3, {good}, TimeUs(0)).refused(), 0u) << "no tick";
+  // The first request that cannot be served is named.
+  EXPECT_EQ(FeatureInputs(source, 3, {{.input = 1, .of = 1}, {.input = 2, .of = 2}}, TimeUs(1000)).refused(),
+            0u);
+}
+
+// Each value of a request that changes the samples or the window is another window.
+TEST(FeatureInputs, OnlyFeaturesOfOneSignalShareAWindow) {
+  SetInputs source;
+  const FeatureRequest one{.input = 1, .of = 0, .window = 100};
+  const auto windows = [&](FeatureRequest other) {
+    const FeatureInputs inputs(source, 5, {one, other}, TimeUs(1000));
+    EXPECT_EQ(inputs.refused(), kNoInput);
+    return inputs.windows();
+  };
+  FeatureRequest same = one;
+  same.input = 2, same.feature = Feature::kPeak;
+  EXPECT_EQ(windows(same), 1u);
+  const auto changed = [&](auto change) {
+    FeatureRequest other = same;
+    change(other);
+    return windows(other);
+  };
+  EXPECT_EQ(changed([](FeatureRequest& r) { r.of = 3; }), 2u);
+  EXPECT_EQ(changed([](FeatureRequest& r) { r.minus = 3; }), 2u);
+  EXPECT_EQ(changed([](FeatureRequest& r) { r.window = 200; }), 2u);
+  EXPECT_EQ(changed([](FeatureRequest& r) { r.every = 2; }), 2u);
+  EXPECT_EQ(changed([](FeatureRequest& r) { r.lsb = InputMicro(20); }), 2u);
+  EXPECT_EQ(changed([](FeatureRequest& r) { r.bridged = 4; }), 2u);
+  EXPECT_EQ(changed([](FeatureRequest& r) { r.corner_mHz = 500; }), 2u);
+  EXPECT_EQ(changed([](FeatureRequest& r) { r.lsb_nm_s2 = 1000; }), 2u);
+}
+
+TEST(FeatureInputs, NoMoreWindowsThanInputs) {
+  SetInputs source;
+  std::vector<FeatureRequest> requests;
+  for (std::uint32_t i = 0; i <= kMaxInputs; ++i)
+    requests.push_back({.input = 1, .of = 0, .window = 10 + 2 * i});
+  EXPECT_EQ(FeatureInputs(source, 2, requests, TimeUs(1000)).refused(), kMaxInputs);
 }
 
 // GIVEN a simulated machine whose accelerometer swings with 0.05 g at ten tones at once, on 10 mg of bias

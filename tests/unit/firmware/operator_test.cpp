@@ -344,6 +344,38 @@ TEST_F(OperatorSetting, OlderCopyOfOneRecordUndoesNothing) {
   EXPECT_GT(copies, 12);
 }
 
+// The power failed between the two writes of a deactivation, and the first one was not on the medium yet: the
+// next start writes both places again.
+TEST_F(OperatorSetting, StateInOnePlaceIsWrittenToBothAgain) {
+  {
+    UploadRig rig(store_, key_);
+    rig.run(3000);
+    give(rig, Command::kDeactivate);
+    give(rig, Command::kActivate, 3000);
+    store_.cut_power_after(sizeof(OperatorRecord));
+    give(rig, Command::kDeactivate, 10);
+  }
+  store_.restore_power();
+  const SimSlotStore half = store_;
+  {
+    UploadRig rig(store_, key_);
+    ASSERT_TRUE(rig.service().deactivated());
+    rig.run(10);
+  }
+  for (const std::uint32_t place : {kOperatorPlace, kOperatorPlace + 1}) {
+    SimSlotStore lost = store_, old = half;
+    std::uint8_t bytes[sizeof(OperatorRecord)] = {};
+    ASSERT_EQ(old.read_record(place, bytes, sizeof(bytes)), HalFault::kNone);
+    lost.write_record(place, bytes, sizeof(bytes));
+    UploadRig rig(lost, key_);
+    EXPECT_TRUE(rig.service().deactivated()) << place;
+  }
+  const std::uint64_t written = store_.written();
+  UploadRig rig(store_, key_);
+  rig.run(10);
+  EXPECT_EQ(store_.written(), written) << "nothing more to write";
+}
+
 TEST_F(OperatorSetting, AnotherImageInTheSlotIsALostImage) {
   SimSlotStore store = store_;
   {

@@ -272,19 +272,21 @@ TEST(FitOfThings, AnArmThatCollapsedIsNoResult) {
 /// Each point is touched from many positions of X, Z and B, and always from the same Y: nothing but the noise
 /// of the touches speaks about the scale of Y, and it is least where Y does not move.
 TEST(FitOfThings, OneAxisThatCollapsedIsNoResult) {
+  // The set-up of a reflector is a parameter that the nominal machine has not.
   const model::Machine mill = model::parse_machine(
-      R"XML(<machine name="mill"><variables><static><sy value="0" nominal="0" scale="1"/></static>
+      R"XML(<machine name="mill"><variables><static><sy value="0" nominal="0" scale="1"/><BaseShift setup="t"/></static>
   <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><B rotary="true" min="-90" max="90"/><Z min="-300" max="0"/>
   </machineaxes></variables><transforms><sixdof n="1" X="X"/><sixdof n="2" Y="Y*(1+sy)"/><sixdof n="3" Z="Z"/>
   <sixdof n="4" rY="B"/><sixdof n="5" Z="-100"/></transforms></machine>)XML",
       "mill.xml");
   std::mt19937_64 random(5);
   std::normal_distribution<double> noise(0, 0.001);
-  std::string rows = "X[mm],Y[mm],Z[mm],B[deg],same,u[um]\n";
+  std::string rows =
+      "X[mm],Y[mm],Z[mm],B[deg],same,x[mm],setup,u[um]\n100,100,-100,0,,100,t,1\n200,100,-100,0,,200,t,1\n";
   for (const char* point : {"P", "Q"})
     for (int b = -50; b <= 50; b += 10) {
       const double turn = b * maths::kRadPerDeg;
-      rows += fmt::format("{:.6f},{:.6f},{:.6f},{},{},1\n", 300 + 100 * std::sin(turn) + noise(random),
+      rows += fmt::format("{:.6f},{:.6f},{:.6f},{},{},,,1\n", 300 + 100 * std::sin(turn) + noise(random),
                           (*point == 'P' ? 200 : 300) + noise(random),
                           -250 + 100 * std::cos(turn) + noise(random), b, point);
     }
