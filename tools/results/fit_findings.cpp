@@ -85,7 +85,7 @@ text::Assurance assurance_of(const fit::FitResult& result) {
       word.not_covered(one.text);
   }
   if (std::any_of(result.things.begin(), result.things.end(),
-                  [](const fit::ThingEstimate& one) { return one.type != "same" && one.type != "point"; }))
+                  [](const fit::ThingEstimate& one) { return one.radius_mm || one.direction; }))
     word.not_covered(
         "An error of the probe that depends on the direction of the touch (lobes, pretravel) acts as an "
         "error "
