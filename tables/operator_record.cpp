@@ -30,16 +30,14 @@ OperatorRecords OperatorRecords::load(const OperatorPlace& first, const Operator
   OperatorRecords records;
   if (!first.written && !second.written) return records;
   records.places_ = StoredPair::kDamaged;
-  const bool one = first.written && is_valid(first.record), two = second.written && is_valid(second.record);
-  if (!one && !two) return records;
-  // The sequences of one store differ by one; the unsigned distance stays correct when they wrap.
-  const bool second_counts = two && (!one || second.record.sequence - first.record.sequence < UINT32_MAX / 2);
-  records.now_ = second_counts ? second.record : first.record;
-  records.next_place_ = second_counts ? kOperatorPlace : kOperatorPlace + 1;
-  const OperatorRecord& other = second_counts ? first.record : second.record;
-  if (one && two && records.now_.sequence == sequence_after(other.sequence))
+  const ByAge<OperatorRecord> found = by_age(first, second);
+  if (found.newest == nullptr) return records;
+  records.now_ = found.newest->record;
+  records.next_place_ = found.second_counts ? kOperatorPlace : kOperatorPlace + 1;
+  const OperatorRecord& other = found.other->record;
+  if (found.both && records.now_.sequence == sequence_after(other.sequence))
     records.places_ = StoredPair::kIntact;
-  records.once_ = !(one && two && first.record.state == second.record.state);
+  records.once_ = !(found.both && records.now_.state == other.state);
   return records;
 }
 

@@ -44,14 +44,12 @@ Slots Slots::load(const SlotPlace& first, const SlotPlace& second) noexcept {
   Slots slots;
   if (!first.written && !second.written) return slots;
   slots.places_ = StoredPair::kDamaged;
-  const bool one = first.written && is_valid(first.record), two = second.written && is_valid(second.record);
-  if (!one && !two) return slots;
-  // Sequences differ by one in a store that this machine wrote; unsigned distance survives their wrap.
-  const bool second_counts = two && (!one || second.record.sequence - first.record.sequence < UINT32_MAX / 2);
-  slots.now_ = second_counts ? second.record : first.record;
-  slots.next_place_ = second_counts ? 0 : 1;
-  const SlotPlace& other = second_counts ? first : second;
-  const bool pair = one && two && slots.now_.sequence == other.record.sequence + 1;
+  const ByAge<SlotRecord> found = by_age(first, second);
+  if (found.newest == nullptr) return slots;
+  slots.now_ = found.newest->record;
+  slots.next_place_ = found.second_counts ? 0 : 1;
+  const SlotPlace& other = *found.other;
+  const bool pair = found.both && slots.now_.sequence == other.record.sequence + 1;
   slots.once_ = !pair || !same_state(slots.now_, other.record);
   if (pair || (!other.written && slots.now_.sequence == 1))
     slots.places_ = StoredPair::kIntact;

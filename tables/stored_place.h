@@ -18,4 +18,21 @@ enum class StoredPair : std::uint8_t {
   kDamaged = 2,  // all other contents: the newest record may be lost
 };
 
+/// The valid records of two places, by age. is_valid(record) decides.
+template <class Record>
+struct ByAge {
+  const StoredPlace<Record>* newest = nullptr;  // null: no valid record
+  const StoredPlace<Record>* other = nullptr;   // the other place, whatever it has
+  bool second_counts = false;                   // the newest is in the second place
+  bool both = false;                            // both places have a valid record
+};
+template <class Record>
+ByAge<Record> by_age(const StoredPlace<Record>& first, const StoredPlace<Record>& second) noexcept {
+  const bool one = first.written && is_valid(first.record), two = second.written && is_valid(second.record);
+  if (!one && !two) return {};
+  // The sequences of one store differ by one; the unsigned distance stays correct when they wrap.
+  const bool second_counts = two && (!one || second.record.sequence - first.record.sequence < UINT32_MAX / 2);
+  return {second_counts ? &second : &first, second_counts ? &first : &second, second_counts, one && two};
+}
+
 }  // namespace vernier

@@ -151,20 +151,19 @@ std::string exact_tips(const FitResult& result, const model::Measurement& m) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Returns the touched artefacts whose radius is known without an uncertainty.
-std::string exact_radii(const model::Measurement& m) {
+/// Returns the names of the touched artefacts for which `is_exact` is true.
+template <class IsExact>
+std::string names_where(const model::Measurement& m, const IsExact& is_exact) {
   std::set<std::string> names;
   for (const model::Thing& thing : m.things)
-    if (thing.artefact.radius && thing.artefact.u_radius <= 0) names.insert(thing.label);
+    if (is_exact(thing.artefact)) names.insert(thing.label);
   return fmt::format("{}", fmt::join(names, ", "));
 }
-
-/// Returns the touched artefacts with a stated direction.
+std::string exact_radii(const model::Measurement& m) {
+  return names_where(m, [](const model::Artefact& one) { return one.radius && one.u_radius <= 0; });
+}
 std::string exact_directions(const model::Measurement& m) {
-  std::set<std::string> names;
-  for (const model::Thing& thing : m.things)
-    if (thing.artefact.direction) names.insert(thing.label);
-  return fmt::format("{}", fmt::join(names, ", "));
+  return names_where(m, [](const model::Artefact& one) { return one.direction.has_value(); });
 }
 
 /// Returns the inputs in units of length that differ between the touches, as those of two tools.

@@ -203,9 +203,12 @@ LeastMotion least_motion(const Eigen::Matrix3Xd& fitted, const Eigen::Matrix3Xd&
   return {svd.singularValues()[least], directions * svd.matrixV().col(least)};
 }
 
+/// Lowest and highest position of each axis.
+using Ranges = std::vector<std::array<double, 2>>;
+
 /// Compares two machines at poses over these ranges of the axes.
 LeastMotion least_motion_over(const model::Machine& fitted, const model::Machine& nominal,
-                              const std::vector<std::array<double, 2>>& ranges) {
+                              const Ranges& ranges) {
   const model::States states = model::poses_over(nominal, ranges).states;
   return least_motion(model::forward(fitted, states).position, model::forward(nominal, states).position);
 }
@@ -220,6 +223,31 @@ model::Machine nominal_in_set_ups(const model::Machine& fitted) {
 
 std::array<double, 2> measured_range(const model::Measurement& m, std::size_t axis) {
   return {m.states.axis[axis].minCoeff(), m.states.axis[axis].maxCoeff()};
+}
+
+/// Ranges of the axes: those of the machine file, or the measured ones.
+Ranges ranges_of(const model::Machine& machine, const model::Measurement& m) {
+  Ranges ranges;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a)
+    ranges.push_back(model::work_range(machine, a).value_or(measured_range(m, a)));
+  return ranges;
+}
+
+/// Distance of the tool point at the two ends of an axis, the other axes in the middle, mm.
+double travel_of(const model::Machine& machine, const Ranges& ranges, std::size_t axis) {
+  model::States states = model::make_states(2, machine);
+  for (std::size_t a = 0; a < ranges.size(); ++a)
+    for (Eigen::Index end = 0; end < 2; ++end)
+      states.axis[a][end] =
+          a == axis ? ranges[a][static_cast<std::size_t>(end)] : (ranges[a][0] + ranges[a][1]) / 2;
+  const Eigen::Matrix3Xd ends = model::forward(machine, states).position;
+  return (ends.col(1) - ends.col(0)).norm();
+}
+
+/// Rms distance of the tool points over these ranges from their mean, mm.
+double spread_of(const model::Machine& machine, const Ranges& ranges) {
+  const Eigen::Matrix3Xd points = model::forward(machine, model::poses_over(machine, ranges).states).position;
+  return (points.colwise() - points.rowwise().mean()).norm() / std::sqrt(static_cast<double>(points.cols()));
 }
 
 /// "along Y", or "along the direction (0.7, 0.7, 0)".
@@ -238,7 +266,7 @@ std::string collapse_of(const model::Machine& fitted, const model::ParameterSet&
   constexpr double kLeastOfTravel = 0.1;  // positions that vary by noise alone show the machine as well
   if (measurement.things.empty()) return {};
   const model::Machine nominal = model::nominal_machine(fitted);
-  std::vector<std::array<double, 2>> ranges;
+  Ranges ranges;
   for (std::size_t a = 0; a < fitted.axes.size(); ++a) {
     std::array<double, 2> range = measured_range(measurement, a);
     if (const auto travel = model::work_range(nominal, a)) {
@@ -272,37 +300,6 @@ std::string collapse_of(const model::Machine& fitted, const model::ParameterSet&
       alone.empty() ? "" : fmt::format(". Hold {} at its nominal value (Hide=\"true\")", alone));
 }
 
-namespace {
-
-/// Ranges of the axes: those of the machine file, or the measured ones.
-std::vector<std::array<double, 2>> ranges_of(const model::Machine& machine, const model::Measurement& m) {
-  std::vector<std::array<double, 2>> ranges;
-  for (std::size_t a = 0; a < machine.axes.size(); ++a)
-    ranges.push_back(model::work_range(machine, a).value_or(measured_range(m, a)));
-  return ranges;
-}
-
-/// Distance of the tool point at the two ends of a linear axis, the other axes in the middle, mm.
-double travel_of(const model::Machine& machine, const model::Measurement& m, std::size_t axis) {
-  model::States states = model::make_states(2, machine);
-  const auto ranges = ranges_of(machine, m);
-  for (std::size_t a = 0; a < ranges.size(); ++a)
-    for (Eigen::Index end = 0; end < 2; ++end)
-      states.axis[a][end] =
-          a == axis ? ranges[a][static_cast<std::size_t>(end)] : (ranges[a][0] + ranges[a][1]) / 2;
-  const Eigen::Matrix3Xd ends = model::forward(machine, states).position;
-  return (ends.col(1) - ends.col(0)).norm();
-}
-
-/// Rms distance of the tool points over the ranges of the axes from their mean, mm.
-double spread_of(const model::Machine& machine, const model::Measurement& m) {
-  const Eigen::Matrix3Xd points =
-      model::forward(machine, model::poses_over(machine, ranges_of(machine, m)).states).position;
-  return (points.colwise() - points.rowwise().mean()).norm() / std::sqrt(static_cast<double>(points.cols()));
-}
-
-}  // namespace
-
 std::string far_from_nominal(const model::Machine& fitted, const model::ParameterSet& parameters,
                              const model::Measurement& measurement, double reach_mm) {
   constexpr double kStretch = 0.05;      // of the motion of a linear axis, over its travel
@@ -313,9 +310,9 @@ std::string far_from_nominal(const model::Machine& fitted, const model::Paramete
   const char* const mend =
       "Touches of unknown points can agree with another machine than that of the file: check the sign, the "
       "unit and the motion of each axis. If the machine is really so, write the fitted value into the "
-      "machine "
-      "file as `nominal` and fit again.";
-  const double size_mm = std::max(reach_mm, spread_of(nominal, measurement));
+      "machine file as `nominal` and fit again.";
+  const Ranges ranges = ranges_of(nominal, measurement);
+  const double size_mm = std::max(reach_mm, spread_of(nominal, ranges));
   const Eigen::VectorXd now = parameters.get(fitted), before = parameters.get(nominal_in_set_ups(fitted));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const model::Parameter& one = parameters[i];
@@ -333,7 +330,7 @@ std::string far_from_nominal(const model::Machine& fitted, const model::Paramete
   }
   for (std::size_t a = 0; a < fitted.axes.size(); ++a) {
     if (fitted.axes[a].rotary) continue;
-    const double before_mm = travel_of(nominal, measurement, a), now_mm = travel_of(fitted, measurement, a);
+    const double before_mm = travel_of(nominal, ranges, a), now_mm = travel_of(fitted, ranges, a);
     if (!(before_mm > 0) || std::abs(now_mm / before_mm - 1) < kStretch) continue;
     return fmt::format("The fit changed the motion of {}: {:.3g} of the nominal motion over its travel. {}",
                        fitted.axes[a].name, now_mm / before_mm, mend);

@@ -88,8 +88,7 @@ text::Assurance assurance_of(const fit::FitResult& result) {
                   [](const fit::ThingEstimate& one) { return one.radius_mm || one.direction; }))
     word.not_covered(
         "An error of the probe that depends on the direction of the touch (lobes, pretravel) acts as an "
-        "error "
-        "of the machine: calibrate the probe first.");
+        "error of the machine: calibrate the probe first.");
   if (!result.things.empty())
     word.not_covered(
         "Touches do not show whether an effect depends on an axis that hardly moved between them: at other "

@@ -15,6 +15,15 @@ namespace vernier::operator_test {
 using namespace vernier::upload;
 namespace {
 
+/// Changes bits of one byte of a record in the store.
+template <class Record>
+void spoil(SimSlotStore& store, std::uint32_t place, std::uint32_t byte, std::uint8_t bits) {
+  std::uint8_t bytes[sizeof(Record)] = {};
+  store.read_record(place, bytes, sizeof(bytes));
+  bytes[byte] = static_cast<std::uint8_t>(bytes[byte] ^ bits);
+  store.write_record(place, bytes, sizeof(bytes));
+}
+
 class OperatorSetting : public testing::Test {
  protected:
   OperatorSetting() {
@@ -216,10 +225,7 @@ TEST_F(OperatorSetting, AnyDamageOfOneRecordKeepsTheCorrectionOut) {
       };
       for (std::uint32_t byte = 0; byte < sizeof(OperatorRecord); ++byte) {
         SimSlotStore store = sound;
-        std::uint8_t bytes[sizeof(OperatorRecord)];
-        store.read_record(place, bytes, sizeof(bytes));
-        bytes[byte] ^= 0x10;
-        store.write_record(place, bytes, sizeof(bytes));
+        spoil<OperatorRecord>(store, place, byte, 0x10);
         expect_out(store, "changed byte " + std::to_string(byte));
       }
       for (std::uint32_t size = 0; size < sizeof(OperatorRecord); ++size) {
@@ -264,10 +270,7 @@ TEST_F(OperatorSetting, AnyDamageOfOneImageRecordKeepsTheCorrectionOut) {
     };
     for (std::uint32_t byte = 0; byte < sizeof(SlotRecord); ++byte) {
       SimSlotStore store = store_;
-      std::uint8_t bytes[sizeof(SlotRecord)] = {};
-      store.read_record(place, bytes, sizeof(bytes));
-      bytes[byte] ^= 0x04;
-      store.write_record(place, bytes, sizeof(bytes));
+      spoil<SlotRecord>(store, place, byte, 0x04);
       expect_out(store, "changed byte " + std::to_string(byte));
     }
     for (std::uint32_t size = 0; size < sizeof(SlotRecord); ++size) {
@@ -284,10 +287,7 @@ TEST_F(OperatorSetting, AnyDamageOfOneImageRecordKeepsTheCorrectionOut) {
 }
 
 TEST_F(OperatorSetting, ActivationRepairsTheImageRecords) {
-  std::uint8_t bytes[sizeof(SlotRecord)] = {};
-  store_.read_record(0, bytes, sizeof(bytes));
-  bytes[20] ^= 4;
-  store_.write_record(0, bytes, sizeof(bytes));
+  spoil<SlotRecord>(store_, 0, 20, 4);
   for (int start = 0; start < 2; ++start) {
     UploadRig rig(store_, key_);
     rig.run(3000);
