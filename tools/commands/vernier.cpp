@@ -11,7 +11,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/help_text.h"
 #include "tools/commands/manners.h"
-#include "tools/commands/provenance.h"
+#include "tools/provenance/provenance.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -128,7 +128,7 @@ int run(const std::vector<std::string>& arguments) {
   vernier::commands::require_known_commands(app, arguments);
   vernier::commands::require_known_dashes(app, arguments);
   app.parse_complete_callback([&] {
-    vernier::commands::record_provenance(arguments, kProgram);
+    vernier::provenance::record_provenance(arguments, kProgram);
     vernier::commands::require_files_in_their_places(app, arguments);
     require_places(app);
     vernier::commands::warn_of_machine(app);

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "tools/derive/interval.h"
+#include "tools/derive/symbol_ranges.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/chain/evaluate.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tools/derive/error_equation.h"
-#include "tools/derive/interval.h"
+#include "tools/derive/symbol_ranges.h"
 
 namespace vernier::derive {
 

@@ -36,6 +36,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"maths", {}},
       {"text", {}},
       {"format", {"maths", "text"}},
+      {"provenance", {"text"}},
       {"report", {}},
       {"http", {}},
       {"sheet", {"format", "text"}},

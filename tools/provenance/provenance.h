@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vernier::commands {
+namespace vernier::provenance {
 
 /// One input of a command.
 struct ProvenanceInput {
@@ -20,6 +20,10 @@ struct Provenance {
   std::string folder;                // in which the command ran, relative to the folder of the file
   std::vector<ProvenanceInput> inputs;
 };
+
+/// True if the result of this command depends on its input files and arguments only. A provenance can come
+/// from anybody: `vernier again` runs no other command.
+bool makes_files_from_files(const std::string& command);
 
 /// Records the inputs of this process from now on, and adds the provenance to its output files: HTML pages,
 /// machine files (a comment at the end) and JSON objects (key "made_by"). All other files, and a file that is
@@ -38,4 +42,4 @@ std::string in_comment(const std::string& text);
 /// SHA-256 (FIPS 180-4), 64 hexadecimal digits.
 std::string sha256_of(const std::string& bytes);
 
-}  // namespace vernier::commands
+}  // namespace vernier::provenance

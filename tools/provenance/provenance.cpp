@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/commands/provenance.h"
+#include "tools/provenance/provenance.h"
 
 #include <fmt/format.h>
 #include <sodium.h>
@@ -18,15 +18,18 @@
 #include "tools/text/file_hooks.h"
 #include "tools/text/words.h"
 
-namespace vernier::commands {
+namespace vernier::provenance {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Commands whose result depends on more than files.
-constexpr std::array kLive = {"again",  "board",  "completion", "fleet",  "help",  "keys",
-                              "manual", "record", "status",     "upload", "watch", "workbench"};
+/// Commands that only read and write files: their results do not depend on a board, a server, a fleet or a
+/// key.
+constexpr std::array kOfFiles = {
+    "add",     "ballbar-path", "check",    "compare", "compile", "correct",  "derive", "diagnose", "evaluate",
+    "exclude", "export",       "features", "fit",     "import",  "improve",  "lint",   "map",      "new",
+    "part",    "plan",         "pose",     "replay",  "set",     "simulate", "solve"};
 
 constexpr std::string_view kOpen = "<!-- made by: ", kClose = " -->";
 
@@ -150,9 +153,12 @@ std::string sha256_of(const std::string& bytes) {
   return text;
 }
 
+bool makes_files_from_files(const std::string& command) {
+  return std::ranges::find(kOfFiles, command) != kOfFiles.end();
+}
+
 void record_provenance(const std::vector<std::string>& arguments, const std::string& program) {
-  if (arguments.empty()) return;
-  if (std::find(kLive.begin(), kLive.end(), arguments.front()) != kLive.end()) return;
+  if (arguments.empty() || !makes_files_from_files(arguments.front())) return;
   const auto recorder = std::make_shared<Recorder>(arguments, program);
   text::set_file_hooks(
       {[recorder](const std::string& path, const std::string& text) { recorder->was_read(path, text); },
@@ -189,4 +195,4 @@ std::optional<Provenance> provenance_of(const std::string& content, const std::s
   }
 }
 
-}  // namespace vernier::commands
+}  // namespace vernier::provenance

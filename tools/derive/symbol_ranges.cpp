@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/derive/interval.h"
+#include "tools/derive/symbol_ranges.h"
 #include "tools/derive/symbol_book.h"
 #include "tools/derive/tidy.h"
 
