@@ -36,6 +36,12 @@ std::string import(const std::string& bytes, SheetWishes wishes = {},
   }
 }
 
+void add_constant_to(SheetWishes& wishes, const std::string& words) {
+  ColumnMap map;
+  add_constant(map, words);
+  wishes.constants.insert(wishes.constants.end(), map.columns.begin(), map.columns.end());
+}
+
 std::string utf16(const std::string& ascii, bool mark) {
   std::string text = mark ? "\xFF\xFE" : "";
   for (const char c : ascii) text += std::string{c, '\0'};
@@ -51,6 +57,13 @@ void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 
 const Case kCases[] = {
     {"PlainCsv", "X[mm],x[mm]\n1,2\n", "X[mm],x[mm]\n1,2\n"},
+    {"ComponentErrorsOfAnAxis",
+     "X[mm],Y[mm],Z[mm],EXX[um],EYX[um],EZX[um],EAX[arcsec],EBX[arcsec],ECX[arcsec]\n100,5,7,1,2,3,4,5,6\n",
+     "X[mm],Y[mm],Z[mm],x[mm],y[mm],z[mm],rx[arcsec],ry[arcsec],rz[arcsec]\n100,5,7,100.001,5.002,7.003,4,5,"
+     "6\n"},
+    {"StraightnessAndPitchAreNoInputs",
+     "Target X [mm],Error (um),Vertical straightness (um),Pitch (arcsec)\n100,1,2,3\n",
+     "X[mm],x[mm]\n100,100.001\n"},
     {"Semicolons", "X[mm];x[mm]\n1;2.5\n", "X[mm],x[mm]\n1,2.5\n"},
     {"DecimalComma", "X[mm];x[mm]\n1;2,5\n", "X[mm],x[mm]\n1,2.5\n"},
     {"Tabs", "X[mm]\tx[mm]\n1\t2,5\n", "X[mm],x[mm]\n1,2.5\n"},
@@ -343,6 +356,25 @@ TEST(SheetWish, DeviationIsAddedToThePosition) {
                      assign_deviation(wishes, "X=Anzeige");
                    }),
             "X[mm],x[mm],Stift\n100,100.0015,a\n200,200.0025,b\n");
+}
+
+/// A calibrator of six degrees of freedom: one axis moves, the readings are along and about all axes.
+TEST(SheetWish, StraightnessIsAddedToThePositionOfAnAxisThatStandsStill) {
+  const std::string table =
+      "Machine,VMC\nAxis,X\nTarget (mm),Linear error (um),Vertical straightness (um),Pitch (arcsec)\n"
+      "0,0,1,2\n100,3,4,5\n";
+  const auto say = [](SheetWishes& wishes, const SheetTable& of) {
+    assign_deviation(wishes, "Z[um]=Vertical straightness (um)");
+    assign_column(wishes, of, "ry[arcsec]=Pitch (arcsec)");
+    add_constant_to(wishes, "Z[mm]=250");
+  };
+  EXPECT_EQ(import(table, {}, say),
+            "X[mm],x[mm],z[mm],ry[arcsec],Z[mm]\n0,0,250.001,2,250\n100,100.003,250.004,5,250\n");
+  const auto without = [](SheetWishes& wishes, const SheetTable&) {
+    assign_deviation(wishes, "Z[um]=Vertical straightness (um)");
+  };
+  const std::string refused = import(table, {}, without);
+  EXPECT_NE(refused.find("--set \"Z[mm]=0\""), std::string::npos) << refused;
 }
 
 TEST(SheetWish, ACorrectionIsADeviationOfTheOtherSign) {

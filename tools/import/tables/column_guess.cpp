@@ -52,6 +52,25 @@ std::string other(const sheet::Heading& heading) {
   return found == kNames.end() ? sheet::name_from_words(heading.name) : found->second;
 }
 
+/// True if any word of a heading is in a list of words.
+bool any_word(const sheet::Heading& heading, bool (*says)(const std::string&)) {
+  const std::vector<std::string> words = heading_words(heading.name);
+  return std::any_of(words.begin(), words.end(),
+                     [&](const std::string& word) { return says(text::in_small_letters(word)); });
+}
+
+/// A heading that does not state along or about which axis its error is; empty if the heading does.
+std::string direction_missing(const sheet::Heading& heading) {
+  const std::string unit = heading.unit.empty() ? "" : "[" + heading.unit + "]";
+  if (any_word(heading, says_straightness))
+    return "straightness along which axis? State the axis, for example --deviation \"Z" + unit + "=" +
+           heading.text + "\"";
+  if (any_word(heading, says_tilt))
+    return "a rotation about which axis? State the axis (right-hand rule), for example --column \"ry" + unit +
+           "=" + heading.text + "\"";
+  return {};
+}
+
 }  // namespace
 
 bool is_known_name(const std::string& name) {
@@ -104,6 +123,7 @@ bool Guess::is_axis(const std::string& word) const {
 SheetColumn Guess::column(const sheet::Heading& heading) const {
   SheetColumn column{SheetColumn::Use::kColumn, heading.name, heading.unit, "by its heading"};
   if (is_axis(heading.name) || is_known_name(heading.name) || is_motion(heading.name)) return column;
+  if (const auto component = component_error(heading)) return *component;
   std::string axis;
   bool target = false, measured = false, deviation = false;
   const std::vector<std::string> words = heading_words(heading.name);
@@ -138,8 +158,23 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
     column.name = axis;
     return column;
   }
+  if (std::string missing = direction_missing(heading); !missing.empty())
+    return {SheetColumn::Use::kLeft, heading.name, heading.unit, std::move(missing)};
   column.name = other(heading);
   return column;
+}
+
+std::optional<SheetColumn> Guess::component_error(const sheet::Heading& heading) const {
+  const std::vector<std::string> words = heading_words(heading.name);
+  if (words.size() != 1 || words.front().size() != 3 || words.front().front() != 'E') return std::nullopt;
+  const std::string direction = words.front().substr(1, 1), axis = words.front().substr(2);
+  const bool along = std::string("XYZ").find(direction) != std::string::npos;
+  const bool about = std::string("ABC").find(direction) != std::string::npos;
+  if (!is_axis(axis) || (!along && !about)) return std::nullopt;
+  constexpr const char* kWhy = "by its heading (component error of ISO 230-1)";
+  if (along || direction == axis)
+    return SheetColumn{SheetColumn::Use::kDeviation, direction, heading.unit, kWhy};
+  return SheetColumn{SheetColumn::Use::kColumn, *reading_of(direction), heading.unit, kWhy};
 }
 
 Guess::Bare Guess::bare(const std::string& name) {

@@ -77,6 +77,10 @@ class Guess {
   /// Returns the meaning of a column by its heading alone.
   SheetColumn column(const sheet::Heading& heading) const;
 
+  /// Returns the meaning of a component error of ISO 230-1:2012, 3.4: EYX is a deviation along Y, EBX a
+  /// rotation about Y by the right-hand rule. nullopt for any other heading.
+  std::optional<SheetColumn> component_error(const sheet::Heading& heading) const;
+
   /// Words of a heading that names no axis: "Soll", "Pos", "Istposition".
   enum class Bare { kOther, kTarget, kActual };
   static Bare bare(const std::string& name);

@@ -82,18 +82,26 @@ std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
 /// If no heading names an axis and the titles do, a target or an actual position belongs to that axis.
 void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
                  const Guess& guess) {
-  std::set<std::string> axes;
+  std::set<std::string> axes, of_deviations;
   bool read = false;
   for (const SheetColumn& column : columns) {
-    if (column.use == SheetColumn::Use::kDeviation && guess.is_axis(column.name)) axes.insert(column.name);
+    if (column.use == SheetColumn::Use::kDeviation && guess.is_axis(column.name))
+      of_deviations.insert(column.name);
     if (column.use != SheetColumn::Use::kColumn) continue;
     if (guess.is_axis(column.name)) axes.insert(column.name);
     read |= std::find(columns::kPoint.begin(), columns::kPoint.end(), column.name) != columns::kPoint.end();
   }
-  const std::string titled = axes.empty() ? axis_of_titles(sheet, table) : "";
-  const std::string axis = axes.size() == 1 ? *axes.begin() : guess.is_axis(titled) ? titled : "";
+  // Straightness is a deviation of another axis than the one that moves.
+  if (axes.empty()) {
+    const std::string titled = axis_of_titles(sheet, table);
+    axes = guess.is_axis(titled) ? std::set<std::string>{titled} : of_deviations;
+  }
+  const std::string axis = axes.size() == 1 ? *axes.begin() : "";
   if (axis.empty() || read) return;
-  bool target = axes.contains(axis), actual = false;
+  bool target = std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+    return one.use == SheetColumn::Use::kColumn && one.name == axis;
+  });
+  bool actual = false;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.why != "by its heading") continue;
@@ -175,11 +183,14 @@ void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
 /// Deviations and directions without an axis belong to the only axis; columns that remain open are omitted
 /// and reported.
 void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
-            const Guess& guess) {
+            const Guess& guess, const std::vector<MappedColumn>& constants) {
   std::set<std::string> axes, measured;
   for (const SheetColumn& column : columns)
     if (column.use == SheetColumn::Use::kColumn)
       (guess.is_axis(column.name) ? axes : measured).insert(column.name);
+  std::set<std::string> positions = axes;  // of the axes that stand still too
+  for (const MappedColumn& constant : constants)
+    if (guess.is_axis(constant.name)) positions.insert(constant.name);
   std::set<std::string> moved = measured_axes(columns, axes, measured), alone_measured;
   for (const char* axis : {"X", "Y", "Z"})
     if (guess.is_axis(axis) && !axes.contains(axis) && measured.contains(text::in_small_letters(axis)))
@@ -206,7 +217,10 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     }
     if (deviation && !axes.contains(column.name) && alone_measured.contains(column.name))
       column.to_target = true;
-    else if (deviation && (column.name.empty() || !axes.contains(column.name)))
+    else if (deviation && !column.name.empty() && !positions.contains(column.name) && !axes.empty())
+      leave(column, "the table has no position of " + column.name +
+                        ": state the position, for example --set \"" + column.name + "[mm]=0\"");
+    else if (deviation && (column.name.empty() || !positions.contains(column.name)))
       leave(column, "the axis of this deviation is not known: state the axis, --deviation \"X=" +
                         table.headings[k].text + "\"");
     else if (deviation && !reading_of(column.name))
@@ -269,7 +283,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   settle_display(table, columns, guess);
   leave_statistics(table, columns);
   settle_by_values(sheet, table, columns);
-  settle(sheet, table, columns, guess);
+  settle(sheet, table, columns, guess, wishes.constants);
   if (!wishes.one_motion) refuse_tables_side_by_side(sheet, table, columns);
   settle_signs(sheet, table, columns);
   keep_names_apart(table, columns);

@@ -308,11 +308,19 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         deviation ? text::in_small_letters(column.name) : column.name, deviation ? "mm" : column.unit, {}};
     const std::string beside = column.to_target ? text::in_small_letters(column.name) : column.name;
     const std::size_t base = deviation && axis_column.contains(beside) ? axis_column[beside] : columns.size();
+    const auto still = std::find_if(wishes.constants.begin(), wishes.constants.end(),
+                                    [&](const MappedColumn& one) { return one.name == beside; });
+    const bool moves = base != columns.size();
+    const std::string position_unit = moves                             ? columns[base].unit
+                                      : still != wishes.constants.end() ? still->unit
+                                                                        : "";
     const double sign = column.turned != column.to_target ? -1 : 1;
     if (column.to_target) made.name = column.name;
-    if (deviation && base == columns.size())
-      throw text::InputError(heading, column.name, "this axis has no column");
-    if (deviation && is_angle(columns[base].unit)) {
+    if (deviation && !moves && still == wishes.constants.end())
+      throw text::InputError(
+          heading, column.name,
+          "this axis has no column: state its position, for example --set \"" + column.name + "[mm]=0\"");
+    if (deviation && is_angle(position_unit)) {
       made.name = angle_of(column.name, heading);
       made.unit = "deg";
       if (!is_angle(column.unit))
@@ -333,7 +341,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       if (sheet::is_blank(cells)) continue;
       std::string text = cell_text(sheet, column, cells[k], row);
       if (deviation && !text.empty()) {
-        const std::string at = cell_text(sheet, columns[base], cells[base], row);
+        const std::string at = moves ? cell_text(sheet, columns[base], cells[base], row)
+                                     : constant_cell(*still, sheet.decimal_comma);
         if (at.empty())
           throw text::InputError({sheet.file, sheet.line[row]}, column.name,
                                  "a deviation without its position: the cell of \"" +
@@ -341,7 +350,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                                      "\" is empty; if the value above it applies, give --fill \"" +
                                      table.headings[base].text + "\"");
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
-        text = text::fixed_text(mm(at, columns[base].unit) + sign * mm(text, column.unit), 9);
+        text = text::fixed_text(mm(at, position_unit) + sign * mm(text, column.unit), 9);
       }
       made.cells.push_back(std::move(text));
     }

@@ -28,6 +28,9 @@ const WordSet kStateOfCorrectionWords = {
     "nach",           "vor",     "ohne", "mit", "unkorrigiert", "korrigiert", "after",  "before",   "without",
     "with",           "on",      "off",  "ein", "aus",          "aktiv",      "active", "inactive", "w/o",
     "actual-nominal", "ist-soll"};
+const WordSet kStraightnessWords = {"straightness", "geradheit", "geradheitsabweichung"};
+const WordSet kTiltWords = {"pitch",      "yaw",        "roll",   "nicken", "nickwinkel", "gieren",
+                            "gierwinkel", "rollwinkel", "rollen", "wanken", "kippen",     "kippwinkel"};
 /// Headings of a column that counts or names its rows.
 const WordSet kCountingWords = {"nr",    "no",    "num",    "nummer", "number", "index", "idx",       "id",
                                 "lfd",   "punkt", "punkte", "point",  "points", "pt",    "messpunkt", "row",
@@ -89,6 +92,8 @@ bool says_correction(const std::string& word) {
                      [&](std::string_view start) { return word.starts_with(start); });
 }
 bool says_state_of_correction(const std::string& word) { return kStateOfCorrectionWords.contains(word); }
+bool says_straightness(const std::string& word) { return kStraightnessWords.contains(word); }
+bool says_tilt(const std::string& word) { return kTiltWords.contains(word); }
 bool says_counting(const std::string& word) { return kCountingWords.contains(word); }
 bool says_deviation(const std::string& word) { return kDeviationWords.contains(word); }
 

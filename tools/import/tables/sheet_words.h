@@ -22,6 +22,9 @@ bool says_deviation(const std::string& word);
 bool says_correction(const std::string& word);
 /// A word of "after the correction", "without compensation": the column states no correction.
 bool says_state_of_correction(const std::string& word);
+/// An error across the motion ("Geradheit") or a rotation beside the motion ("Pitch"), without its direction.
+bool says_straightness(const std::string& word);
+bool says_tilt(const std::string& word);
 /// A column that counts or names the rows: "Nr".
 bool says_counting(const std::string& word);
 
