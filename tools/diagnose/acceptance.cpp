@@ -61,6 +61,29 @@ std::vector<int> levels_of(const std::vector<double>& values, double least_width
   return levels;
 }
 
+/// Index of the position of each fit observation among the different positions of an axis, in order of size.
+std::vector<std::size_t> positions_in_order(const Evidence& evidence, std::size_t axis) {
+  std::vector<double> values, sorted;
+  for (const std::size_t row : evidence.rows())
+    values.push_back(evidence.measurement().states.axis[axis][static_cast<Eigen::Index>(row)]);
+  sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  // Positions at one target differ by the positioning error of the axis.
+  const double apart = evidence.thresholds().layout.small_step * (sorted.back() - sorted.front());
+  std::vector<double> first = {sorted.front()};
+  for (const double value : sorted)
+    if (value - first.back() > apart) first.push_back(value);
+  std::vector<std::size_t> order;
+  for (const double value : values)
+    order.push_back(
+        static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), value) - first.begin()) - 1);
+  return order;
+}
+
+std::size_t count_of(const std::vector<std::size_t>& order) {
+  return *std::max_element(order.begin(), order.end()) + 1;
+}
+
 }  // namespace
 
 HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
@@ -134,6 +157,38 @@ std::vector<std::vector<int>> level_blocks(const Evidence& evidence) {
   for (std::size_t i = 0; i < evidence.machine().inputs.size(); ++i)
     if (effects::class_of_input(evidence.machine().inputs[i]) == effects::InputClass::kTemperature)
       take(states.input[i], thresholds.least_warmth_degC);
+  return all;
+}
+
+std::vector<std::vector<int>> place_blocks(const Evidence& evidence, std::optional<std::size_t> axis) {
+  const std::size_t parts = evidence.thresholds().acceptance.blocks_of_one_run;
+  std::vector<std::vector<int>> all;
+  if (axis) {
+    const std::vector<std::size_t> order = positions_in_order(evidence, *axis);
+    const std::size_t count = count_of(order);
+    if (count >= 2 * parts) {
+      std::vector<int> stretches, targets;
+      for (const std::size_t at : order) {
+        stretches.push_back(static_cast<int>(at * parts / count));
+        targets.push_back(static_cast<int>(at % parts));
+      }
+      all.push_back(std::move(stretches));
+      all.push_back(std::move(targets));
+    }
+  }
+  std::vector<std::pair<std::size_t, std::vector<std::size_t>>> axes;
+  for (std::size_t i = 0; i < evidence.machine().axes.size(); ++i) {
+    std::vector<std::size_t> order = positions_in_order(evidence, i);
+    if (count_of(order) > 1) axes.emplace_back(count_of(order), std::move(order));
+  }
+  std::stable_sort(axes.begin(), axes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  constexpr std::size_t kOfSpace = 3;
+  axes.resize(std::min(axes.size(), kOfSpace));
+  std::vector<int> corners(evidence.rows().size());
+  for (std::size_t bit = 0; bit < axes.size(); ++bit)
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      corners[i] += (2 * axes[bit].second[i] >= axes[bit].first ? 1 : 0) << bit;
+  if (!axes.empty()) all.push_back(std::move(corners));
   return all;
 }
 

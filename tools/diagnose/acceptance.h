@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "tools/diagnose/propose/evidence.h"
@@ -30,5 +31,11 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
 /// features must be confirmed on such blocks, because features depend on feed and temperature. The result has
 /// one list for each quantity with two levels or more.
 std::vector<std::vector<int>> level_blocks(const Evidence& evidence);
+
+/// Returns blocks of whole places: five stretches of an axis, its positions counted off by five, and the
+/// corners of the measured volume (halves of the three axes with the most positions). Other rows at the same
+/// position cannot contradict what a term does between the positions. The result has one list for each of
+/// these divisions that has two blocks or more. axis: nullopt for the corners alone.
+std::vector<std::vector<int>> place_blocks(const Evidence& evidence, std::optional<std::size_t> axis);
 
 }  // namespace vernier::diagnose

@@ -452,23 +452,52 @@ std::string Finder::failed_test(std::size_t item) const {
     return "test `stability`: the coefficients of the effect change if the fit does not use one of the runs";
   if (has_input(item, effects::InputClass::kFeature))
     for (const std::vector<int>& levels : level_blocks(evidence_))
-      if (leave_blocks_out(evidence_, pool_.columns(others), 0, 0, levels).chi_square -
-              leave_blocks_out(evidence_, pool_.columns(all), 0, count, levels).chi_square <
-          thresholds_.held_out_share * gain)
+      if (held_out_decrease(item, levels) < thresholds_.held_out_share * gain)
         return "test `held out`: the effect does not reduce the residual of readings at held-out feeds or "
                "temperatures";
+  // Other rows at the same positions cannot contradict what a term does between them.
+  const bool found = pool_.is_custom(item);
+  const double least = found ? thresholds_.held_out_share * gain
+                             : -2 * evidence_.thresholds().proof.worse * variance_of_reading();
+  for (const std::vector<int>& places : place_blocks(evidence_, pool_.candidate(item).choice.axis))
+    if (held_out_decrease(item, places) < least)
+      return "test `held out`: the effect does not reduce the residual of readings at held-out positions";
   return too_large(item);
 }
 
-double Finder::held_out_evidence(std::size_t item) const {
+double Finder::variance_of_reading() const {
+  const double variance = chi_square_ / std::max(1.0, evidence_.freedom());
+  return evidence_.noise_known() ? std::max(1.0, variance) : std::max(variance, 1e-300);
+}
+
+double Finder::held_out_decrease(std::size_t item, const std::vector<int>& blocks) const {
   std::vector<std::size_t> others = without(item), all = {item};
   all.insert(all.end(), others.begin(), others.end());
+  return leave_blocks_out(evidence_, pool_.columns(others), 0, 0, blocks).chi_square -
+         leave_blocks_out(evidence_, pool_.columns(all), 0, 0, blocks).chi_square;
+}
+
+double Finder::held_out_evidence(std::size_t item) const {
   const bool of_run = !pool_.candidate(item).choice.runs.empty() || shows_in_one_block(item);
-  const double less = leave_runs_out(evidence_, pool_.columns(others), 0, 0, of_run).chi_square;
-  const double with = leave_runs_out(evidence_, pool_.columns(all), 0, 0, of_run).chi_square;
-  double variance = chi_square_ / std::max(1.0, evidence_.freedom());
-  if (evidence_.noise_known()) variance = std::max(1.0, variance);
-  return (less - with) / (2 * std::max(variance, 1e-300));
+  return held_out_decrease(item, of_run ? evidence_.parts_of_runs() : evidence_.blocks()) /
+         (2 * variance_of_reading());
+}
+
+bool Finder::predicts_worse(std::size_t alternative, std::size_t item) const {
+  std::vector<std::size_t> with = without(item), accepted = with;
+  with.push_back(alternative);
+  accepted.push_back(item);
+  std::vector<std::vector<int>> divisions = {evidence_.blocks()};
+  for (const std::size_t of : {item, alternative})
+    for (std::vector<int>& places : place_blocks(evidence_, pool_.candidate(of).choice.axis))
+      if (std::find(divisions.begin(), divisions.end(), places) == divisions.end())
+        divisions.push_back(std::move(places));
+  const double limit = 2 * evidence_.thresholds().proof.evidence * variance_of_reading();
+  return std::any_of(divisions.begin(), divisions.end(), [&](const std::vector<int>& blocks) {
+    return leave_blocks_out(evidence_, pool_.columns(with), 0, 0, blocks).chi_square -
+               leave_blocks_out(evidence_, pool_.columns(accepted), 0, 0, blocks).chi_square >
+           limit;
+  });
 }
 
 bool Finder::has_input(std::size_t item, effects::InputClass wanted) const {
@@ -670,6 +699,7 @@ Alternatives Finder::alternatives_to(std::size_t item) const {
         continue;
       }
     }
+    if (distance < thresholds_.distance_of_fits && predicts_worse(alternative, item)) continue;
     if (!pool_.same_cause(item, alternative) && too_large(alternative).empty())
       found.other.push_back({alternative, distance});
   }

@@ -151,6 +151,14 @@ class Finder {
   void ban_hollow_products();
   /// Returns the first acceptance test that an accepted item fails; empty if the item passes all tests.
   std::string failed_test(std::size_t item) const;
+  /// Returns the variance of a weighted reading beside the accepted set; at least 1 if u is given.
+  double variance_of_reading() const;
+  /// Returns the decrease of chi^2 by an accepted item on held-out blocks: each block is predicted from the
+  /// other blocks. blocks: one index per fit observation.
+  double held_out_decrease(std::size_t item, const std::vector<int>& blocks) const;
+  /// True if the accepted set with `alternative` in place of `item` predicts held-out runs or positions so
+  /// much worse that the likelihood ratio is 20 to 1 against the alternative.
+  bool predicts_worse(std::size_t alternative, std::size_t item) const;
   /// has_input: true if the term of an item contains an input of a class. shows_in_one_block: true if
   /// one run contains nearly all that an accepted item explains. In this case the other runs cannot confirm
   /// the item.

@@ -2,8 +2,12 @@
 // Leaving runs out in one go, against really fitting again without them; the tail of chi^2.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <random>
+#include <set>
 
 #include "tools/diagnose/acceptance.h"
 #include "tools/diagnose/propose/evidence.h"
@@ -160,6 +164,63 @@ TEST(LeaveRunsOut, FitsToARunWhatOnlyItDetermines) {
   refitted += s.refitted(with, 0, true);
   const HeldOut held = leave_runs_out(s.evidence, s.columns, 0, 1);
   EXPECT_NEAR(held.chi_square, refitted, 1e-5 * refitted);
+}
+
+TEST(PlaceBlocks, HoldOutStretchesTargetsAndCornersOfAnAxis) {
+  const Setting s(line_text(""), rows_of(false));
+  const std::vector<std::vector<int>> blocks = place_blocks(s.evidence, 0);
+  ASSERT_EQ(blocks.size(), 3U) << "five stretches, every fifth target, two halves";
+  const Column& x = s.evidence.measurement().states.axis[0];
+  std::map<double, std::size_t> at;  // any reading of a position
+  for (std::size_t i = 0; i < s.evidence.rows().size(); ++i)
+    at.emplace(x[static_cast<Eigen::Index>(s.evidence.rows()[i])], i);
+  std::vector<int> stretches, halves;
+  for (const auto& [position, reading] : at) {
+    stretches.push_back(blocks[0][reading]);
+    halves.push_back(blocks[2][reading]);
+  }
+  EXPECT_TRUE(std::is_sorted(stretches.begin(), stretches.end()));
+  EXPECT_EQ(stretches.back(), 4);
+  EXPECT_TRUE(std::is_sorted(halves.begin(), halves.end()));
+  EXPECT_EQ(halves.back(), 1);
+  EXPECT_EQ(std::set<int>(blocks[1].begin(), blocks[1].end()), (std::set<int>{0, 1, 2, 3, 4}));
+  // All readings at one target are held out together, or another reading would tell its error.
+  for (std::size_t i = 0; i < s.evidence.rows().size(); ++i) {
+    const std::size_t same = at.at(x[static_cast<Eigen::Index>(s.evidence.rows()[i])]);
+    for (const std::vector<int>& division : blocks) EXPECT_EQ(division[i], division[same]);
+  }
+  EXPECT_EQ(place_blocks(s.evidence, std::nullopt).size(), 1U) << "without an axis: the corners alone";
+}
+
+/// A bump of 40 um on a tenth of the axis: runs repeat it, so a polynomial of degree 7 predicts held-out runs
+/// better than no term. Between the bump and the ends of the axis the polynomial is wrong, which only
+/// held-out stretches show.
+TEST(PlaceBlocks, ContradictATermThatEveryRunRepeats) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "X[mm],x[mm],u[um],run\n";
+  for (int run = 0; run < 4; ++run)
+    for (int i = 0; i <= 50; ++i) {
+      const double x = 20.0 * i, bump = x > 410 && x < 510 ? 0.04 : 0;
+      text += std::to_string(x) + "," + std::to_string(x + bump + noise(random)) + ",1,r" +
+              std::to_string(run) + "\n";
+    }
+  const Setting s(line_text(""), text);
+  constexpr Eigen::Index kDegrees = 6;  // 2 to 7: offset and scale are free
+  Eigen::MatrixXd powers(s.evidence.residual().size(), kDegrees);
+  const Column& x = s.evidence.measurement().states.axis[0];
+  for (Eigen::Index i = 0; i < powers.rows(); ++i)
+    for (Eigen::Index k = 0; k < kDegrees; ++k)
+      powers(i, k) =
+          std::pow(x[static_cast<Eigen::Index>(s.evidence.rows()[static_cast<std::size_t>(i)])] / 500 - 1,
+                   static_cast<double>(k + 2));
+  powers -= s.evidence.absorbed() * (s.evidence.absorbed().transpose() * powers);
+  const Eigen::MatrixXd nothing(powers.rows(), 0);
+  EXPECT_LT(leave_runs_out(s.evidence, powers, 0, 0).chi_square,
+            0.8 * leave_runs_out(s.evidence, nothing, 0, 0).chi_square);
+  const std::vector<int> stretches = place_blocks(s.evidence, 0).front();
+  EXPECT_GT(leave_blocks_out(s.evidence, powers, 0, 0, stretches).chi_square,
+            leave_blocks_out(s.evidence, nothing, 0, 0, stretches).chi_square);
 }
 
 /// Three readings at each of 60 places of one run, which share an error of `shared` um beside 1 um of their
