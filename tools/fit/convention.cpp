@@ -245,6 +245,11 @@ void correlate(const model::Machine& machine, const model::ParameterSet& paramet
   convention.precision.setFromTriplets(apart.begin(), apart.end());
 }
 
+/// Noise of all readings together, in the unit of a weighted residual.
+double noise_of(const model::Measurement& rows, const Convention& convention) {
+  return has_uncertainty(rows) ? 1 : convention.misfit_mm;
+}
+
 /// Enlarges the scales of parameters whose effect the unknown places of touched objects absorb: an error that
 /// the readings show by the share f is as large as the residual divided by f, at most kMostError. A parameter
 /// is unseen if even the largest error changes the readings by less than their noise in total: what its
@@ -253,7 +258,7 @@ void enlarge_absorbed(const model::Machine& centre, const model::Measurement& ro
                       const model::ParameterSet& parameters, double length_mm, Convention& convention) {
   if (rows.things.empty() || parameters.size() == 0) return;
   const double times = std::max(1.0, kMostError * convention.reach_mm / length_mm);
-  const double noise = has_uncertainty(rows) ? 1 : convention.misfit_mm;
+  const double noise = noise_of(rows, convention);
   const SeenBesideThings seen = seen_beside_things(centre, rows, parameters);
   convention.most =
       Eigen::VectorXd::Constant(convention.scale.size(), std::numeric_limits<double>::infinity());
@@ -270,6 +275,24 @@ void enlarge_absorbed(const model::Machine& centre, const model::Measurement& ro
 }
 
 }  // namespace
+
+bool see_again(const model::Machine& fitted, const model::Measurement& rows,
+               const model::ParameterSet& parameters, Convention& convention) {
+  if (std::count(convention.unseen.begin(), convention.unseen.end(), 0) ==
+      static_cast<std::ptrdiff_t>(convention.unseen.size()))
+    return false;
+  const SeenBesideThings seen = seen_beside_things(fitted, rows, parameters);
+  bool more = false;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (convention.unseen[i] == 0 ||
+        std::sqrt(seen.squares[at]) * convention.most[at] < noise_of(rows, convention))
+      continue;
+    convention.unseen[i] = 0;
+    more = true;
+  }
+  return more;
+}
 
 Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const Eigen::VectorXd& scale) {
   const Eigen::VectorXd shrink = scale.cwiseInverse();

@@ -21,4 +21,10 @@ Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const
 Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
                          const model::ParameterSet& parameters);
 
+/// Decides again which parameters the readings do not show, at the fitted machine: a tool that was nominally
+/// on an axis and is found beside the axis makes the zero of that axis visible. Returns true if the readings
+/// show a parameter that counted as unseen. rows: of the fit.
+bool see_again(const model::Machine& fitted, const model::Measurement& rows,
+               const model::ParameterSet& parameters, Convention& convention);
+
 }  // namespace vernier::fit

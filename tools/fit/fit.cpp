@@ -474,6 +474,12 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
     };
     solved();
     if (hold_turned_away(end, convention)) solved();
+    model::Machine found = machine;
+    result.parameters.set(found, end.point);
+    if (see_again(found, rows, result.parameters, convention)) {
+      problem.hold_unseen(convention.unseen);
+      solved();
+    }
     // Steps were found among the rows of the fit, and are stated by the rows of the files.
     for (NoiseStep& step : end.noise.steps)
       if (!options.noise && step.row < kept.size()) step.row = kept[step.row];

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <random>
 
@@ -294,6 +295,52 @@ TEST(FitOfThings, OneAxisThatCollapsedIsNoResult) {
   EXPECT_EQ(result.absurd.find("along Y the fitted machine moves the tool by"), 0u) << result.absurd;
   EXPECT_NE(result.absurd.find("by sy alone"), std::string::npos) << result.absurd;
   EXPECT_NE(result.absurd.find("Hold sy at its nominal value"), std::string::npos) << result.absurd;
+}
+
+/// A tool whose nominal place is on the last joint: at the start no reading shows the zero of this joint. The
+/// tool that the fit finds is 36 mm beside the joint, and there the zero turns the tool: both are open then.
+TEST(FitOfThings, AZeroThatOnlyTheFoundToolShowsIsNotHeldAsExact) {
+  constexpr double kAcross_mm = 30, kBeside_mm = -20, kLastZero_deg = 0.08;
+  std::string text = kArm;
+  const auto put = [&](const std::string& before, const std::string& what) {
+    text.insert(text.find(before), what);
+  };
+  put("</static>",
+      "<tx value=\"0\" nominal=\"0\" unit=\"mm\"/><ty value=\"0\" nominal=\"0\" unit=\"mm\"/>"
+      "<last value=\"0\" nominal=\"0\" unit=\"deg\"/>");
+  put("</machineaxes>", "<R rotary=\"true\" min=\"-180\" max=\"180\"/>");
+  put("</transforms>", "<sixdof n=\"5\" rZ=\"R+last\"/><sixdof n=\"6\" X=\"tx\" Y=\"ty\"/>");
+  const model::Machine arm = model::parse_machine(text, "arm.xml");
+  std::mt19937_64 random(29);
+  std::normal_distribution<double> noise(0, kNoise_mm);
+  std::uniform_real_distribution<double> turn(-120, 120);
+  std::string rows = "P[deg],Q[deg],R[deg],same,name,distance[mm],from,u[mm]\n";
+  const std::array<std::array<double, 2>, 3> points = {{{250, 100}, {390, 0}, {300, -150}}};
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (int i = 0; i < 12; ++i) {
+      const double way = turn(random), c = std::cos(way * maths::kRadPerDeg),
+                   s = std::sin(way * maths::kRadPerDeg);
+      const std::string arm_angles =
+          at(points[p][0] - (c * kAcross_mm - s * kBeside_mm) + noise(random),
+             points[p][1] - (s * kAcross_mm + c * kBeside_mm) + noise(random), i % 2 == 0 ? 1 : -1);
+      double first = 0, second = 0;
+      ASSERT_EQ(std::sscanf(arm_angles.c_str(), "%lf,%lf", &first, &second), 2);
+      const bool length = p == 1 && i == 0;
+      rows += arm_angles + fmt::format(",{:.10f},S{},n{}_{},{},{},{}\n",
+                                       way - first - second - kZero_deg - kLastZero_deg, p, p, i,
+                                       length ? fmt::format("{:.9f}", std::hypot(140, 100)) : "",
+                                       length ? "n0_0" : "", kNoise_mm);
+    }
+  const FitResult result = vernier::fit::fit(arm, model::parse_measurement(rows, "s.csv", arm), {});
+  ASSERT_TRUE(result.converged);
+  for (const auto& [name, truth] : {std::pair{"tx", kAcross_mm}, {"ty", kBeside_mm}, {"b", kSecond_mm}}) {
+    const auto one =
+        std::find_if(result.estimates.begin(), result.estimates.end(),
+                     [&, wanted = name](const ParameterEstimate& e) { return e.name == wanted; });
+    ASSERT_NE(one, result.estimates.end());
+    EXPECT_LT(std::abs(one->value - truth), 3.5 * one->std)
+        << name << " " << one->value << " +- " << one->std;
+  }
 }
 
 // A column with the other sign can agree with another machine: a zero that is half a turn off.
