@@ -351,13 +351,12 @@ void add_conformity(CLI::App& part) {
   add_report_header(*command, a->header);
   command->add_option("--json", a->json, "result for programs; - for standard output");
   command->footer(
-      "Monte Carlo over the covariance of the last fit (JCGM 101). A tolerance is kept, or not, from a\n"
-      "probability of 95 % on (ISO 14253-1:2017), else the verdict is: cannot be said. Columns of a list: "
-      "feature, kind\n"
-      "(point plane cylinder), x y z, nx ny nz, i j k, diameter, length, width, position, size or size_low\n"
-      "and size_high, form, datum (yes). Exit status 0 done (also if it cannot be said), 1 bad input\n"
-      "(nothing written), 2 something does not conform (all is written), or is out of reach (nothing is). "
-      "See tools/docs/conformity.md.");
+      "Monte Carlo simulation over the covariance of the last fit (JCGM 101). The verdict is \"conforms\" or "
+      "\"does not\nconform\" if its probability is at least 95 % (ISO 14253-1:2017), else \"cannot be "
+      "said\". Columns of a list: feature, kind\n(point plane cylinder), x y z, nx ny nz, i j k, diameter, "
+      "length, width, position, size or size_low\nand size_high, form, datum (yes). Exit status 0 done (also "
+      "for the verdict \"cannot be said\"), 1 bad\ninput (nothing written), 2 a feature does not conform "
+      "(all files are written) or is out of reach (nothing is written). See\ntools/docs/conformity.md.");
   command->callback([a] { run_conformity(*a); });
 }
 

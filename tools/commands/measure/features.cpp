@@ -262,8 +262,8 @@ void run_features(const FeaturesArguments& arguments) {
   text::write_file(arguments.output, text_of(rows, columns));
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
-  fmt::print(out, "{} rows, {} of them without a full window of {} samples at {:.6g} Hz\n", rows.rows.size(),
-             columns.empty_rows, choice.window, record.rate_Hz);
+  fmt::print(out, "{} rows, of which {} have no full window of {} samples at {:.6g} Hz before their time\n",
+             rows.rows.size(), columns.empty_rows, choice.window, record.rate_Hz);
   if (displaced) print_displacements(out, json["displacement"]);
   if (!arguments.align.empty())
     fmt::print(out, "clock: t = {:.6g} s + {:.8f} t_record, correlation {:.3f} (next best lag {:.3f})\n",

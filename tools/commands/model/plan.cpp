@@ -100,8 +100,8 @@ void run_check_plan(const PlanArguments& arguments) {
   const double worst = plan.shows.empty() ? 0 : plan.shows.front().tool_um;
   if (arguments.accuracy_um > 0 && (worst > arguments.accuracy_um || plan.shows.empty()))
     throw text::LimitNotMet(
-        fmt::format("{} poses show {} only where it moves the tool by {:.3g} um: more --points, or readings "
-                    "surer than {:g} um",
+        fmt::format("{} poses show {} only if its change moves the tool by {:.3g} um: give more "
+                    "--points, or use readings with a standard uncertainty below {:g} um",
                     plan.states.count, plan.shows.empty() ? "nothing" : plan.shows.front().quantity.name,
                     worst, options.reading_um));
   if (!arguments.output.empty())
@@ -304,13 +304,13 @@ void register_plan(CLI::App& vernier) {
   command->add_flag("--check", arguments->check,
                     "plan a short measurement for `vernier check` of a fitted machine (default: 10 points)");
   command->add_option("--artefact", arguments->artefact,
-                      "touches of this <artefact> of the machine file (default: 40 at most), and what no "
-                      "touch of it determines");
+                      "plan touches of this <artefact> of the machine file (default: 40 at most), and list "
+                      "the parameters that no touch of it determines");
   plan::PositioningTestOptions& test = arguments->positioning;
   CLI::Option* const positioning = command->add_option(
       "--positioning", test.axis,
-      "AXIS: the test of ISO 230-2 with a laser or a dial gauge, its program (--gcode) and its rows (-o); "
-      "--points: targets (default: as the standard requires)");
+      "AXIS: plan the positioning test of ISO 230-2 with a laser or a dial gauge: NC program (--gcode) and "
+      "rows for the readings (-o); --points: number of targets (default: as the standard requires)");
   command->add_option("--from", test.from, "first target, mm or deg (default: the range less --overrun)")
       ->needs(positioning);
   command->add_option("--to", test.to, "last target, mm or deg")->needs(positioning);
@@ -320,10 +320,9 @@ void register_plan(CLI::App& vernier) {
       ->check(CLI::PositiveNumber)
       ->needs(positioning);
   command
-      ->add_option(
-          "--period", test.period,
-          "of a possible periodic error, mm or deg: the targets vary by at most one period (default: "
-          "30 % of the interval)")
+      ->add_option("--period", test.period,
+                   "period of a possible periodic error, mm or deg: each target is shifted by a random "
+                   "amount of at most one period (default: 30 % of the interval)")
       ->check(CLI::PositiveNumber)
       ->needs(positioning);
   command->add_option("--runs", test.runs, "runs in both directions (default: 5; 1 on an axis beyond 2 m)")
@@ -362,16 +361,15 @@ void register_plan(CLI::App& vernier) {
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "With MEAS and --accuracy: fits, then chooses the next poses one by one that lower U95 (k = 2) over "
-      "the\n"
-      "volume, a region or a part's features most, until it is reached; exit status 2 if it cannot be.\n"
-      "--separate: fits the model with either effect, then chooses the rows whose readings differ most after "
-      "the wrong\n"
-      "one and all free parameters were fitted again (T-optimal, the worse of both directions). Points: as\n"
-      "many as bring the non-centrality to (z + sqrt(z^2 + 6))^2, z the normal quantile of the confidence.\n"
-      "Exit status 0 done (also if no pose separates them: a sentence reports it), 1 bad input or usage\n"
-      "(nothing written), 2 the accuracy asked for cannot be reached (nothing written), 70 internal error. "
-      "See tools/docs/plan.md.");
+      "With MEAS and --accuracy the command fits the model, then chooses the next poses one by one: each "
+      "pose gives the largest\ndecrease of U95 (k = 2) over the volume, a region or the features of a part, "
+      "until U95 is at most --accuracy.\nWith --separate the command fits the model with each effect, then "
+      "chooses the rows whose readings differ most after the\nwrong effect and all free parameters were "
+      "fitted again (T-optimal, the worse of both directions). The number of points\nis sufficient for a "
+      "non-centrality of (z + sqrt(z^2 + 6))^2, where z is the normal quantile of the confidence.\nExit "
+      "status 0 done (also if no pose distinguishes the two effects: a sentence reports this), 1 bad input "
+      "or usage\n(nothing written), 2 the required accuracy cannot be reached (nothing written), 70 internal "
+      "error. See tools/docs/plan.md.");
   command->callback([arguments] { run_plan(*arguments); });
 }
 
