@@ -278,10 +278,11 @@ void register_again(CLI::App& vernier) {
       ->required();
   command->add_option("--json", arguments->json, "result for programs (- is standard output)");
   command->footer(
-      "FILE contains a record: the command that made the file, its folder, and the SHA-256 of each\ninput "
-      "file. `vernier again` runs this command in a temporary folder with copies of the inputs,\nand does "
-      "not change FILE.\nExit status: 0 all bytes are equal, 1 bad input (FILE has no record, or an input is "
-      "missing),\n2 the bytes differ, because an input or the program has changed.");
+      "FILE contains a record: the command that made the file, its folder, and the SHA-256 of each\n"
+      "input file. `vernier again` runs this command in a temporary folder with copies of the inputs,\n"
+      "and does not change FILE.\n"
+      "Exit status: 0 all bytes are equal, 1 bad input (FILE has no record, or an input is missing),\n"
+      "2 the bytes differ, because an input or the program has changed.");
   command->callback([arguments] { run_again(*arguments); });
 }
 

@@ -94,15 +94,19 @@ void add_help_command(CLI::App& app) {
 
 /// What `vernier` prints without a command: the way of the first hour.
 constexpr const char* kFirstHour =
-    "Vernier makes machine tools, measuring machines and robots more accurate.\n\nThe first hour:\n  vernier "
-    "new gantry --axis X:0:600 --axis Y:0:400 --axis Z:0:300 -o machine.xml\n                                "
-    "                  create a machine file (a robot: --urdf)\n  vernier import table laser.xlsx -o "
-    "survey.csv   read the file of an instrument\n  vernier fit machine.xml survey.csv -o fitted.xml\n       "
-    "                                           estimate the errors of the machine\n  vernier diagnose "
-    "machine.xml survey.csv -o report.html\n                                                  find which "
-    "physical effect is missing\n  vernier evaluate iso230-2 survey.csv --axis X   evaluate a positioning "
-    "test\n\nAll steps in a browser: vernier workbench\nAll commands:          vernier --help\nOne command:  "
-    "         vernier fit --help\n";
+    "Vernier makes machine tools, measuring machines and robots more accurate.\n\n"
+    "The first hour:\n"
+    "  vernier new gantry --axis X:0:600 --axis Y:0:400 --axis Z:0:300 -o machine.xml\n"
+    "                                                  create a machine file (a robot: --urdf)\n"
+    "  vernier import table laser.xlsx -o survey.csv   read the file of an instrument\n"
+    "  vernier fit machine.xml survey.csv -o fitted.xml\n"
+    "                                                  estimate the errors of the machine\n"
+    "  vernier diagnose machine.xml survey.csv -o report.html\n"
+    "                                                  find which physical effect is missing\n"
+    "  vernier evaluate iso230-2 survey.csv --axis X   evaluate a positioning test\n\n"
+    "All steps in a browser: vernier workbench\n"
+    "All commands:          vernier --help\n"
+    "One command:           vernier fit --help\n";
 
 int run(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
@@ -116,7 +120,8 @@ int run(const std::vector<std::string>& arguments) {
   app.set_version_flag("-V,--version", kProgram);
   app.footer(
       "Exit status: 0 done, 1 bad input or usage (nothing written), 2 negative result (for example, a "
-      "tolerance is not met), 70 internal error.\n`vernier COMMAND --help` documents each command.");
+      "tolerance is not met), 70 internal error.\n"
+      "`vernier COMMAND --help` documents each command.");
   add_commands(app);
   add_help_command(app);
   vernier::commands::take_plain_numbers(app);

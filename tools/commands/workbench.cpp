@@ -53,10 +53,10 @@ void run_workbench(const WorkbenchArguments& arguments, const CLI::App& vernier)
     write_json(arguments.json,
                {{"url", server.url()}, {"port", server.port()}, {"folder", arguments.directory}});
     std::FILE* const out = human_stream(arguments.json);
-    fmt::print(
-        out,
-        "{}\nThis address works on this computer and for this session only. Ctrl-C ends the workbench.\n",
-        server.url());
+    fmt::print(out,
+               "{}\n"
+               "This address works on this computer and for this session only. Ctrl-C ends the workbench.\n",
+               server.url());
     std::fflush(nullptr);
     if (!arguments.no_browser) open_browser(server.url());
     server.serve();
@@ -123,7 +123,8 @@ void register_workbench(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "{url, port} once it serves; - for standard output");
   command->footer(
       "The server runs until it is interrupted (Ctrl-C). The printed address contains the token of the "
-      "session.\nThe page reads and writes only files in DIR, and shows the command of every button "
+      "session.\n"
+      "The page reads and writes only files in DIR, and shows the command of every button "
       "(tools/docs/workbench.md).");
   command->callback([arguments, &vernier] { run_workbench(*arguments, vernier); });
 }

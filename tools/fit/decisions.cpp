@@ -129,7 +129,7 @@ std::string blame_of(const FitResult& result, const Eigen::VectorXd& step, std::
   std::string text = fmt::format("{} readings for {} free parameters", readings, result.parameters.size());
   if (static_cast<std::size_t>(step.size()) == result.parameters.size() && step.allFinite() &&
       step.cwiseAbs().maxCoeff() > 0)
-    text += fmt::format("; the last step still moved the combination {} (in units of each scale)",
+    text += fmt::format("; the last iteration still changed the combination {} (in units of each scale)",
                         combination(result, step));
   const std::vector<Decision> open = decisions_of(result, kMostGroups);
   for (std::size_t i = 0; i < open.size(); ++i) {
@@ -140,7 +140,7 @@ std::string blame_of(const FitResult& result, const Eigen::VectorXd& step, std::
       names += fmt::format(" and {} more", open[i].parameters.size() - kMostNames);
     text += (i == 0 ? "; the readings do not determine " : " | ") + names;
   }
-  return text + "; hold some of these parameters (--hold NAME), or measure more and other poses";
+  return text + "; fix some of these parameters (--hold NAME), or measure more and other poses";
 }
 
 }  // namespace vernier::fit

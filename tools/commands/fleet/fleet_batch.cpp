@@ -244,9 +244,11 @@ void add_batch(CLI::App& fleet) {
   command->prefix_command();
   command->footer(
       "After NAME and the options, write the vernier command for each machine, with {machine} in place of "
-      "its name:\n  vernier fleet batch night --scheduler slurm diagnose models/{machine}.xml "
-      "data/{machine}.csv\nThe command for each machine runs in the present directory. The result of the "
-      "command (--json) is the answer of the machine.\nExit status 0 done, 1 bad input.");
+      "its name:\n"
+      "  vernier fleet batch night --scheduler slurm diagnose models/{machine}.xml data/{machine}.csv\n"
+      "The command for each machine runs in the present directory. The result of the command (--json) is the "
+      "answer of the machine.\n"
+      "Exit status 0 done, 1 bad input.");
   CLI::App* const vernier = fleet.get_parent();
   command->callback([batch, command, vernier] {
     batch->command = command->remaining();
@@ -274,9 +276,8 @@ void add_batch(CLI::App& fleet) {
   add_registry(*command, collect->registry);
   command->add_option("--json", collect->json, "result for programs; - for standard output");
   command->footer(
-      "The command may be called several times, also while the batch runs. Exit status 0 the answers of "
-      "all\nmachines are booked, 1 bad input, 2 some answers are not booked (the command lists these "
-      "answers).");
+      "The command may be called several times, also while the batch runs. Exit status 0 the answers of all\n"
+      "machines are booked, 1 bad input, 2 some answers are not booked (the command lists these answers).");
   command->callback([collect] { run_collect(*collect); });
 
   const auto answers = std::make_shared<CollectArguments>();

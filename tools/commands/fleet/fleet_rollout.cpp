@@ -243,11 +243,13 @@ void add_rollout(CLI::App& fleet) {
                       "state of each machine, for programs; - for standard output");
   command->footer(
       "The judge command must answer within the trial time of the board, e.g. measure and `vernier compare "
-      "--limit`.\nBefore the command signs or sends an image, each board must state its name and prove its "
-      "key (vernier fleet add --board, --board-key, --trust).\nExit status 0 all images are kept and in "
-      "effect (without --images: the state is printed), 1 bad input (no request was sent to a board),\n2 the "
-      "rollout has stopped: a machine was worse or not available, a board was another board, an image was "
-      "not in effect, or another caller has one of the machines.");
+      "--limit`.\n"
+      "Before the command signs or sends an image, each board must state its name and prove its key (vernier "
+      "fleet add --board, --board-key, --trust).\n"
+      "Exit status 0 all images are kept and in effect (without --images: the state is printed), 1 bad input "
+      "(no request was sent to a board),\n"
+      "2 the rollout has stopped: a machine was worse or not available, a board was another board, an image "
+      "was not in effect, or another caller has one of the machines.");
   command->callback([arguments] { run_or_stand(*arguments); });
 }
 

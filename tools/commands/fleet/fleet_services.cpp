@@ -64,8 +64,8 @@ void add_services(CLI::App& fleet) {
       ->required();
   gateway->footer(
       "The gateway runs until it is interrupted. It reads the password of the broker from "
-      "VERNIER_MQTT_PASSWORD.\nExit status 0 stopped on request, 1 bad input, 70 the store fails (full or "
-      "broken medium).");
+      "VERNIER_MQTT_PASSWORD.\n"
+      "Exit status 0 stopped on request, 1 bad input, 70 the store fails (full or broken medium).");
   gateway->callback([file] { run_gateway_command(*file); });
 
   const auto options = std::make_shared<fleet::IngestOptions>();
@@ -86,8 +86,9 @@ void add_services(CLI::App& fleet) {
       ->capture_default_str();
   ingest->footer(
       "The command runs until it is interrupted, also if the broker or the database is not available for a "
-      "time. It reads\nthe password of the broker from VERNIER_MQTT_PASSWORD. Exit status 0 stopped on "
-      "request, 1 bad input.");
+      "time. It reads\n"
+      "the password of the broker from VERNIER_MQTT_PASSWORD. Exit status 0 stopped on request, 1 bad "
+      "input.");
   ingest->callback([options] {
     fleet::require_broker_address(options->broker.address);
     if (options->registry.empty()) make_registry(options->registry);

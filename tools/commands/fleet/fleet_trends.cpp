@@ -122,9 +122,11 @@ void add_trends(CLI::App& fleet) {
   command->add_option("--json", alike->json, "result for programs; - for standard output");
   command->footer(
       "Model: reading = constant of the machine + common curve of time + rate of the machine x time, "
-      "weighted by the stated\nuncertainties. The command adds the rates of single machines one by one if an "
-      "F test is significant, and treats the\nreadings as independent and normally distributed. Exit status "
-      "0 done (for every result), 1 bad input.");
+      "weighted by the stated\n"
+      "uncertainties. The command adds the rates of single machines one by one if an F test is significant, "
+      "and treats the\n"
+      "readings as independent and normally distributed. Exit status 0 done (for every result), 1 bad "
+      "input.");
   command->callback([alike] { run_alike(*alike); });
 }
 

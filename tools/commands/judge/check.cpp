@@ -140,10 +140,12 @@ void register_check(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Each check fits the set-up of the instrument again. The command treats the readings as independent "
-      "and\nnormally distributed, with the standard uncertainty u (without u: the rms of the residual of the "
-      "fit).\nExit status 0 done (for every verdict), 1 bad input (nothing written), 2 -o was given, but the "
-      "change is not\nthat of a parameter (the verdict and the history are written, the machine file is "
-      "not).");
+      "and\n"
+      "normally distributed, with the standard uncertainty u (without u: the rms of the residual of the "
+      "fit).\n"
+      "Exit status 0 done (for every verdict), 1 bad input (nothing written), 2 -o was given, but the change "
+      "is not\n"
+      "that of a parameter (the verdict and the history are written, the machine file is not).");
   command->callback([arguments] { run_check(*arguments); });
 }
 

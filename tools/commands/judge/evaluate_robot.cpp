@@ -195,10 +195,12 @@ void add_robot_kind(CLI::App& evaluate) {
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
       "All rows with the same commanded pose form one group. AP = distance of the barycentre of the group "
-      "from the commanded\npose, RP = mean distance from the barycentre + 3 S. AD = mean distance of two "
-      "poses minus the commanded distance, RD = 3 S.\ndAP, dRP = largest change of AP, RP since the first "
-      "block. Exit status 0 done, 1 bad input, 2 a tolerance is not met\n(ISO 14253-1: the value exceeds the "
-      "tolerance by more than its uncertainty).");
+      "from the commanded\n"
+      "pose, RP = mean distance from the barycentre + 3 S. AD = mean distance of two poses minus the "
+      "commanded distance, RD = 3 S.\n"
+      "dAP, dRP = largest change of AP, RP since the first block. Exit status 0 done, 1 bad input, 2 a "
+      "tolerance is not met\n"
+      "(ISO 14253-1: the value exceeds the tolerance by more than its uncertainty).");
   kind->callback([arguments] { run_robot(*arguments); });
 }
 

@@ -352,11 +352,15 @@ void add_conformity(CLI::App& part) {
   command->add_option("--json", a->json, "result for programs; - for standard output");
   command->footer(
       "Monte Carlo simulation over the covariance of the last fit (JCGM 101). The verdict is \"conforms\" or "
-      "\"does not\nconform\" if its probability is at least 95 % (ISO 14253-1:2017), else \"cannot be "
-      "said\". Columns of a list: feature, kind\n(point plane cylinder), x y z, nx ny nz, i j k, diameter, "
-      "length, width, position, size or size_low\nand size_high, form, datum (yes). Exit status 0 done (also "
-      "for the verdict \"cannot be said\"), 1 bad\ninput (nothing written), 2 a feature does not conform "
-      "(all files are written) or is out of reach (nothing is written). See\ntools/docs/conformity.md.");
+      "\"does not\n"
+      "conform\" if its probability is at least 95 % (ISO 14253-1:2017), else \"cannot be said\". Columns of "
+      "a list: feature, kind\n"
+      "(point plane cylinder), x y z, nx ny nz, i j k, diameter, length, width, position, size or size_low\n"
+      "and size_high, form, datum (yes). Exit status 0 done (also for the verdict \"cannot be said\"), 1 "
+      "bad\n"
+      "input (nothing written), 2 a feature does not conform (all files are written) or is out of reach "
+      "(nothing is written). See\n"
+      "tools/docs/conformity.md.");
   command->callback([a] { run_conformity(*a); });
 }
 

@@ -188,8 +188,10 @@ void add_tracker_kind(CLI::App& kind) {
       ->capture_default_str();
   kind.footer(
       "Name the columns as in a measurement file, with the unit of the table: axes, inputs, x y z, u, run, "
-      "role …\nAn orientation is rx ry rz (rotation vector), rX rY rZ (angles of Rx*Ry*Rz) or qw qx qy qz "
-      "(quaternion);\nthe command converts angles and quaternions to rx ry rz.");
+      "role …\n"
+      "An orientation is rx ry rz (rotation vector), rX rY rZ (angles of Rx*Ry*Rz) or qw qx qy qz "
+      "(quaternion);\n"
+      "the command converts angles and quaternions to rx ry rz.");
 }
 
 void add_camera_kind(CLI::App& kind) {

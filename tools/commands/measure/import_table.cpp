@@ -168,10 +168,14 @@ void add_table_kind(CLI::App& kind) {
       ->type_name(kWrites);
   kind.footer(
       "The command reads headings in their usual forms: X [mm], X(mm), X soll, X ist in \u00b5m, Abweichung "
-      "X;\nalso in two lines or with a row of units. If the table has a column for each run and direction "
-      "(1+ 1- 2+ 2-,\nRun 1 fwd, hin 1, Messung 1 \u2191), each reading becomes a row. \"(Soll-Ist)\" or "
-      "\"(nominal-actual)\" after\nthe heading of a deviation inverts its sign, with a note. The command "
-      "prints the detected settings; with\n--preview it writes no file.");
+      "X;\n"
+      "also in two lines or with a row of units. If the table has a column for each run and direction (1+ 1- "
+      "2+ 2-,\n"
+      "Run 1 fwd, hin 1, Messung 1 \u2191), each reading becomes a row. \"(Soll-Ist)\" or "
+      "\"(nominal-actual)\" after\n"
+      "the heading of a deviation inverts its sign, with a note. The command prints the detected settings; "
+      "with\n"
+      "--preview it writes no file.");
   kind.callback([arguments] { run_table(*arguments); });
 }
 

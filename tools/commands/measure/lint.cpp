@@ -64,9 +64,10 @@ void register_lint(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "error: the file cannot be used; warning: the file can be used, but its meaning may differ from the "
-      "intended\nmeaning; remark: for information. If a machine file is among the files, the command "
-      "compares the measurement\nfiles with the machine file. Exit status 0 if no file has an error, else "
-      "1.");
+      "intended\n"
+      "meaning; remark: for information. If a machine file is among the files, the command compares the "
+      "measurement\n"
+      "files with the machine file. Exit status 0 if no file has an error, else 1.");
   command->callback([arguments] { run_lint(*arguments); });
 }
 

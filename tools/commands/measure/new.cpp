@@ -225,9 +225,11 @@ void register_new(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "The type of the machine determines the order of the axes and whether each axis carries the tool or "
-      "the workpiece;\nthe command prints this chain, and --tool-side and --work-side change it. A robot "
-      "without --dh, --joint and --urdf\nhas six joints with the lengths of a UR10e. A machine file cannot "
-      "describe a delta robot or a hexapod (closed loops).");
+      "the workpiece;\n"
+      "the command prints this chain, and --tool-side and --work-side change it. A robot without --dh, "
+      "--joint and --urdf\n"
+      "has six joints with the lengths of a UR10e. A machine file cannot describe a delta robot or a hexapod "
+      "(closed loops).");
   command->callback([arguments, command] { run_new(*arguments, *command); });
 }
 

@@ -68,8 +68,9 @@ void register_ballbar_path(CLI::App& vernier) {
   command->add_option("-o,--output", arguments->output, "the program")->type_name(kWrites)->required();
   command->footer(
       "The program moves along the circle in both directions, each with its approach and its exit, and stops "
-      "at the start\npoint so that the ball bar can be mounted. Check the path for collisions before you run "
-      "it: the command knows no obstacles.");
+      "at the start\n"
+      "point so that the ball bar can be mounted. Check the path for collisions before you run it: the "
+      "command knows no obstacles.");
   command->callback([arguments] { run(*arguments); });
 }
 

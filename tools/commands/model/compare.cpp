@@ -289,12 +289,16 @@ void register_compare(CLI::App& vernier) {
   command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
   command->footer(
       "The report has the ISO 230-4 values and the polar plot (for ball-bar data), the residual against "
-      "every recorded\nquantity, sentences about where the model fails, and the error field of the model "
-      "over the volume. The command fits no\nparameter: a wrong offset, squareness or scale is therefore "
-      "also a finding; run `fit` first to see only errors that no\nparameter explains. With --before and "
-      "--after the report has the errors against the nominal machine in the best set-up\nof each "
-      "measurement, and their reduction with its interval, in all and by reading and feed "
-      "(tools/docs/compare.md).\nExit status 0 done, 1 bad input, 2 a residual exceeds --limit.");
+      "every recorded\n"
+      "quantity, sentences about where the model fails, and the error field of the model over the volume. "
+      "The command fits no\n"
+      "parameter: a wrong offset, squareness or scale is therefore also a finding; run `fit` first to see "
+      "only errors that no\n"
+      "parameter explains. With --before and --after the report has the errors against the nominal machine "
+      "in the best set-up\n"
+      "of each measurement, and their reduction with its interval, in all and by reading and feed "
+      "(tools/docs/compare.md).\n"
+      "Exit status 0 done, 1 bad input, 2 a residual exceeds --limit.");
   command->callback([arguments] { run_compare(*arguments); });
 }
 

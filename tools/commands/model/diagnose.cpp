@@ -136,9 +136,10 @@ void register_diagnose(CLI::App& vernier) {
       ->capture_default_str();
   command->footer(
       "The command first fits the model, and then searches for effects that explain the residual better than "
-      "the free\nparameters of the model can. The verdict is missing-effect, ambiguous, unexplained, "
-      "instrument or consistent.\nCheck rows only test the result. Exit status 0 for every verdict, 1 bad "
-      "input.");
+      "the free\n"
+      "parameters of the model can. The verdict is missing-effect, ambiguous, unexplained, instrument or "
+      "consistent.\n"
+      "Check rows only test the result. Exit status 0 for every verdict, 1 bad input.");
   command->callback([arguments] { run_diagnose(*arguments); });
 }
 

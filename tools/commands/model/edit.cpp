@@ -84,7 +84,8 @@ void register_exclude(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "An excluded row stays in its line as a comment with the reason, so every other row keeps its line "
-      "number\nand all commands accept the file. Exit status 0 done, 1 bad input (nothing written).");
+      "number\n"
+      "and all commands accept the file. Exit status 0 done, 1 bad input (nothing written).");
   command->callback([arguments] { run_exclude(*arguments); });
 }
 

@@ -121,9 +121,11 @@ void register_add(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "Keys: axis, axis2, input, input2, branch, transform (its n), dof, reference, unit, form, sum, from, "
-      "to, runs,\nstart.NAME, and for ID custom as the last one term=EXPRESSION with the unknown k. "
-      "Coefficients start at 0 with\nnominal 0, so the predictions of the model do not change until a fit. "
-      "Exit status 0 done, 1 bad input (nothing written).");
+      "to, runs,\n"
+      "start.NAME, and for ID custom as the last one term=EXPRESSION with the unknown k. Coefficients start "
+      "at 0 with\n"
+      "nominal 0, so the predictions of the model do not change until a fit. Exit status 0 done, 1 bad input "
+      "(nothing written).");
   command->callback([arguments] { run_add(*arguments); });
 }
 

@@ -240,9 +240,10 @@ void register_fit(CLI::App& vernier) {
       ->capture_default_str();
   command->footer(
       "Weighted least squares (1/u^2) on rows with role fit. The fit sets parameters that the readings do "
-      "not determine\nto the values nearest nominal, in units of each parameter's scale, and lists them "
-      "(tools/docs/fit.md). Exit status 0 done,\n1 bad input, 2 the fit did not converge or the readings are "
-      "not of this machine: nothing written.");
+      "not determine\n"
+      "to the values nearest nominal, in units of each parameter's scale, and lists them "
+      "(tools/docs/fit.md). Exit status 0 done,\n"
+      "1 bad input, 2 the fit did not converge or the readings are not of this machine: nothing written.");
   command->callback([arguments] { run_fit(*arguments); });
 }
 

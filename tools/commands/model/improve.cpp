@@ -288,9 +288,11 @@ void register_improve(CLI::App& vernier) {
                     "add every effect that diagnose names, without a question to the user");
   command->footer(
       "The command adds an effect only if the verdict is missing-effect. Each step writes its fitted machine "
-      "file. The last\nline of figures has the residuals of the measurement with the correction in the "
-      "simulated 1 kHz loop. Exit status 0 done\n(for every verdict), 1 bad input, 2 the readings are not "
-      "those of this machine or the fit did not\nconverge: nothing written.");
+      "file. The last\n"
+      "line of figures has the residuals of the measurement with the correction in the simulated 1 kHz loop. "
+      "Exit status 0 done\n"
+      "(for every verdict), 1 bad input, 2 the readings are not those of this machine or the fit did not\n"
+      "converge: nothing written.");
   command->callback([arguments] { Improver(*arguments).run(); });
 }
 

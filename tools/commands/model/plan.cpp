@@ -362,14 +362,19 @@ void register_plan(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "With MEAS and --accuracy the command fits the model, then chooses the next poses one by one: each "
-      "pose gives the largest\ndecrease of U95 (k = 2) over the volume, a region or the features of a part, "
-      "until U95 is at most --accuracy.\nWith --separate the command fits the model with each effect, then "
-      "chooses the rows whose readings differ most after the\nwrong effect and all free parameters were "
-      "fitted again (T-optimal, the worse of both directions). The number of points\nis sufficient for a "
-      "non-centrality of (z + sqrt(z^2 + 6))^2, where z is the normal quantile of the confidence.\nExit "
-      "status 0 done (also if no pose distinguishes the two effects: a sentence reports this), 1 bad input "
-      "or usage\n(nothing written), 2 the required accuracy cannot be reached (nothing written), 70 internal "
-      "error. See tools/docs/plan.md.");
+      "pose gives the largest\n"
+      "decrease of U95 (k = 2) over the volume, a region or the features of a part, until U95 is at most "
+      "--accuracy.\n"
+      "With --separate the command fits the model with each effect, then chooses the rows whose readings "
+      "differ most after the\n"
+      "wrong effect and all free parameters were fitted again (T-optimal, the worse of both directions). The "
+      "number of points\n"
+      "is sufficient for a non-centrality of (z + sqrt(z^2 + 6))^2, where z is the normal quantile of the "
+      "confidence.\n"
+      "Exit status 0 done (also if no pose distinguishes the two effects: a sentence reports this), 1 bad "
+      "input or usage\n"
+      "(nothing written), 2 the required accuracy cannot be reached (nothing written), 70 internal error. "
+      "See tools/docs/plan.md.");
   command->callback([arguments] { run_plan(*arguments); });
 }
 

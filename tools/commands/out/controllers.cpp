@@ -150,9 +150,10 @@ void add_controller(CLI::App* parent, const char* name, const char* what, Contro
         ->capture_default_str();
   command->footer(
       "The command writes the corrections that the tables of the controller can express, and prints the "
-      "remaining error,\nevaluated on the chain between the points in both directions, without offsets of "
-      "the axes. The files were not\ntried on a controller: do the test moves that the files describe before "
-      "you cut with the tables.");
+      "remaining error,\n"
+      "evaluated on the chain between the points in both directions, without offsets of the axes. The files "
+      "were not\n"
+      "tried on a controller: do the test moves that the files describe before you cut with the tables.");
   command->callback([arguments, controller, name] { export_controller(*arguments, controller, name); });
 }
 

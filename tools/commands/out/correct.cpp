@@ -180,9 +180,10 @@ void register_correct(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "The output file is marked as corrected or converted back, and the command refuses a second "
-      "conversion. Exit status\n0 done, 1 bad input (nothing written), 2 a position cannot be corrected with "
-      "these axes, a target cannot\nbe reached, or the blocks of a program deviate from the corrected path "
-      "by more than --deviation.");
+      "conversion. Exit status\n"
+      "0 done, 1 bad input (nothing written), 2 a position cannot be corrected with these axes, a target "
+      "cannot\n"
+      "be reached, or the blocks of a program deviate from the corrected path by more than --deviation.");
   command->callback([arguments] { run_correct(*arguments); });
 }
 

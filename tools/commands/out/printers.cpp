@@ -99,8 +99,10 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
         ->type_name("NAME");
   command->footer(
       "The command writes the corrections of squareness, heights and steps per mm that the firmware "
-      "supports, and prints the\nremaining error, evaluated on the chain between the points. The remaining "
-      "error does not include a constant offset of an\naxis and a rotation of the whole part about Z.");
+      "supports, and prints the\n"
+      "remaining error, evaluated on the chain between the points. The remaining error does not include a "
+      "constant offset of an\n"
+      "axis and a rotation of the whole part about Z.");
   command->callback([arguments, firmware, name] { export_printer(*arguments, firmware, name); });
 }
 

@@ -36,8 +36,9 @@ void add_robot_exports(CLI::App* parent) {
       add_export(parent, "urdf", "URDF: the calibrated joints of an arm (ROS)", "directory", arguments);
   command->footer(
       "The command writes robot.urdf with a joint for each axis, at the origin and axis about which the "
-      "fitted chain moves. It\nprints the errors that ideal joints cannot express: compliance, cyclic "
-      "errors, reversal and thermal errors.");
+      "fitted chain moves. It\n"
+      "prints the errors that ideal joints cannot express: compliance, cyclic errors, reversal and thermal "
+      "errors.");
   command->callback([arguments] { export_urdf(*arguments); });
 }
 

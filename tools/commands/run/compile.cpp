@@ -223,8 +223,9 @@ void register_compile(CLI::App& vernier) {
                       "override; the image records the name; may be repeated");
   command->footer(
       "The safety sheet tests the correction over <volume> (else over the axis ranges), with the <tools> of "
-      "the machine file.\nExit status 0 done, 1 bad input, 2 the error bound exceeds the budget or a rule of "
-      "the safety sheet fails: nothing written.");
+      "the machine file.\n"
+      "Exit status 0 done, 1 bad input, 2 the error bound exceeds the budget or a rule of the safety sheet "
+      "fails: nothing written.");
   command->callback([arguments] { run_compile(*arguments); });
 }
 

@@ -249,8 +249,9 @@ void register_probe_cal(CLI::App& vernier) {
       ->type_name(kWrites);
   command->footer(
       "Columns: feed[mm/min]; block: upper, lower; ring, sphere: x, y, z, and a[mm/s^2] if an approach was "
-      "not at\nconstant feed; u. Exit status: 0 done, 1 bad input, 2 -o was given, but the touches do not "
-      "determine the delay.");
+      "not at\n"
+      "constant feed; u. Exit status: 0 done, 1 bad input, 2 -o was given, but the touches do not determine "
+      "the delay.");
   command->callback([arguments] { run_cal(*arguments); });
 }
 

@@ -110,8 +110,8 @@ void register_replay(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
       "The command runs the firmware along the measured motion, and shifts every reading by the effect of "
-      "the correction on\nthe nominal machine. Exit status 0 done, 1 bad input, 2 the firmware never became "
-      "active.");
+      "the correction on\n"
+      "the nominal machine. Exit status 0 done, 1 bad input, 2 the firmware never became active.");
   command->callback([arguments] { run_replay(*arguments); });
 }
 

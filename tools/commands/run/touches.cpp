@@ -161,7 +161,8 @@ void register_touches(CLI::App& vernier) {
         "angle about Z from the X direction of the machine to the X direction of the workpiece, deg");
   command->footer(
       "Touches are numbered from the power-on of the board. The result lists touches that the board no "
-      "longer has.\nExit status: 0 done, 1 bad input or no board.");
+      "longer has.\n"
+      "Exit status: 0 done, 1 bad input or no board.");
   command->callback([arguments] { run(*arguments); });
 }
 
