@@ -251,8 +251,9 @@ model::Machine machine_of(const ConformityArguments& arguments) {
     repeat_findings(machine);
   }
   if (!machine.fitted)
-    throw text::InputError({machine.file, 0}, machine.name,
-                           "was never fitted (no <fitted>): give measurements, or what `vernier fit` wrote");
+    throw text::InputError(
+        {machine.file, 0}, machine.name,
+        "was never fitted (no <fitted>): give measurements, or a machine file that `vernier fit` wrote");
   if (!machine.fitted->converged) throw text::LimitNotMet("the fit of this machine file did not converge");
   return arguments.tool.empty() ? machine : kinematics::tooled(machine, arguments.tool);
 }
