@@ -489,7 +489,7 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
        "port is a setting of an address"},
       {board_of(replaced(plc, "address = \"127.0.0.1\"\nport = 1", "device = \"/dev/null\"\nbaud = 12345"),
                 output, sync),
-       "baud: 12345 is no rate of a serial line"},
+       "baud: 12345 is not a baud rate of a serial line"},
       {board_of(sim,
                 "kind = \"modbus-out\"\ndevice = \"/dev/null\"\nbaud = 1200\nregister = 100\necho = 50\n"
                 "resolution = 1e-5\nrange = 0.1\nperiod_ms = 20\ntimeout_ms = 400\n"),
