@@ -201,7 +201,8 @@ void add_notes(const model::Machine& machine, Derivation& d, const Orientation& 
   d.notes.push_back("the direction of the tool is corrected by " + list_of(machine, o.axes));
   if (o.axes.size() == 1)
     d.notes.push_back(
-        "only one rotary axis tilts the tool, so the image corrects the tilt about that axis only");
+        "only one rotary axis tilts the tool, so the image corrects only the tilt about the direction of "
+        "this axis");
   if (o.damped)
     d.notes.push_back(
         fmt::format("{} tilt the tool in the same direction in some poses: near these poses (about {:.1f} % "

@@ -49,7 +49,8 @@ Decision decision_of(const DecisionGroup& group) {
   const char* said =
       group.unseen == group.open ? "not measured; stays at nominal +- scale"
       : group.names.size() > 1
-          ? "the readings do not distinguish these parameters; they are as near to nominal as possible"
+          ? "the readings do not distinguish these parameters, so the fit sets them to the values nearest "
+            "nominal"
           : "the readings determine only a combination of this parameter with others; the undetermined part "
             "is as near to nominal as possible";
   return {group.names, group.reach_um,

@@ -204,7 +204,7 @@ void run_status(const ListArguments& arguments) {
     for (const auto& [name, value] : one.values) fmt::print(out, "  {:<40} {}\n", name, value);
   }
   if (!arguments.machine.empty() && all.empty())
-    throw text::InputError({}, arguments.machine, "the registry has not received data of this machine");
+    throw text::InputError({}, arguments.machine, "the registry has not received any data of this machine");
   Json unknown = Json::array();
   for (const registry::NotEntered& one : registry.not_entered()) {
     unknown.push_back({{"machine", one.machine},

@@ -70,7 +70,7 @@ std::vector<std::string> command_of(const CLI::App& vernier, const BatchArgument
                              "remove this option: the batch stores the result of each machine by itself");
   if (std::none_of(words.begin(), words.end(),
                    [](const std::string& word) { return word.find("{machine}") != std::string::npos; }))
-    throw text::InputError("no {machine} in the command: it would be the same for each machine");
+    throw text::InputError("no {machine} in the command, so the command would be the same for each machine");
   if (command.get_option_no_throw("--json") != nullptr) words.insert(words.end(), {"--json", "-"});
   return words;
 }

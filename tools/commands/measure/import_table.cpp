@@ -34,7 +34,8 @@ void print_columns(std::FILE* out, const importer::SheetReading& reading) {
                sheet.line[table.heading_row],
                table.units_row > 0 ? fmt::format(", units in line {}", sheet.line[table.units_row]) : "",
                sheet.line[table.first_data]);
-  if (runs > 0) fmt::print(out, "{} columns, one per run and direction, are read as one\n", runs);
+  if (runs > 0)
+    fmt::print(out, "{} columns, one per run and direction, are read as one column of readings\n", runs);
   for (std::size_t k = 0; k < columns.size(); ++k)
     fmt::print(out, "  {:>2}  {:<24} {:<26} {}\n", k + 1, table.headings[k].text,
                importer::becomes(columns[k]), columns[k].why);

@@ -192,8 +192,7 @@ void run_fit(const FitArguments& arguments) {
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   for (const fit::OtherSetUp& one : fit::files_set_up_elsewhere(result.machine, m))
-    fmt::print(stderr,
-               "note: {}; give at least three of its rows the role fit, then its set-up is fitted too\n",
+    fmt::print(stderr, "note: {}; to fit this set-up, give at least three rows of the file the role fit\n",
                one.sentence());
   print_result(human_stream(arguments.json), result, m);
   results::print_domains(human_stream(arguments.json), json["domains"]);

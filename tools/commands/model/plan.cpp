@@ -122,7 +122,8 @@ void run_touch_plan(const PlanArguments& arguments) {
   const plan::TouchPlan plan = plan::touch_plan(machine, arguments.artefact, options);
   if (arguments.accuracy_um > 0 && plan.after_um > arguments.accuracy_um)
     throw text::LimitNotMet(fmt::format(
-        "{:g} um cannot be reached: {} touches of {} lead to {:.3g} um, all to {:.3g} um",
+        "U95 of {:g} um cannot be reached: {} touches of {} give {:.3g} um, all considered touches give "
+        "{:.3g} um",
         arguments.accuracy_um, plan.states.count, arguments.artefact, plan.after_um, plan.least_um));
   Json json = {{"machine", machine.name},
                {"artefact", arguments.artefact},
@@ -171,7 +172,7 @@ void run_first_plan(const PlanArguments& arguments) {
   }
   if (!plan.reached)
     throw text::LimitNotMet(fmt::format(
-        "{:g} um cannot be reached: {} poses lead to {:.3g} um, all that were looked at to {:.3g} um",
+        "U95 of {:g} um cannot be reached: {} poses give {:.3g} um, all considered poses give {:.3g} um",
         arguments.accuracy_um, count, plan.after_um, plan.least_um));
   if (!arguments.output.empty())
     text::write_file(arguments.output, plan::first_plan_csv(machine, plan, options.reading_um));
@@ -179,12 +180,11 @@ void run_first_plan(const PlanArguments& arguments) {
     text::write_file(arguments.gcode,
                      plan::poses_gcode(machine, plan.states, "first measurement of " + machine.name));
   write_json(arguments.json, json);
-  fmt::print(human_stream(arguments.json),
-             "{} poses to fit, {} of them the first one again, and {} to check: tool point known to {:.3g} "
-             "um (k = 2, mean over "
-             "the volume) where now it is {:.3g} um; as many poses at random: {:.3g} um\n",
-             count, plan.references, plan.check.size() - count, plan.after_um, plan.before_um,
-             plan.random_um);
+  fmt::print(
+      human_stream(arguments.json),
+      "{} poses to fit ({} of them repeat the first pose) and {} to check: U95 of the tool point {:.3g} um "
+      "(k = 2, mean over the volume), now {:.3g} um; the same number of random poses gives {:.3g} um\n",
+      count, plan.references, plan.check.size() - count, plan.after_um, plan.before_um, plan.random_um);
 }
 
 void run_plan(const PlanArguments& arguments) {
@@ -233,8 +233,9 @@ void run_plan(const PlanArguments& arguments) {
                "if {} is the true effect: non-centrality now {:.3g}, with the plan {:.3g}, required {:.3g}\n",
                hypothesis->candidate.label, side->now, plan.rows.rows() > 0 ? side->planned : side->now,
                side->needed);
-  for (const std::string& other : plan.ruled_out) fmt::print(out, "rules out as well: {}\n", other);
-  for (const std::string& other : plan.not_ruled_out) fmt::print(out, "does not rule out: {}\n", other);
+  for (const std::string& other : plan.ruled_out) fmt::print(out, "the plan also distinguishes: {}\n", other);
+  for (const std::string& other : plan.not_ruled_out)
+    fmt::print(out, "the plan does not distinguish: {}\n", other);
   if (plan.rows.rows() > 0) fmt::print(out, "\n{}", plan::plan_table(plan));
 }
 

@@ -143,7 +143,7 @@ void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const m
                c.tilt->deviation_deg, c.tilt->left_deg(), c.tilt->fixed_point_deg, c.tilt->second_order_deg);
   if (c.bounds.empty()) fmt::print(out, "  no axis has a correction\n");
   for (const std::string& step : c.switching)
-    fmt::print(out, "note: the bound holds away from the step of {}\n", step);
+    fmt::print(out, "note: the bound does not hold at the discontinuity of {}\n", step);
   for (const std::string& note : c.notes) fmt::print(out, "note: {}\n", note);
 }
 
