@@ -217,7 +217,7 @@ void Devices::Parts::make_register_axes(const std::string& block, std::vector<Ro
          [this, device = axes_of_block.get(), k] {
            return hear_position(clock, *device, k)
                       ? ""
-                      : "the controller does not answer, or its sequence number stands still";
+                      : "the controller does not answer, or its sequence number does not change";
          });
   }
   register_axes[block] = std::move(axes_of_block);

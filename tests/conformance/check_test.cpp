@@ -362,7 +362,7 @@ TEST_F(Check, TablesOfAxesAndOutputsAreRead) {
 
 TEST_F(Check, WrongTablesOfAxesAndOutputsAreNamedWithTheLineOfTheSetting) {
   const std::tuple<const char*, const char*, const char*> kWrong[] = {
-      {"name = \"C\"", "name = \"X\"", "board.toml:10: axis: name: 'X' is there twice"},
+      {"name = \"C\"", "name = \"X\"", "board.toml:10: axis: name: 'X' occurs twice"},
       {"name = \"C\"", "", "board.toml:9: axis: name is missing"},
       {"kind = \"sim\"\nrotary", "rotary", "board.toml:9: axis C: kind is missing"},
       {"rotary = true", "rotary = \"yes\"", "board.toml:12: axis C: rotary must be true or false"},
@@ -873,7 +873,7 @@ TEST_F(Check, DrivesCountersAndRegistersThatAreMissingAreNamed) {
   said = run("--check");
   EXPECT_EQ(said.status, 2) << said.text;
   EXPECT_NE(said.text.find("missing  axis.X.position  modbus: the controller does not answer, or its "
-                           "sequence number stands still"),
+                           "sequence number does not change"),
             std::string::npos)
       << said.text;
 }

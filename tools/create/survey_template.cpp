@@ -170,7 +170,7 @@ std::string survey_template(const model::Machine& machine, const format::SurveyR
     if (form == format::ReadingForm::kInclination && !machine.workpiece.empty())
       throw text::InputError(
           std::string("--reading ") + reading.word +
-          ": an inclination is read on the tool of a machine whose workpiece stands still");
+          ": an inclination can be read only on the tool of a machine whose workpiece does not move");
   const std::string header = header_of(reading);
   std::string text = remarks(machine, reading);
   for (const AxisQuantity quantity : {AxisQuantity::kPosition, AxisQuantity::kSense})

@@ -314,7 +314,7 @@ std::string touch_plan_text(const TouchPlan& plan, const std::string& artefact) 
       "all touches of this artefact: {:.3g} um\n",
       plan.states.count, artefact, plan.after_um, plan.before_um, plan.least_um);
   if (plan.place_is_assumed)
-    text += fmt::format("The plan assumes that the artefact stands at ({:.1f}, {:.1f}, {:.1f}) mm.\n",
+    text += fmt::format("The plan assumes that the artefact is at ({:.1f}, {:.1f}, {:.1f}) mm.\n",
                         plan.place_mm[0], plan.place_mm[1], plan.place_mm[2]);
   if (!plan.has_length)
     text +=

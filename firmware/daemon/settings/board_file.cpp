@@ -500,7 +500,7 @@ void read_axes(BoardFile& board, Table& settings, const toml::table& file) {
       Table entry(table, board.path, "axis");
       const std::string name = entry.text("name", "");
       if (name.empty()) entry.fail("name is missing: the name of the axis in the machine file");
-      if (known(name)) entry.fail("name: '" + name + "' is there twice", table.get("name"));
+      if (known(name)) entry.fail("name: '" + name + "' occurs twice", table.get("name"));
       read_flat_axis(board, name, table, output_of(name));
     });
   } else if (const toml::table* const tables = settings.table("axis")) {

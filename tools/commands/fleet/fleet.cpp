@@ -96,7 +96,8 @@ void run_add(const AddArguments& arguments) {
   refuse_known_key(machine, registry.machines());
   registry.put(machine);
   if (arguments.trust)
-    fmt::print(stderr, "{}: board {} with {} is entered, on the word of the board that answers at {}\n",
+    fmt::print(stderr,
+               "{}: board {} with {} is entered; the name and key are those that the board at {} states\n",
                machine.name, machine.board,
                machine.board_key.empty() ? "no board key" : "key " + machine.board_key, machine.url);
 }
