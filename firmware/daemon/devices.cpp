@@ -217,7 +217,7 @@ void Devices::Parts::make_register_axes(const std::string& block, std::vector<Ro
          [this, device = axes_of_block.get(), k] {
            return hear_position(clock, *device, k)
                       ? ""
-                      : "the controller does not answer, or its sequence number stands still";
+                      : "the controller does not answer, or its sequence number does not change";
          });
   }
   register_axes[block] = std::move(axes_of_block);
@@ -410,7 +410,7 @@ void Devices::Parts::make_features() {
                                              requests, file.service.upload.tick);
   if (features->refused() != kNoInput)
     file.inputs[requests[features->refused()].input].source.fail(
-        "no window or filter can be made of it: see the limits of window and corner_Hz");
+        "the settings do not give a window or a filter: see the limits of window and corner_Hz");
   for (const FeatureRequest& request : requests) {
     const InputEntry& input = file.inputs[request.input];
     note("input." + input.name + "  " + input.source.text("feature") + " of " + input.source.text("of"), "");
@@ -650,7 +650,7 @@ std::vector<std::string> Devices::output_budget() const {
       add(", %.4g more in each", static_cast<double>(motion.acceleration) / unit);
     if (const double delay_ms = axis.output.number("delay_ms", 0); delay_ms > 0) {
       const double tick_ms = static_cast<double>(parts_->file.service.upload.tick.count) * 1e-3;
-      add("; %.4g ms late: at most %.4g more at the correction's fastest", delay_ms,
+      add("; delay %.4g ms: at most %.4g more at the largest speed of the correction", delay_ms,
           slew / tick_ms * delay_ms);
     }
     lines.emplace_back(text);
@@ -671,7 +671,8 @@ void Devices::say_held() const {
     if (axes) std::fprintf(stderr, "vernierd: %s\n", axes->account().c_str());
   for (const auto& [place, line] : parts_->lines)
     if (line && line->wrong_answers() > 0)
-      std::fprintf(stderr, "vernierd: Modbus at %s: %llu answers were damaged or not to the request\n",
+      std::fprintf(stderr,
+                   "vernierd: Modbus at %s: %llu answers were damaged or did not belong to the request\n",
                    place.c_str(), static_cast<unsigned long long>(line->wrong_answers()));
   for (const auto& [device, buffer] : parts_->buffers) {
     const IioBufferCounts& counts = buffer->counts();

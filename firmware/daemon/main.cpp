@@ -142,8 +142,10 @@ int check_devices(Devices& devices, const BoardFile& file) {
 }
 
 int say_left_over() {
-  std::fputs("vernierd: not at zero: the end came before the outputs had removed the values of before\n",
-             stderr);
+  std::fputs(
+      "vernierd: not at zero: the program ended before the outputs had removed the values of an earlier "
+      "run\n",
+      stderr);
   return kAnswerIsNo;
 }
 
@@ -217,7 +219,7 @@ void reserve_settings(FileSlotStore& store) {
   for (std::uint32_t place = kOperatorPlace; place < kOperatorPlace + kOperatorRecordCount; ++place)
     if (store.reserve_record(place, sizeof(OperatorRecord)) != HalFault::kNone)
       std::fputs(
-          "vernierd: the store has no room for the settings of an operator: a setting acts and is not "
+          "vernierd: the store has no space for the settings of an operator: a setting acts, but is not "
           "stored\n",
           stderr);
 }

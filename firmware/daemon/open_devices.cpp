@@ -55,8 +55,8 @@ int baud(const SignalSource& source, std::int64_t otherwise) {
                                      3'000'000, 3'500'000, 4'000'000};
   const std::int64_t rate = source.whole("baud", otherwise, 1, 10'000'000);
   if (std::find(std::begin(kRates), std::end(kRates), rate) == std::end(kRates))
-    source.fail_at("baud",
-                   "baud: " + std::to_string(rate) + " is no rate of a serial line, for example 19200");
+    source.fail_at(
+        "baud", "baud: " + std::to_string(rate) + " is not a baud rate of a serial line, for example 19200");
   return static_cast<int>(rate);
 }
 
@@ -65,7 +65,8 @@ void refuse_settings_of_other_line(const SignalSource& source) {
   const bool serial = is_serial(source);
   for (const char* const name : {"baud", "parity"})
     if (!serial && (source.numbers.contains(name) || source.texts.contains(name)))
-      source.fail_at(name, std::string(name) + " is a setting of a serial line, and this one has an address");
+      source.fail_at(name, std::string(name) +
+                               " is a setting of a serial line, but this connection has an address (TCP)");
   if (serial && source.numbers.contains("port"))
     source.fail_at("port", "port is a setting of an address, and this line is a serial device");
 }
@@ -79,10 +80,10 @@ void require_time_on_line(const SignalSource& source, int bytes, TimeUs wait, co
   const double needed_ms = 1e3 * kBitsOfByte * bytes / baud(source, kOutputBaud);
   if (needed_ms * 1000 < static_cast<double>(wait.count)) return;
   char text[200];
-  std::snprintf(text, sizeof text,
-                "timeout_ms: a request and its answer are on this line for %.0f ms, and must be there within "
-                "%s timeout_ms",
-                std::ceil(needed_ms), share);
+  std::snprintf(
+      text, sizeof text,
+      "timeout_ms: a request and its answer need %.0f ms on this line, and must end within %s timeout_ms",
+      std::ceil(needed_ms), share);
   source.fail_at("timeout_ms", text);
 }
 
@@ -181,7 +182,7 @@ OutputOpener modbus_out_of(const std::vector<OutputAxis>& axes) {
   for (const OutputAxis& axis : axes) {
     const auto place = static_cast<int>(axis.source->whole("place", 0, 0, ModbusOutputSettings::kPlaces - 1));
     for (const auto& other : settings.axes)
-      if (other.place == place) axis.source->fail("another axis uses this place");
+      if (other.place == place) axis.source->fail("another axis uses the same place of the block");
     settings.axes.push_back({number_scale(*axis.source, axis.rotary), place, axis.most_per_tick});
     places = std::max(places, place + 1);
   }

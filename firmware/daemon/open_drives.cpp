@@ -249,7 +249,8 @@ OutputOpener canopen_output_of(const std::vector<OutputAxis>& axes) {
   SignalSource numbers = *axis.source;
   const double scale_um = numbers.number("scale");
   if (!(scale_um > 0 && scale_um <= 1e3))
-    numbers.fail_at("scale", "scale must be above 0 and at most 1000 um of a count; see polarity");
+    numbers.fail_at(
+        "scale", "scale must be above 0 and at most 1000 um per count; for the other direction use polarity");
   numbers.numbers["resolution"] = scale_um * kMmPerUm;
   if (numbers.number("range") < scale_um * kMmPerUm)
     numbers.fail_at("range", "range must be at least one count (scale)");

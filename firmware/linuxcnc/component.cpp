@@ -156,9 +156,10 @@ void Component::tell() noexcept {
   const std::uint32_t limits = limits_.load(std::memory_order_relaxed);
   for (std::uint32_t i = 0; i < wiring_.axes.size(); ++i) {
     if ((limits & ~told_limits_ & 1u << i) == 0) continue;
-    std::snprintf(text, sizeof(text),
-                  "vernier: joint %u (%s) is held at its limit: the correction goes past it\n",
-                  static_cast<unsigned>(i), wiring_.axes[i].name.c_str());
+    std::snprintf(
+        text, sizeof(text),
+        "vernier: joint %u (%s) is held at its limit: the correction would move the joint beyond the limit\n",
+        static_cast<unsigned>(i), wiring_.axes[i].name.c_str());
     say_(kError, text);
   }
   told_limits_ = limits;

@@ -102,7 +102,7 @@ bool introduce(Hatch& hatch, const Introduction& introduction) {
   const char* const text = reinterpret_cast<const char*>(call.bytes);
   switch (static_cast<Attached>(call.result)) {
     case Attached::kStarted:
-      std::fputs("vernier-hal: the component has its image\n", stderr);
+      std::fputs("vernier-hal: the component has received its image\n", stderr);
       return true;
     case Attached::kEmpty:
       std::fputs(

@@ -55,8 +55,8 @@ std::unique_ptr<CounterAxis> CounterAxis::open(const std::string& count, int bit
   if (half_ns <= needed_ns) {
     char text[200];
     std::snprintf(text, sizeof text,
-                  "the counter is too narrow: at max_speed the axis passes half its range in %.3g ms, and a "
-                  "reading may be %.3g ms old (missing_ticks)",
+                  "the counter has too few bits: at max_speed the axis passes half the range of the counter "
+                  "in %.3g ms, and a reading may be %.3g ms old (missing_ticks)",
                   half_ns * 1e-6, needed_ns * 1e-6);
     return error = text, nullptr;
   }

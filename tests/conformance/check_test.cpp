@@ -102,8 +102,8 @@ TEST_F(Check, SaysWhatThePublishedChainAddsToTheError) {
   EXPECT_EQ(said.status, 0) << said.text;
   // 250 um over 255 codes; 0.2 mm/s for 83.3 ms.
   EXPECT_NE(said.text.find("budget   axis.X.output: -124.51 to 124.51 um, step 0.9804, error at most 0.4902 "
-                           "(rms 0.283); at most 0.2 um a tick; 83.3 ms "
-                           "late: at most 16.66 more at the correction's fastest\n"),
+                           "(rms 0.283); at most 0.2 um a tick; delay 83.3 "
+                           "ms: at most 16.66 more at the largest speed of the correction\n"),
             std::string::npos)
       << said.text;
 }
@@ -362,7 +362,7 @@ TEST_F(Check, TablesOfAxesAndOutputsAreRead) {
 
 TEST_F(Check, WrongTablesOfAxesAndOutputsAreNamedWithTheLineOfTheSetting) {
   const std::tuple<const char*, const char*, const char*> kWrong[] = {
-      {"name = \"C\"", "name = \"X\"", "board.toml:10: axis: name: 'X' is there twice"},
+      {"name = \"C\"", "name = \"X\"", "board.toml:10: axis: name: 'X' occurs twice"},
       {"name = \"C\"", "", "board.toml:9: axis: name is missing"},
       {"kind = \"sim\"\nrotary", "rotary", "board.toml:9: axis C: kind is missing"},
       {"rotary = true", "rotary = \"yes\"", "board.toml:12: axis C: rotary must be true or false"},
@@ -489,11 +489,11 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
        "port is a setting of an address"},
       {board_of(replaced(plc, "address = \"127.0.0.1\"\nport = 1", "device = \"/dev/null\"\nbaud = 12345"),
                 output, sync),
-       "baud: 12345 is no rate of a serial line"},
+       "baud: 12345 is not a baud rate of a serial line"},
       {board_of(sim,
                 "kind = \"modbus-out\"\ndevice = \"/dev/null\"\nbaud = 1200\nregister = 100\necho = 50\n"
                 "resolution = 1e-5\nrange = 0.1\nperiod_ms = 20\ntimeout_ms = 400\n"),
-       "timeout_ms: a request and its answer are on this line for 230 ms, and must be there within a quarter "
+       "timeout_ms: a request and its answer need 230 ms on this line, and must end within a quarter "
        "of timeout_ms"},
       {with_link("0x700", "0x501"), "link: transmit: a frame of the drive of "},
       {board_of(sim, output + "span = 1", sync),
@@ -873,7 +873,7 @@ TEST_F(Check, DrivesCountersAndRegistersThatAreMissingAreNamed) {
   said = run("--check");
   EXPECT_EQ(said.status, 2) << said.text;
   EXPECT_NE(said.text.find("missing  axis.X.position  modbus: the controller does not answer, or its "
-                           "sequence number stands still"),
+                           "sequence number does not change"),
             std::string::npos)
       << said.text;
 }

@@ -154,7 +154,8 @@ TEST_F(Counter, LongTimeWithoutAReadingIsALostReference) {
 
 TEST_F(Counter, CounterThatTheAxisPassesTooFastIsRefused) {
   EXPECT_EQ(open(8), nullptr);
-  EXPECT_NE(error_.find("half its range in 1.28 ms, and a reading may be 4 ms old"), std::string::npos)
+  EXPECT_NE(error_.find("half the range of the counter in 1.28 ms, and a reading may be 4 ms old"),
+            std::string::npos)
       << error_;
   EXPECT_NE(open(10), nullptr) << error_;
 }

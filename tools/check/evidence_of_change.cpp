@@ -264,8 +264,10 @@ class Judge {
     word.at_most("evidence", answer_.evidence, answer_.alarm,
                  "Evidence (e-value) for a change of the machine or the instrument.");
     if (!answer_.not_seen.empty())
-      word.not_covered(fmt::format("These readings do not depend on, or the fit did not measure: {}.",
-                                   fmt::join(answer_.not_seen, ", ")));
+      word.not_covered(
+          fmt::format("No change can be detected of these quantities, because the readings do not depend on "
+                      "them or the fit did not measure them: {}.",
+                      fmt::join(answer_.not_seen, ", ")));
     for (const Change& one : answer_.resolved)
       word.not_covered(fmt::format("A change of {} by less than about {:.2g} {} (five standard deviations).",
                                    one.quantity.name, kShown * one.std, one.quantity.unit));
@@ -322,12 +324,13 @@ class Judge {
                       ranked_.front().quantity.unit, ranked_.front().std);
       return;
     }
-    answer_.explanation =
-        fmt::format("The readings scatter by {:.2g} times their stated uncertainty, {} (chance {:.1g}).",
-                    std::sqrt(beside_all ? last_.rest / last_.freedom : scatter_.back()),
-                    beside_all ? "whatever may have changed in the machine"
-                               : "and no change of a single parameter explains this scatter",
-                    answer_.noise_p);
+    answer_.explanation = fmt::format(
+        "The readings scatter by {:.2g} times their stated uncertainty, {} (probability that noise alone "
+        "causes this scatter: {:.1g}).",
+        std::sqrt(beside_all ? last_.rest / last_.freedom : scatter_.back()),
+        beside_all ? "whatever may have changed in the machine"
+                   : "and no change of a single parameter explains this scatter",
+        answer_.noise_p);
   }
 
   void report_change() {
@@ -344,9 +347,10 @@ class Judge {
     constexpr double kLoud = 1.5;  // times the stated uncertainty
     if (const double loud = std::sqrt(scatter_since(best.since)); loud > kLoud)
       answer_.explanation += fmt::format(
-          " Beside this change the readings scatter by {:.2g} times their stated uncertainty.", loud);
+          " In addition to this change, the readings scatter by {:.2g} times their stated uncertainty.",
+          loud);
     if (!answer_.not_told_apart.empty())
-      answer_.explanation += fmt::format(" These readings do not distinguish it from: {}.",
+      answer_.explanation += fmt::format(" The readings do not distinguish this change from a change of: {}.",
                                          fmt::join(answer_.not_told_apart, ", "));
   }
 

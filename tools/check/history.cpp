@@ -29,7 +29,7 @@ Json numbers(const Eigen::MatrixXd& matrix) {
 
 Eigen::MatrixXd matrix_of(const Json& list, Index rows, Index columns) {
   if (list.size() != static_cast<std::size_t>(rows * columns))
-    throw std::invalid_argument("a matrix of another size");
+    throw std::invalid_argument("the history file contains a matrix of the wrong size");
   Eigen::MatrixXd matrix(rows, columns);
   std::size_t at = 0;
   for (Index j = 0; j < columns; ++j)
@@ -102,7 +102,8 @@ CheckHistory parse_history(const std::string& text, const std::string& file) {
     }
     return history;
   } catch (const std::exception& error) {
-    throw text::InputError({file, 0}, "", fmt::format("not a history of checks: {}", error.what()));
+    throw text::InputError({file, 0}, "",
+                           fmt::format("this file is not a history of checks: {}", error.what()));
   }
 }
 

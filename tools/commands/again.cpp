@@ -78,11 +78,11 @@ void register_again(CLI::App& vernier) {
       ->required();
   command->add_option("--json", arguments->json, "result for programs (- is standard output)");
   command->footer(
-      "The file says which command made it, in which folder, and the SHA-256 of each\n"
-      "input. The command runs in a temporary folder with copies of the inputs. FILE\n"
-      "stays as it is.\n"
-      "Exit status: 0 all bytes are equal, 1 bad input (no such record, an input is\n"
-      "missing), 2 the bytes differ: an input or the program has changed.");
+      "FILE contains a record: the command that made the file, its folder, and the SHA-256 of each\n"
+      "input file. `vernier again` runs this command in a temporary folder with copies of the inputs,\n"
+      "and does not change FILE.\n"
+      "Exit status: 0 all bytes are equal, 1 bad input (FILE has no record, or an input is missing),\n"
+      "2 the bytes differ, because an input or the program has changed.");
   command->callback([arguments] { run_again(*arguments); });
 }
 

@@ -37,7 +37,7 @@ void until_told(const std::function<void(const std::atomic<bool>& stop)>& run,
     on_signal();
     std::unique_lock lock(guard);
     if (changed.wait_for(lock, kGrace, [&] { return over; })) return;
-    fmt::print(stderr, "ended {} s after the signal, without waiting for what was running\n", kGrace.count());
+    fmt::print(stderr, "ended {} s after the signal, without waiting for running work\n", kGrace.count());
     std::fflush(nullptr);
     std::_Exit(late);
   });

@@ -104,7 +104,7 @@ constexpr const char* kFirstHour =
     "  vernier diagnose machine.xml survey.csv -o report.html\n"
     "                                                  find which physical effect is missing\n"
     "  vernier evaluate iso230-2 survey.csv --axis X   evaluate a positioning test\n\n"
-    "The same in a browser: vernier workbench\n"
+    "All steps in a browser: vernier workbench\n"
     "All commands:          vernier --help\n"
     "One command:           vernier fit --help\n";
 
@@ -119,7 +119,8 @@ int run(const std::vector<std::string>& arguments) {
       "vernier"};
   app.set_version_flag("-V,--version", kProgram);
   app.footer(
-      "Exit status: 0 done, 1 bad input or usage (nothing written), 2 the answer is no, 70 internal error.\n"
+      "Exit status: 0 done, 1 bad input or usage (nothing written), 2 negative result (for example, a "
+      "tolerance is not met), 70 internal error.\n"
       "`vernier COMMAND --help` documents each command.");
   add_commands(app);
   add_help_command(app);

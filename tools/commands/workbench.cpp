@@ -53,7 +53,10 @@ void run_workbench(const WorkbenchArguments& arguments, const CLI::App& vernier)
     write_json(arguments.json,
                {{"url", server.url()}, {"port", server.port()}, {"folder", arguments.directory}});
     std::FILE* const out = human_stream(arguments.json);
-    fmt::print(out, "{}\nfor this computer and this session only; end with Ctrl-C\n", server.url());
+    fmt::print(out,
+               "{}\n"
+               "This address works on this computer and for this session only. Ctrl-C ends the workbench.\n",
+               server.url());
     std::fflush(nullptr);
     if (!arguments.no_browser) open_browser(server.url());
     server.serve();
@@ -96,7 +99,8 @@ void run_diff(const DiffArguments& arguments) {
   for (const auto& name : json["only_a"]) fmt::print(out, "  + {}\n", name.get<std::string>());
   for (const auto& name : json["only_b"]) fmt::print(out, "  - {}\n", name.get<std::string>());
   if (json.contains("why_not"))
-    fmt::print(out, "  corrections are not compared: {}\n", json["why_not"].get<std::string>());
+    fmt::print(out, "  the corrections of the two images are not compared: {}\n",
+               json["why_not"].get<std::string>());
   else
     for (const auto& one : json["corrections"])
       fmt::print(out, "  {}: corrections differ by {:.4g} {} rms, {:.4g} at most\n",
@@ -118,8 +122,9 @@ void register_workbench(CLI::App& vernier) {
   command->add_flag("--reader", arguments->reader, "")->group("");  // started by the server to read files
   command->add_option("--json", arguments->json, "{url, port} once it serves; - for standard output");
   command->footer(
-      "Serves until interrupted. The address holds the token of the session; the page reads and writes\n"
-      "nothing outside of DIR, and shows the command behind everything that it does "
+      "The server runs until it is interrupted (Ctrl-C). The printed address contains the token of the "
+      "session.\n"
+      "The page reads and writes only files in DIR, and shows the command of every button "
       "(tools/docs/workbench.md).");
   command->callback([arguments, &vernier] { run_workbench(*arguments, vernier); });
 }

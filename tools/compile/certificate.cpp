@@ -29,12 +29,13 @@ constexpr const char* kPreface =
     "# Machine: {}, image {:016x}. Proof: gappa bound.g (exit status 0).\n"
     "# f_NAME: register NAME of the fixed-point program; e_NAME: the same value of the error equation, "
     "without\n"
-    "# rounding. The statements to prove, |f - e| at most:\n{}"
-    "# Assumed: the declared ranges; the error of each channel's format; d_NAME, the error of a table, "
-    "function,\n"
-    "# choice or lag, and s_NAME, its slope at most. A register that later evaluations start from counts as "
-    "exact\n"
-    "# for them. Not in this file: neglected terms, second order, and the conversion of an output to counts\n"
+    "# rounding. The statements to prove, |f - e| at most:\n"
+    "{}# Assumed without proof: the declared ranges; the error of the format of each channel; d_NAME, the "
+    "error of a table,\n"
+    "# function, choice or lag, and s_NAME, its largest slope. A register from which a later evaluation "
+    "starts counts as exact\n"
+    "# for this evaluation. Not in this file: neglected terms, second order, and the conversion of an output "
+    "to counts\n"
     "# (bound.json).\n\n";
 
 std::string within(double magnitude) { return fmt::format("[-{0},{0}]", exact(magnitude)); }

@@ -45,9 +45,9 @@ CompiledMachine compile_once(const model::Machine& machine, std::uint32_t tick_u
   result.switching = d.switching;
   result.notes = d.notes;
   if (result.shares.left_out > 0)
-    result.notes.push_back(
-        fmt::format("{} of {} shares of effects have no room in the image and are left out",
-                    result.shares.left_out, result.shares.left_out + result.shares.shares.size()));
+    result.notes.push_back(fmt::format("{} of {} shares of effects do not fit into the image and are omitted",
+                                       result.shares.left_out,
+                                       result.shares.left_out + result.shares.shares.size()));
   result.least_squares = d.least_squares;
   result.orientation = d.orientation;
   result.bounds = bounds_of(machine, d, result.program);
@@ -78,8 +78,8 @@ CompiledMachine compile_again(const model::Machine& machine, std::uint32_t tick_
     return again;
   } catch (const text::InputError& reason) {
     before.notes.push_back(
-        fmt::format("the second order of the correction stays, evaluation {} of the deviation "
-                    "has no room: {}",
+        fmt::format("the second order of the correction is not corrected, because evaluation {} of the "
+                    "deviation does not fit into the image: {}",
                     evaluations, reason.what()));
     return before;
   }

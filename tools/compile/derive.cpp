@@ -174,11 +174,12 @@ Solution solved(const model::Machine& machine, Attempt& attempt) {
   const Span span = span_of(d, d.columns);
   if (d.least_squares && d.least_squares->nearest)
     d.notes.push_back("the axes " + names_of(machine, d) +
-                      " move the tool point in other directions at each pose: what lies across those of a "
-                      "pose is not corrected there");
+                      " move the tool point in directions that depend on the pose: a deviation perpendicular "
+                      "to these directions is not corrected");
   else if (span.rank < 3 && !holds(d.graph, span, d.deviation))
     d.notes.push_back("the axes " + names_of(machine, d) +
-                      " do not reach every direction: what lies across them is not corrected");
+                      " do not move the tool point in every direction: a deviation perpendicular to their "
+                      "directions is not corrected");
   return result;
 }
 

@@ -201,19 +201,19 @@ void add_notes(const model::Machine& machine, Derivation& d, const Orientation& 
   d.notes.push_back("the direction of the tool is corrected by " + list_of(machine, o.axes));
   if (o.axes.size() == 1)
     d.notes.push_back(
-        "only one rotary axis tilts the tool, so the image corrects the tilt about that axis only");
+        "only one rotary axis tilts the tool, so the image corrects only the tilt about the direction of "
+        "this axis");
   if (o.damped)
-    d.notes.push_back(fmt::format(
-        "{} tilt the tool the same way in some poses: towards them (about {:.1f} % of the declared "
-        "ranges) the correction of direction is damped",
-        list_of(machine, o.axes), 100 * *o.damped));
+    d.notes.push_back(
+        fmt::format("{} tilt the tool in the same direction in some poses: near these poses (about {:.1f} % "
+                    "of the declared ranges) the correction of the tool direction is damped",
+                    list_of(machine, o.axes), 100 * *o.damped));
   for (std::size_t k = 0; k < o.axes.size(); ++k) {
     const model::Axis& axis = machine.axes[o.axes[k]];
     if (!axis.max_correction)
-      d.notes.push_back(
-          fmt::format("axis {} has no maxcorrection: its correction of direction may reach {:.3g} "
-                      "deg",
-                      axis.name, o.limit_deg[k]));
+      d.notes.push_back(fmt::format(
+          "axis {} has no maxcorrection: its correction of the tool direction may reach {:.3g} deg",
+          axis.name, o.limit_deg[k]));
     if (!axis.max_slew)
       d.notes.push_back("axis " + axis.name + " has no maxslew: the speed of its correction is not limited");
   }

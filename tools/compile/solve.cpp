@@ -210,8 +210,8 @@ NodeId held_determinant(Derivation& d, Algebra& algebra, NodeId determinant, dou
   } else {
     d.fading = static_cast<double>((seen < floor).count()) / static_cast<double>(seen.size());
     d.notes.push_back(
-        fmt::format("the corrected axes do not reach every direction in every pose: towards such "
-                    "poses (about {:.1f} % of the declared ranges) the correction fades",
+        fmt::format("the corrected axes cannot move the tool point in every direction in some poses: near "
+                    "these poses (about {:.1f} % of the declared ranges) the correction is reduced",
                     100 * *d.fading));
   }
   if (g[determinant].range.low >= floor) return determinant;

@@ -142,8 +142,8 @@ std::string branch(const MachinePlan& plan, bool work) {
 
 std::string tool_statics(const MachinePlan& plan) {
   std::string text =
-      "      <!-- Where the tool point is, in the frame of the last axis that carries it. Hide: a fit leaves "
-      "it alone. -->\n";
+      "      <!-- Position of the tool point in the frame of the last axis that carries the tool. Hide: a "
+      "fit does not change it. -->\n";
   for (std::size_t k = 0; k < 3; ++k)
     text += length_static(fmt::format("TP{}", kLengths[k]), plan.tool[k],
                           plan.arm.empty() ? "tool point" : "tool point on the flange");
@@ -159,9 +159,9 @@ std::string slide_statics(const MachinePlan& plan) {
                            fmt::format("squareness of {} to {}", plan.axes[i].name, angle.towards));
   }
   if (text.empty()) return "";
-  return "      <!-- Squareness: how the travel of one slide leans against another's. X is the datum: its "
-         "travel is the\n"
-         "           direction that the others are measured against. -->\n" +
+  return "      <!-- Squareness: angle error between the travels of two axes. X is the datum: its travel is "
+         "the reference\n"
+         "           direction of the other axes. -->\n" +
          text;
 }
 
@@ -171,29 +171,29 @@ std::string turning_statics(const MachinePlan& plan) {
     if (!axis.rotary()) continue;
     for (std::size_t k = 0; k < 3; ++k)
       if (k != axis.along())
-        text += error_static(plan, fmt::format("E{}0{}", kLengths[k], axis.name), "mm",
-                             fmt::format("line of {} off its place along {}", axis.name, kLengths[k]));
+        text +=
+            error_static(plan, fmt::format("E{}0{}", kLengths[k], axis.name), "mm",
+                         fmt::format("position error of the axis of {} along {}", axis.name, kLengths[k]));
     for (std::size_t k = 0; k < 3; ++k)
       if (k != axis.along())
         text += error_static(plan, fmt::format("E{}0{}", kTurns[k], axis.name), "deg",
-                             fmt::format("line of {} leaning about {}", axis.name, kLengths[k]));
+                             fmt::format("tilt error of the axis of {} about {}", axis.name, kLengths[k]));
     for (std::size_t k = 0; k < 3; ++k)
       if (axis.centre[k] != 0)
         text += length_static(fmt::format("P{}{}", kLengths[k], axis.name), axis.centre[k],
-                              fmt::format("nominal place of {} along {}", axis.name, kLengths[k]));
+                              fmt::format("nominal position of {} along {}", axis.name, kLengths[k]));
   }
   if (text.empty()) return "";
-  return "      <!-- Location errors of the turning axes (ISO 230-7): where the line is and how it leans. "
-         "-->\n" +
+  return "      <!-- Location errors of the rotary axes (ISO 230-7): position and tilt of the axis of "
+         "rotation. -->\n" +
          text;
 }
 
 std::string arm_statics(const MachinePlan& plan) {
   std::string text =
-      "      <!-- Errors of the arm: zero th of each joint, twist al between two, lengths d and a. Where two "
-      "joints are\n"
-      "           parallel a turn be about y takes the place of one length (Hayati): parallel lines have no "
-      "common point. -->\n";
+      "      <!-- Errors of the arm: zero error th of each joint, twist error al between two joints, lengths "
+      "d and a. If the axes\n"
+      "           of two joints are parallel, a rotation be about y replaces one length (Hayati). -->\n";
   for (std::size_t i = 0; i < plan.arm.size(); ++i) {
     const DhRow& row = plan.arm[i];
     const std::string j = std::to_string(i + 1);
@@ -236,9 +236,10 @@ std::string arm_rows(const MachinePlan& plan) {
 
 std::string axes_text(const MachinePlan& plan) {
   std::string text =
-      "    <!-- Travel in mm or deg. maxcorrection and maxslew bound what a board may add to an axis: mm or "
-      "deg, and that per\n"
-      "         second. Set them to what your machine can take. -->\n    <machineaxes>\n";
+      "    <!-- Travel of each axis in mm or deg. maxcorrection limits the correction that a board may add "
+      "to an axis (mm or deg),\n"
+      "         maxslew its change in one second. Set both limits to values that your machine allows. -->\n"
+      "    <machineaxes>\n";
   for (const PlannedAxis& axis : plan.axes)
     text += fmt::format("      <{} rotary=\"{}\"{} min=\"{}\" max=\"{}\" {}/>\n", axis.name, axis.rotary(),
                         axis.rollover ? " rollover=\"true\"" : "", number(axis.min), number(axis.max),
@@ -255,10 +256,10 @@ std::string tables_text(const MachinePlan& plan) {
       "         rX rY rZ in deg (roll, pitch, yaw). fit names the columns that a fit may change; " +
       std::string(
           plan.positioning_only
-              ? "here the positioning along\n         each axis alone, as --errors positioning asked for: "
-                "add what else you measured"
-              : "take out what your\n         measurements cannot see, or add stations where you measured "
-                "more densely") +
+              ? "with the option errors = positioning only the\n"
+                "         positioning errors along each axis: add the other columns that you measured"
+              : "remove columns that your\n"
+                "         measurements do not determine, and add stations where you measured more points") +
       ". -->\n    <comptables>\n";
   for (const PlannedAxis& axis : plan.axes) {
     constexpr const char* kColumns[] = {"X", "Y", "Z", "rX", "rY", "rZ"};
@@ -281,12 +282,13 @@ std::string signs_remark(const MachinePlan& plan) {
            "     Each DH row is Tz(d) Rz(theta) Tx(a) Rx(alpha); positions of turning joints are in deg.\n";
   if (!plan.arm.empty())
     return "     Each DH row is Tz(d) Rz(theta) Tx(a) Rx(alpha); positions of turning joints are in deg.\n";
-  std::string text = "     Positions are the tool's, seen from the workpiece, as a control shows them.";
+  std::string text =
+      "     Positions are positions of the tool relative to the workpiece, as a control shows them.";
   if (!plan.work_side.empty())
     text +=
-        " An axis that carries the workpiece therefore has\n     a minus sign: it moves the other way (ISO "
-        "841). Does "
-        "a table of yours count the other way, take its minus signs away.";
+        " Therefore an axis that carries the workpiece\n"
+        "     has a minus sign (ISO 841). If your control counts such an axis in the other direction, remove "
+        "its minus signs.";
   return text + "\n";
 }
 
@@ -297,9 +299,10 @@ std::string head(const MachinePlan& plan) {
   if (!plan.work_side.empty()) text += "       " + side_text(plan, plan.work_side, true) + "\n";
   text += "\n" + signs_remark(plan);
   return text +
-         "     All errors are 0 until `vernier fit` finds them from measurements. value is what the machine "
-         "is thought to be,\n"
-         "     nominal what its control believes. tools/docs/machine_file.md defines every element. -->\n";
+         "     All errors are 0 until `vernier fit` estimates them from measurements. value is the estimate "
+         "for the machine,\n"
+         "     nominal the value that its control uses. tools/docs/machine_file.md defines every element. "
+         "-->\n";
 }
 
 std::string base_attributes(const MachinePlan& plan) {
@@ -326,9 +329,9 @@ std::string machine_file(const MachinePlan& plan) {
   text += robot ? arm_statics(plan) : slide_statics(plan) + turning_statics(plan);
   text += tool_statics(plan);
   text +=
-      "      <!-- How the measuring instrument stood: chain base to measuring frame, found by the fit. One "
-      "for all rows, or\n"
-      "           a further one for the rows of a run, written with run=\"its label\". -->\n"
+      "      <!-- Set-up of the measuring instrument: base of the chain to measuring frame, estimated by the "
+      "fit. This element is for\n"
+      "           all rows; a further element with run=\"LABEL\" is for the rows of this run. -->\n"
       "      <BaseShift" +
       base_attributes(plan) + "/>\n    </static>\n";
   text += axes_text(plan);

@@ -73,10 +73,9 @@ const MachineType& type_of(const std::string& name) {
     known += (known.empty() ? "" : " ") + std::string(type.name);
   }
   if (name == "delta" || name == "hexapod" || name == "parallel")
-    throw text::InputError(
-        "\"" + name +
-        "\": the chain of a machine file is one arm from bed to tool; a parallel machine closes "
-        "several, and such a chain cannot be written");
+    throw text::InputError("\"" + name +
+                           "\": a machine file describes one open chain from the bed to the tool; a parallel "
+                           "machine has closed loops, which a machine file cannot describe");
   throw text::InputError("\"" + name + "\": unknown type of machine; known types are " + known);
 }
 

@@ -55,11 +55,12 @@ std::string remarks_of(const format::SurveyReading& reading) {
     // A remark on several columns of one form is written once.
     const bool some_will_do = group->use == format::ColumnUse::kReading && group->count > 1 &&
                               !format::entry_of(group->form).together;
-    text += remark_line(format::words_of(group->list()),
-                        std::string(group->meaning) +
-                            (some_will_do ? ". Take away the columns that the instrument does not read, or "
-                                            "leave their cells empty."
-                                          : "."));
+    text += remark_line(
+        format::words_of(group->list()),
+        std::string(group->meaning) +
+            (some_will_do
+                 ? ". Remove the columns that the instrument does not read, or leave their cells empty."
+                 : "."));
   }
   return text;
 }
@@ -128,30 +129,30 @@ std::string remarks(const model::Machine& machine, const format::SurveyReading& 
   for (const model::Axis& axis : machine.axes) axes += axis.name + " ";
   axes.resize(std::max<std::size_t>(14, axes.size()), ' ');
   return "# Survey of the machine \"" + machine.name +
-         "\". Fill in the empty cells; a row that you could not measure may stay empty or go.\n"
-         "# Decimal point, comma between columns, one row per reading. A unit is in the brackets of the "
-         "header and may be\n"
-         "# another one (um, in, arcsec, ...). Positions may be changed to what the machine can reach; the "
-         "more they differ\n"
-         "# in all axes together, the more errors can be distinguished.\n#\n"
+         "\". Fill in the empty cells; if you could not measure a row, leave its cells empty or delete the "
+         "row.\n"
+         "# Use a decimal point, a comma between columns, and one row per pose. The header has the unit of "
+         "each column in\n"
+         "# brackets; you may change it (um, in, arcsec, ...). You may change the positions to positions "
+         "that the machine can\n"
+         "# reach; the more the positions of all axes differ, the more errors can be distinguished.\n"
+         "#\n"
          "# " +
          axes +
-         "where the machine was sent: positions as the control shows them.\n"
-         "# dir...        approach direction: direction of the last motion of an axis, 1 or -1. 0: it does "
-         "not matter.\n" +
+         "commanded positions, as the control shows them.\n"
+         "# dir...        approach direction: direction of the last motion of an axis, 1 or -1; 0: not "
+         "known.\n" +
          remarks_of(reading) +
-         "# run           which pass it was. Stood the instrument elsewhere in some run, give the machine "
-         "file a BaseShift\n"
-         "#               with that run=\"label\".\n"
+         "# run           label of the measuring run. If the instrument had another position in a run, write "
+         "a BaseShift with\n"
+         "#               run=\"LABEL\" of this run into the machine file.\n"
          "# role          fit, or check: held-out rows that test the fit.\n"
-         "# More columns are welcome, in any place: " +
+         "# You may add further columns, at any position: " +
          format::heading(format::columns::kUncertainty) + " standard uncertainty of the reading, " +
          format::heading(format::columns::kTime) + " time,\n# " + format::heading(format::columns::kFeed) +
-         ", T_name[degC] a temperature, load[%], any logged quantity; `vernier diagnose` asks them what "
-         "they\n"
-         "# explain.\n"
-         "# `vernier lint` reports errors in the file, `vernier import table` reads a spreadsheet "
-         "instead.\n";
+         ", T_name[degC] a temperature, load[%], any logged quantity; `vernier diagnose` tests whether they\n"
+         "# explain the residual.\n"
+         "# `vernier lint` reports errors in the file, `vernier import table` reads a spreadsheet instead.\n";
 }
 
 }  // namespace
@@ -169,7 +170,7 @@ std::string survey_template(const model::Machine& machine, const format::SurveyR
     if (form == format::ReadingForm::kInclination && !machine.workpiece.empty())
       throw text::InputError(
           std::string("--reading ") + reading.word +
-          ": an inclination is read on the tool of a machine whose workpiece stands still");
+          ": an inclination can be read only on the tool of a machine whose workpiece does not move");
   const std::string header = header_of(reading);
   std::string text = remarks(machine, reading);
   for (const AxisQuantity quantity : {AxisQuantity::kPosition, AxisQuantity::kSense})

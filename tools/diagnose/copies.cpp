@@ -47,8 +47,9 @@ std::optional<WithoutCopies> without_copies(const model::Measurement& rows) {
   const std::size_t copies = rows.rows() - result.kept.size();
   if (copies == 0 || static_cast<double>(copies) < kNearlyAll * static_cast<double>(repeated))
     return std::nullopt;
-  result.sentence = fmt::format("{} of {} rows repeat the row before digit for digit, and count once.",
-                                copies, rows.rows());
+  result.sentence =
+      fmt::format("{} of {} rows repeat the previous row digit for digit; each repeated reading counts once.",
+                  copies, rows.rows());
   return result;
 }
 

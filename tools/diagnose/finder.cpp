@@ -541,8 +541,8 @@ std::string Finder::too_large(std::size_t item) const {
       evidence_.share_of_touch_error(candidate, pool_[item].scored.scanned, own_coefficients(item));
   if (share > thresholds_.share_of_touch_error)
     return fmt::format(
-        "size: the slope of the term is {:.2g}: it depends on the error of the touches in the recorded "
-        "positions",
+        "size: the slope of the term is {:.2g}, so the term depends on the error of the touches in the "
+        "recorded positions",
         share);
   return {};
 }

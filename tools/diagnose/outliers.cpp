@@ -179,8 +179,8 @@ std::optional<OutliersToBlame> outliers_to_blame(const model::Machine& machine,
   if (const std::string step = step_in_words(measurement, peeled->kept, std::log(thresholds.structure));
       !step.empty())
     return OutliersToBlame{fmt::format("Without {} the residual is noise. {}", rows, step), true};
-  return OutliersToBlame{fmt::format("Outliers: without {} the residual is noise. A lost beam or a bumped "
-                                     "target is likelier than the machine.",
+  return OutliersToBlame{fmt::format("Outliers: without {} the residual is noise. A lost beam or a displaced "
+                                     "target is more likely than an error of the machine.",
                                      rows),
                          false};
 }
@@ -198,8 +198,8 @@ std::optional<WithoutOutliers> without_gross_outliers(const model::Machine& mach
   std::string step = step_in_words(measurement, peeled->kept, std::log(thresholds.structure));
   return WithoutOutliers{
       std::move(peeled->kept),
-      fmt::format("Left out: {}, off by more than {:.0f} times the spread of the others, as a lost "
-                  "beam or a bumped target is.",
+      fmt::format("Excluded as outliers: {}, with a residual of more than {:.0f} standard deviations of the "
+                  "other rows (as after a lost beam or a displaced target).",
                   rows_in_words(*peeled, measurement), far),
       std::move(step)};
 }

@@ -69,7 +69,7 @@ std::string cause_in_words(const CandidateFinding& cause, const std::string& nex
                            const std::vector<LadderStep>& steps, std::size_t accepted) {
   std::string text = said_of(cause) + ".";
   if (!next_best.empty())
-    text += fmt::format(" The next best other cause, {}, is {:.0f} behind.", next_best, distance);
+    text += fmt::format(" The BIC of the next best cause, {}, is higher by {:.0f}.", next_best, distance);
   std::vector<std::string> beside;  // the stepwise model starts with the given model
   for (std::size_t i = 1; i < steps.size(); ++i)
     if (steps[i].said != cause.candidate.spoken) beside.push_back(steps[i].said);
@@ -93,8 +93,8 @@ std::string aliases_in_words(const effects::Candidate& candidate, double period,
 
 std::string pieces_in_words(const std::vector<std::string>& names) {
   return fmt::format(
-      "{} effects come down to the noise together, and are more likely the pieces of one function of the "
-      "position that is none of the catalogue's: {}.",
+      "{} effects together reduce the residual to the noise, but they are probably parts of one function of "
+      "the position that is not in the catalogue: {}.",
       names.size(), fmt::join(names, "; "));
 }
 

@@ -128,23 +128,22 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
   const bool curve = coefficients >= limits.curve && pool[item].scored.scanned.empty();
   if (curve && shape.fast_share > limits.fast_share && shape.log_p < limits.curve_chance)
     return fmt::format(
-        "{} removes it, but {:.0f} % of it changes faster than a smooth curve does (half-waves below {:.3g} "
-        "of "
-        "the axis' unit): it depends on the axis, and its cause has no name",
+        "{} removes the error, but {:.0f} % of the error has half-waves shorter than those of a smooth curve "
+        "({:.3g} in the unit of the axis): the error depends on the axis, and its cause has no name",
         pool.candidate(item).spoken, 100 * shape.fast_share, shape.resolved);
   if (curve) {
     const Jump jump = best_jump(evidence, *choice.place, positions(evidence, *choice.axis), beside);
     const Evidence::Range range = evidence.range_of(*choice.axis);
     if (jump.gain > gain_of(evidence, evidence.columns(pool.candidate(item), {}), beside).chi_square)
       return fmt::format(
-          "a jump at {:.4g} of the axis explains more than {}: it depends on the axis, and its cause has no "
-          "name",
+          "a jump at the axis position {:.4g} explains more than {}: the error depends on the axis, and its "
+          "cause has no name",
           range.low + jump.at * (range.high - range.low), pool.candidate(item).spoken);
   }
   if ((unknowns >= limits.curve || shape.own_table) && shape.seen < seen_per_unknown * unknowns)
     return fmt::format(
-        "{} takes {:.0f} unknowns where the readings show only {:.0f} independent functions of the axis "
-        "beside the model: any function of it would do as well",
+        "{} has {:.0f} coefficients, but the readings determine only {:.0f} independent functions of the "
+        "axis beside the model: any function of the axis would fit equally well",
         pool.candidate(item).spoken, unknowns, shape.seen);
   return {};
 }
@@ -231,8 +230,9 @@ std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std
   // effects.
   if (evidence.noise_known() &&
       log_p_of_change(evidence, pool, items, item) < evidence.thresholds().shape.change_chance)
-    return fmt::format("{} changes along the axes, which what it is called does not",
-                       pool.candidate(item).spoken);
+    return fmt::format(
+        "the size of {} changes along the axes, but an effect of this name has a constant size",
+        pool.candidate(item).spoken);
   return {};
 }
 

@@ -186,8 +186,8 @@ class Decision {
     }
     if (places.size() < 2 || apart) return {};
     return fmt::format(
-        "The residual comes down to the noise with {} terms that only a search found: more likely pieces "
-        "of what the catalogue does not hold.",
+        "{} terms without a physical name reduce the residual to the noise: they are probably parts of an "
+        "effect that is not in the catalogue.",
         places.size());
   }
 
@@ -227,10 +227,10 @@ class Decision {
     if (or_set_up) answer_.instrument = "set-up";
     if (or_day) answer_.instrument = "drift";
     return fmt::format(
-        "One of {} causes that explain these data alike, {} first.{}{}",
+        "{} causes explain these data equally well; the most likely cause is {}.{}{}",
         1 + others + (or_set_up || or_day ? 1 : 0), pool_.candidate(accepted_.front()).spoken,
-        or_set_up ? " An instrument that was set up anew between the runs is another one." : "",
-        or_day ? " An instrument that drifts with the time of day is another one." : "");
+        or_set_up ? " An instrument that was set up anew between the runs is a further possible cause." : "",
+        or_day ? " An instrument that drifts with the time of day is a further possible cause." : "");
   }
 
   std::string one_cause() {
@@ -350,7 +350,8 @@ class Decision {
     double drift = std::hypot(noise.run, noise.drift);
     for (const fit::NoiseStep& step : noise.steps) drift = std::max(drift, std::abs(step.height));
     if (drift < limits_.drift_share * noise.own || noise.support < limits_.drift_support) return {};
-    return "The instrument does not hold still: " + ::vernier::fit::in_words(noise, answer_.noise_unit) + ".";
+    return "The readings of the instrument drift or step: " +
+           ::vernier::fit::in_words(noise, answer_.noise_unit) + ".";
   }
 
   /// True if the errors of single readings, beside drift, set-ups and poses, exceed the stated

@@ -102,7 +102,7 @@ class AddReader {
       const std::string key = item.substr(0, equals), value = item.substr(equals + 1);
       // Labels of runs are quoted one by one, because a label may contain the separator.
       if (!values_.emplace(key, key == "runs" ? value : unquote(value)).second)
-        fail(item.substr(0, equals), "this key stands twice");
+        fail(item.substr(0, equals), "this key occurs twice");
       rest = comma == std::string::npos ? std::string() : rest.substr(comma + 1);
     }
   }

@@ -111,7 +111,7 @@ class CatalogueReader {
     if (!effects_.empty()) check(effects_.back());
     if (id.empty() || id.find_first_of(" \t:,=") != std::string::npos) fail(id, "not an effect id");
     for (const Effect& other : effects_)
-      if (other.id == id) fail(id, "this effect stands twice");
+      if (other.id == id) fail(id, "this effect occurs twice");
     effects_.push_back({});
     effects_.back().id = id;
     first_line_ = line_;
@@ -145,7 +145,7 @@ class CatalogueReader {
       fail(rest, error.what());
     }
     for (const EffectForm& other : effect.forms)
-      if (other.label == form.label) fail(form.label, "this form stands twice");
+      if (other.label == form.label) fail(form.label, "this form occurs twice");
     effect.forms.push_back(form);
     form_line_.push_back(line_);
   }
@@ -175,7 +175,7 @@ class CatalogueReader {
     rule.name = next_word(rest);
     if (!text::is_name(rule.name) || model::is_reserved_word(rule.name))
       fail(rule.name, "this name cannot be used for an unknown");
-    if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "this unknown stands twice");
+    if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "this unknown occurs twice");
     rule.unit = next_word(rest);
     const std::string kind = next_word(rest);
     const auto number = [&] {

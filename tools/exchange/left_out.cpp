@@ -123,9 +123,11 @@ void refuse(const model::Machine& machine, const std::string& format, const std:
   if (left_out.empty() || allowed) return;
   std::string text;
   for (const LeftOut& one : left_out) text += fmt::format("\n  {}: up to {:.4g} um", one.what, one.um);
-  throw text::InputError(
-      {machine.file, 0}, "",
-      format + " cannot express this machine; --leave-out writes the rest all the same:" + text);
+  throw text::InputError({machine.file, 0}, "",
+                         format +
+                             " cannot express all errors of this machine; with --leave-out the command "
+                             "writes the other errors:" +
+                             text);
 }
 
 }  // namespace vernier::exchange

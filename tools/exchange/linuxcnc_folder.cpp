@@ -80,28 +80,32 @@ std::string hal_file(const model::Machine& machine) {
   std::string text = fmt::format(
       "# {}: the correction between the joints and their drives. Loaded after the files that connect the "
       "drives.\n"
-      "# A joint without MIN_LIMIT, MAX_LIMIT or MAX_VELOCITY in the INI file goes without that setp line.\n"
-      "# Positions, limits and corrections here are in [TRAJ]LINEAR_UNITS, mm or inch; the machine file's "
-      "are "
-      "mm.\n"
-      "{}\naddf vernier.0 servo-thread [VERNIER]POSITION\n",
+      "# If the INI file has no MIN_LIMIT, MAX_LIMIT or MAX_VELOCITY for a joint, delete the setp line of "
+      "this value.\n"
+      "# Positions, limits and corrections in this file are in [TRAJ]LINEAR_UNITS, mm or inch; those of the "
+      "machine file are in mm.\n"
+      "{}\n"
+      "addf vernier.0 servo-thread [VERNIER]POSITION\n",
       machine.name, load_line(machine));
   for (std::size_t n = 0; n < machine.axes.size(); ++n)
     text += fmt::format("\n# joint {}: {}\n", n, machine.axes[n].name) + joint_lines(n);
   text += "\nnet vernier-vel motion.current-vel => vernier.0.current-vel\n";
   if (!machine.inputs.empty())
-    text += "\n# Sensors: until one is connected there is no correction. Put your pins here.\n";
+    text +=
+        "\n"
+        "# Sensors: until each sensor is connected, the component gives no correction. Write the names of "
+        "your pins here.\n";
   for (const model::Input* input : sensors(machine))
     text += fmt::format("# net {} YOUR-SENSOR.PIN => vernier.0.input.{}   # {}, reference {:g}\n",
                         text::in_small_letters(input->name), input->name,
                         input->unit.empty() ? "no unit" : input->unit, input->reference);
   return text +
-         "\n# 0 holds the correction at a joint's limit; 1 ends the program too: net vernier-abort "
-         "vernier.0.abort halui.abort\n"
+         "\n"
+         "# 0: the correction stops at the limit of a joint; 1: the component also ends the NC program: net "
+         "vernier-abort vernier.0.abort halui.abort\n"
          "setp vernier.0.limit-mode 0\n"
          "loadusr -W vernier-hal --store [VERNIER]STORE --public-key [VERNIER]PUBLIC_KEY --listen "
-         "[VERNIER]LISTEN --image "
-         "[VERNIER]IMAGE\n"
+         "[VERNIER]LISTEN --image [VERNIER]IMAGE\n"
          "setp vernier.0.enable 1\n";
 }
 
@@ -115,10 +119,11 @@ std::string narrower_limits(const model::Machine& machine) {
                           *axis.min + *axis.max_correction, *axis.max - *axis.max_correction);
   }
   return text.empty() ? text
-                      : "# Held at its limit is a joint whose correction would pass it (vernier.hal). With "
-                        "soft limits that are narrower by\n"
-                        "# the largest correction LinuxCNC refuses such a program before it starts; for the "
-                        "ranges of the machine file, mm and deg:\n" +
+                      : "# If the correction would move a joint beyond its limit, the joint stops at the "
+                        "limit (vernier.hal). If the soft limits\n"
+                        "# are narrower by the largest correction, LinuxCNC refuses such a program before it "
+                        "starts. Narrower limits for the ranges\n"
+                        "# of the machine file, mm and deg:\n" +
                             text;
 }
 
@@ -158,13 +163,14 @@ std::string readme(const model::Machine& machine, const std::string& folder) {
       "and `[VERNIER]`.\n"
       "4. Set `CMD_n` and `FB_n` to the signals of your HAL files, and `POSITION` (see there).\n"
       "5. Connect the sensors in `vernier.hal`, where the machine has some.\n"
-      "6. Start LinuxCNC and home. `halcmd getp vernier.0.active` is TRUE when the whole correction is "
-      "in.\n"
-      "7. A better image: `vernier upload DIR --to tcp://127.0.0.1:1502 --key vernier.key --confirm`, while "
-      "LinuxCNC runs; then\n"
+      "6. Start LinuxCNC and home all joints. `halcmd getp vernier.0.active` is TRUE when the whole "
+      "correction is active.\n"
+      "7. To use a new image: `vernier upload DIR --to tcp://127.0.0.1:1502 --key vernier.key --confirm`, "
+      "while LinuxCNC runs; then\n"
       "   take `--image [VERNIER]IMAGE` out of `vernier.hal`, so that LinuxCNC starts with what is in the "
       "store.\n\n"
-      "To take it out: delete the HALFILE line. Nothing else was changed.\n\n"
+      "To remove the component, delete the HALFILE line. The component makes no other change to the "
+      "configuration.\n\n"
       "Pins: `man 9 vernier`. More: `tools/docs/linuxcnc.md` (/usr/share/doc/vernier-linuxcnc).\n",
       machine.name, joints, folder);
 }

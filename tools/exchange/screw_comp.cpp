@@ -162,10 +162,11 @@ ScrewTable screw_table(const model::Machine& machine, std::size_t axis, const mo
                        double tolerance_um) {
   ScrewTable table = LinePlacer(machine, axis, at).place(tolerance_um);
   if (table.points.size() > kMostScrewPoints || table.worst_um > tolerance_um)
-    throw text::LimitNotMet(fmt::format(
-        "{}: {}: {} lines (the controller keeps {}) leave {:.4g} um between them, the tolerance is {} um{}",
-        machine.file, machine.axes[axis].name, table.points.size(), kMostScrewPoints, table.worst_um,
-        tolerance_um, way_out(table.worst_um)));
+    throw text::LimitNotMet(
+        fmt::format("{}: {}: with {} lines (the controller stores {}) the error between the lines is {:.4g} "
+                    "um, the tolerance is {} um{}",
+                    machine.file, machine.axes[axis].name, table.points.size(), kMostScrewPoints,
+                    table.worst_um, tolerance_um, way_out(table.worst_um)));
   return table;
 }
 
@@ -254,11 +255,11 @@ std::string screw_into_machine(const std::string& text, const model::Machine& ma
     const double off = std::max(std::abs(again[i].forward_trim - points[i].forward_trim),
                                 std::abs(again[i].reverse_trim - points[i].reverse_trim));
     if (off > kRounding_mm)
-      throw text::InputError(
-          {machine.file, 0}, name,
-          fmt::format("this machine would not have the trims of the file: {:.4g} um off at {} (a reversal "
-                      "wants --reversal STATIC; other errors of this axis have to be 0)",
-                      1000 * off, points[i].nominal));
+      throw text::InputError({machine.file, 0}, name,
+                             fmt::format("the resulting machine file would not reproduce the trims of the "
+                                         "file: the difference is {:.4g} um at {} (a reversal error needs "
+                                         "--reversal STATIC; all other errors of this axis must be 0)",
+                                         1000 * off, points[i].nominal));
   }
   return result;
 }

@@ -215,11 +215,13 @@ class Arm {
 
   std::string text() const {
     std::string text = fmt::format(
-        "<?xml version=\"1.0\"?>\n<!-- The calibrated joints of {}: m, rad. Each frame is parallel to the "
-        "base "
-        "at the reference pose.\n     A machine file has no effort and no velocity: both are 0, set your "
-        "own. "
-        "-->\n<robot name=\"{}\">\n  <link name=\"base_link\"/>\n",
+        "<?xml version=\"1.0\"?>\n"
+        "<!-- The calibrated joints of {}: m, rad. Each frame is parallel to the base at the reference "
+        "pose.\n"
+        "     A machine file has no effort and velocity limits: both are 0; write the values of your robot. "
+        "-->\n"
+        "<robot name=\"{}\">\n"
+        "  <link name=\"base_link\"/>\n",
         machine_.name, machine_.name);
     std::string parent = "base_link";
     Vector3d at = Vector3d::Zero();

@@ -49,7 +49,8 @@ Decision decision_of(const DecisionGroup& group) {
   const char* said =
       group.unseen == group.open ? "not measured; stays at nominal +- scale"
       : group.names.size() > 1
-          ? "the readings do not distinguish these parameters; they are as near to nominal as possible"
+          ? "the readings do not distinguish these parameters, so the fit sets them to the values nearest "
+            "nominal"
           : "the readings determine only a combination of this parameter with others; the undetermined part "
             "is as near to nominal as possible";
   return {group.names, group.reach_um,
@@ -129,7 +130,7 @@ std::string blame_of(const FitResult& result, const Eigen::VectorXd& step, std::
   std::string text = fmt::format("{} readings for {} free parameters", readings, result.parameters.size());
   if (static_cast<std::size_t>(step.size()) == result.parameters.size() && step.allFinite() &&
       step.cwiseAbs().maxCoeff() > 0)
-    text += fmt::format("; the last step still moved the combination {} (in units of each scale)",
+    text += fmt::format("; the last iteration still changed the combination {} (in units of each scale)",
                         combination(result, step));
   const std::vector<Decision> open = decisions_of(result, kMostGroups);
   for (std::size_t i = 0; i < open.size(); ++i) {
@@ -140,7 +141,7 @@ std::string blame_of(const FitResult& result, const Eigen::VectorXd& step, std::
       names += fmt::format(" and {} more", open[i].parameters.size() - kMostNames);
     text += (i == 0 ? "; the readings do not determine " : " | ") + names;
   }
-  return text + "; hold some of these parameters (--hold NAME), or measure more and other poses";
+  return text + "; fix some of these parameters (--hold NAME), or measure more and other poses";
 }
 
 }  // namespace vernier::fit

@@ -120,7 +120,7 @@ std::string unvaried_text(const model::FitRecord& record) {
                 : fmt::format("only where {} changed together with {}", one.variable, one.follows);
   }
   if (record.unvaried.size() > kMost) text += fmt::format("; and {} more", record.unvaried.size() - kMost);
-  return text + ". Its effect at other values was not measured.";
+  return text + ". The effect at other values was not measured.";
 }
 
 std::string alternatives_text(const model::FitRecord& record) {
@@ -128,7 +128,10 @@ std::string alternatives_text(const model::FitRecord& record) {
   const std::string place = fmt::format("{} of transform {}", model::kSixDofNames[one.dof], one.transform);
   std::string text =
       one.axis.empty()
-          ? fmt::format("The readings do not distinguish the turn {} from a shift: one tool was used.", place)
+          ? fmt::format(
+                "The readings do not distinguish the rotation {} from a shift, because only one tool was "
+                "used.",
+                place)
           : fmt::format(
                 "The readings do not distinguish the cyclic error in {} from a cyclic error of period {:.4g} "
                 "along {}.",

@@ -171,10 +171,11 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
   if (!likely.one_reading) result.mistake = mistake;
   result.absurd =
       !result.converged ? fmt::format("the fit did not converge in {} iterations", result.iterations)
-      : misses ? fmt::format("the residual of the fit is {:.3g} mm in a measured box of +- {:.3g} mm",
-                             left_mm(result), result.reach_mm)
-               : fmt::format("the nominal machine is off by {:.3g} mm in a measured box of +- {:.3g} mm",
-                             result.misfit_mm, result.reach_mm);
+      : misses
+          ? fmt::format("the residual of the fit is {:.3g} mm in a measured box of +- {:.3g} mm",
+                        left_mm(result), result.reach_mm)
+          : fmt::format("the residual of the nominal machine is {:.3g} mm in a measured box of +- {:.3g} mm",
+                        result.misfit_mm, result.reach_mm);
   if (mistake.empty() && !result.converged)
     mistake = blame_of(result, end.converged ? Eigen::VectorXd() : end.last_step, readings);
   if (!mistake.empty()) result.absurd += ": " + mistake;
@@ -210,8 +211,8 @@ bool find_disturbance(const FitResult& result, const model::Measurement& rows, c
   constexpr double kFarAbove = 5;  // times the noise
   const std::string of_instrument = record.disturbance;
   if (!robust && result.noise_um && 1e3 * left_mm(result) > kFarAbove * *result.noise_um)
-    offer(left_mm(result), fmt::format("{:.3g} um are left of the readings, whose noise is {:.3g} um: the "
-                                       "model lacks an effect, or the survey was disturbed",
+    offer(left_mm(result), fmt::format("the residual is {:.3g} um, and the noise of the readings is {:.3g} "
+                                       "um: the model lacks an effect, or the survey was disturbed",
                                        1e3 * left_mm(result), *result.noise_um));
   const bool only_residual = record.disturbance != of_instrument;
   // A shift whose direction rotates with the pose is not a step of any reading. Its influence on

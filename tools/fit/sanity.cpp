@@ -65,7 +65,7 @@ void add_mistakes_of_readings(const model::Measurement& rows, std::vector<Mistak
       list.push_back({fmt::format("the columns {} and {} look swapped", name(kKinds[a]), name(kKinds[b])),
                       [=](model::Measurement& mended) { swap_kinds(mended, kKinds[a], kKinds[b]); }});
   for (const model::ObservationKind kind : kKinds)
-    list.push_back({fmt::format("the column {} looks as if its sign were turned", name(kind)),
+    list.push_back({fmt::format("the column {} probably has the wrong sign", name(kind)),
                     [=](model::Measurement& mended) {
                       for (model::Observation& o : mended.observations)
                         if (o.kind == kind) o.value = -o.value;
@@ -95,8 +95,8 @@ void add_mistakes_of_readings(const model::Measurement& rows, std::vector<Mistak
   for (const bool of_board : {true, false})
     if (std::any_of(poses.begin(), poses.end(), [=](const auto& pose) { return pose.of_board == of_board; }))
       list.push_back(
-          {"the poses look inverted: the frame of the camera or instrument and the frame of what it sees are "
-           "exchanged",
+          {"the poses are probably inverted: the frame of the camera (or instrument) and the frame of the "
+           "measured object are exchanged",
            [=](model::Measurement& mended) { invert_poses(mended, of_board); }});
 }
 
@@ -378,7 +378,7 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
   constexpr double kMostOfAll = 0.5, kAsGood = 1.5;
   if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return {cell, false};
   if (worst.share > kMostOfAll)
-    return {worst.reading + " is an outlier: no other reading is so far off", true};
+    return {worst.reading + " is an outlier: no other reading has such a large residual", true};
   const model::ParameterSet none;
   const double misfit_mm = convention_of(machine, rows, none).misfit_mm;
   struct Found {
@@ -413,8 +413,8 @@ std::string missing_set_up(const model::Machine& machine, const model::Measureme
   model::Machine placed = machine;
   placed.base_shifts.emplace_back();
   if (!(convention_of(placed, rows, model::ParameterSet()).misfit_mm < kFivefold * misfit_mm)) return {};
-  return "the readings are in another frame than that of the machine file; write <BaseShift/> into <static>: "
-         "the fit then finds the place of the instrument";
+  return "the readings are in another frame than that of the machine file; write <BaseShift/> into <static>, "
+         "so that the fit estimates the position of the instrument";
 }
 
 }  // namespace vernier::fit

@@ -302,9 +302,8 @@ model::Machine set_up_anywhere(const model::Machine& machine, const model::Measu
 
 std::string OtherSetUp::sentence() const {
   return fmt::format(
-      "{}: the set-up of this file is not known to the model (residual {:.3g} um; {:.3g} um in a set-up of "
-      "its "
-      "own)",
+      "{}: the model does not contain the set-up of this file (residual {:.3g} um; with a separate set-up "
+      "{:.3g} um)",
       file, before_um, own_um);
 }
 

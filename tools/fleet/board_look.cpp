@@ -36,7 +36,7 @@ std::string not_in_effect(const BoardLook& look, const upload::BoardInfo& info, 
   if (look.tick.mode != Mode::kActive)
     return fmt::format("the board is in mode {}, not active", name_of(look.tick.mode));
   if (!(look.state.weight >= 1))
-    return fmt::format("{:.4g} % of the correction is in, not all of it", 100 * look.state.weight);
+    return fmt::format("only {:.4g} % of the correction is active", 100 * look.state.weight);
   return {};
 }
 

@@ -139,7 +139,7 @@ class GatewayPublisher {
     }
     if (node.connection().connected()) node.part();
     say_(stop    ? "parted"
-         : host_ ? "the broker is gone"
+         : host_ ? "the connection to the broker is lost"
                  : "the registry host is not connected: the gateway stores the samples");
   }
 

@@ -153,7 +153,7 @@ void ImageTrial::breathe() {
 /// The reason to end a trial immediately; empty: no reason.
 std::string ImageTrial::broken(const BoardLook& look) const {
   if (look.tick.fault != Fault::kNone) return fmt::format("fault {}", name_of(look.tick.fault));
-  if (look.faults > faults_before_) return "a fault came and went";
+  if (look.faults > faults_before_) return "a fault occurred and was cleared";
   if (look.faults < faults_before_) return "the board was started again";
   if (look.slots.trial == kNoSlot)
     return "the trial has ended: the board or another caller reverted the image";
@@ -178,8 +178,9 @@ std::string ImageTrial::settle() {
     const std::string why = not_in_effect(look, board_.info(), fingerprint_);
     if (why.empty()) {
       if (left_s(look.slots) >= options_.watch_s) return {};
-      return fmt::format("the board's trial lasts {:.0f} s more, shorter than the image is to be watched",
-                         std::max(0.0, left_s(look.slots)));
+      return fmt::format(
+          "the trial of the board lasts only {:.0f} s more, which is shorter than the time --watch",
+          std::max(0.0, left_s(look.slots)));
     }
     if (is_over(end)) return fmt::format("not in effect within {:.4g} s: {}", options_.settle_s, why);
     breathe();
@@ -208,7 +209,7 @@ std::string ImageTrial::judge() {
   while (judged.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) {
     breathe();
     if (is_over(end)) return "no --judge result within the board's trial time";
-    if (std::string why = why_not(); !why.empty()) return "while it was judged: " + why;
+    if (std::string why = why_not(); !why.empty()) return "during the --judge command: " + why;
   }
   const text::ProcessResult result = judged.get();
   if (result.exit == 0) return {};
@@ -255,9 +256,9 @@ TrialEnd ImageTrial::take_back(TrialEnd end) {
     const SlotsReply slots = board_.slots();
     if (slots.trial != kNoSlot && slots.newest_issued == issued_) board_.revert();
   } catch (const std::runtime_error& error) {
-    end.why +=
-        fmt::format(" (it could not be taken back, {}: the board goes back by itself when the trial is over)",
-                    error.what());
+    end.why += fmt::format(
+        " (the image could not be reverted, {}: the board reverts the image by itself when the trial ends)",
+        error.what());
   }
   return end;
 }

@@ -137,7 +137,7 @@ void run_ingest(const IngestOptions& options, const std::atomic<bool>& stop, con
       before.clear();
       try {
         while (!stop && listener.connected()) listener.step();
-        say(stop ? "parted" : "the broker is gone");
+        say(stop ? "parted" : "the connection to the broker is lost");
         listener.part();
       } catch (const registry::DatabaseError&) {
         listener.part();

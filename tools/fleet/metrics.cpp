@@ -128,7 +128,7 @@ void serve_metrics(const std::string& registry, const std::string& address, cons
   int port = -1;
   if (colon != std::string::npos)
     std::from_chars(address.data() + colon + 1, address.data() + address.size(), port);
-  if (port < 0 || port > 65535) throw text::InputError({}, address, "HOST:PORT is wanted");
+  if (port < 0 || port > 65535) throw text::InputError({}, address, "give HOST:PORT");
   const std::string host = address.substr(0, colon);
   { registry::Registry there(registry::open_database(registry)); }
   http::GatedServer server;

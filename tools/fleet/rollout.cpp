@@ -72,11 +72,13 @@ class RolloutCall {
     }
     // A machine that stopped elsewhere must not be reported as kept because of an earlier look.
     if (!end_.stood.empty() && !stop_) return look_again();
-    if (away > 0) stand(fmt::format("{} boards were away: call it again", away));
+    if (away > 0) stand(fmt::format("{} boards did not answer: call the rollout again", away));
   }
 
   bool next_stage(std::size_t away) {
-    if (away > 0) stand(fmt::format("{} boards of this stage are away: the next stage waits for them", away));
+    if (away > 0)
+      stand(
+          fmt::format("{} boards of this stage do not answer: the next stage begins when they answer", away));
     look_again();
     return end_.stood.empty();
   }

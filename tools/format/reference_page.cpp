@@ -36,8 +36,8 @@ std::string kinds_page() {
                         headings_of(reading_columns(kind.form)), beside_of(kind.form),
                         is_free_of_setup(kind.kind) ? "not used" : "used", kind.meaning);
   return text +
-         "\nA file gives angles in any unit of angle. Results give lengths in mm or µm, and rotations in deg "
-         "or µrad.\n";
+         "\nA measurement file may state angles in any unit of angle. The results of the commands state "
+         "lengths in mm or µm, and rotations in deg or µrad.\n";
 }
 
 std::string columns_page() {
@@ -55,7 +55,7 @@ std::string columns_page() {
 
 std::string axis_columns_page() {
   std::string text =
-      "## Columns of each axis\n\nHere of a linear axis X and of a rotary axis C.\n\n"
+      "## Columns of each axis\n\nThis table has the columns of a linear axis X and of a rotary axis C.\n\n"
       "| columns | hold | without the column |\n|---|---|---|\n";
   for (const AxisColumnEntry& column : kAxisColumns)
     text +=
@@ -72,8 +72,8 @@ std::string later_page() {
       if (group.later) later.push_back(code(name));
   return fmt::format(
       "## Names of a later version\n\n"
-      "Files of the first version may use these names for other things: {}.\n\n"
-      "- An input of the machine file may have such a name. Then the column is this input.\n"
+      "Measurement files of the first version may use these column names with another meaning: {}.\n\n"
+      "- If an input of the machine file has one of these names, the column is this input.\n"
       "- `ix` and `iy` are readings only with a unit of angle.\n"
       "- `ax`, `ay` and `az` are readings only if all three are in the file, without a unit.\n"
       "- `distance` is a reading only if the file has the column `from`.\n"
@@ -93,11 +93,8 @@ std::string reserved_page() {
       "## Reserved names\n\n"
       "| what | may not have the names |\n|---|---|\n| an axis | {} |\n| an input | {} |\n"
       "| any static, axis or input | {}, and the functions of expressions |\n\n"
-      "The word `correction`, directly followed by the name of an axis (`correctionX`), is reserved too. A "
-      "name "
-      "of the\n"
-      "machine file is not the name of a quantity of an axis: beside an axis X no other thing has the names "
-      "{}.\n",
+      "The word `correction`, directly followed by the name of an axis (`correctionX`), is also reserved.\n"
+      "If the machine has an axis X, no static, input or other axis may have the names {}.\n",
       text::joined(axis, ", "), text::joined(input, ", "), text::joined(terms, ", "), [] {
         std::vector<std::string> names;
         for (const AxisColumnEntry& column : kAxisColumns)
@@ -115,20 +112,19 @@ std::string units_page() {
       text += fmt::format("| {} | {} |\n", text::joined(names, ", "), code(base_unit(dimension)));
   }
   return text +
-         "\n`µ` is read as `u`, `°` as `deg`, `°C` as `degC`, `″` as `arcsec`, `²` as `^2`. A middle dot is "
-         "ignored.\n";
+         "\nIn a unit the program reads `µ` as `u`, `°` as `deg`, `°C` as `degC`, `″` as `arcsec` and `²` as "
+         "`^2`. The program ignores a middle dot in a unit.\n";
 }
 
 }  // namespace
 
 std::string reference_page() {
   return "# Columns of the measurement file\n\n"
-         "Every column that has a meaning, with its unit. [The measurement file](measurement_file.md) "
-         "explains the "
-         "rules with\nan example. `vernier new --measurements` writes a file with the columns of one "
-         "reading, and "
-         "`vernier lint` checks one.\n\n"
-         "This page is written from the tables in `tools/format`. Do not edit it by hand.\n\n" +
+         "This page lists every column of a measurement file that has a meaning, with its unit. The page\n"
+         "[measurement file](measurement_file.md) explains the rules with an example. The command\n"
+         "`vernier new --measurements` writes a measurement file with the columns of one kind of reading.\n"
+         "The command `vernier lint` checks a measurement file.\n\n"
+         "A program writes this page from the tables in `tools/format`. Do not edit this page by hand.\n\n" +
          kinds_page() + "\n" + columns_page() + "\n" + axis_columns_page() + "\n" + later_page() + "\n" +
          reserved_page() + "\n" + units_page();
 }

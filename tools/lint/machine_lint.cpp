@@ -371,7 +371,7 @@ class Oddities {
     look_at_unit(input.name, input.unit, input.line, true);
     if (!used_.inputs.contains(index))
       findings_.warn(input.line, input.name, "no transform uses this input",
-                     "a term is missing, or it may go");
+                     "a term that uses this input is missing, or remove this input");
   }
 
   void look_at(const model::Table& table) {

@@ -92,9 +92,8 @@ SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& mach
     if (joined || use.stated || !names.insert(name).second) continue;
     elements += element_of(name, *plain) + "\n      ";
     result.notes.push_back(
-        fmt::format("{} has its own set-up BaseShift[{}]; if the instrument stood as for {}, give the rows "
-                    "of both files one "
-                    "word in a column \"setup\"",
+        fmt::format("{} has its own set-up BaseShift[{}]; if the instrument had the same position as for {}, "
+                    "give the rows of both files one word in a column \"setup\"",
                     rows.files[file], name, rows.files[static_cast<std::size_t>(first - uses.data())]));
   }
   if (elements.empty()) return result;
@@ -150,7 +149,7 @@ SetUpsOfFiles with_camera_mountings(const std::string& text, const Machine& mach
   }
   if (machine.base_shifts.empty()) {
     elements += fmt::format("<BaseShift {}\n      ", kZero);
-    result.notes.emplace_back("the place of the board is unknown: BaseShift is fitted");
+    result.notes.emplace_back("the position of the board is unknown: BaseShift is fitted");
   }
   pugi::xml_document document;
   document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
@@ -160,8 +159,8 @@ SetUpsOfFiles with_camera_mountings(const std::string& text, const Machine& mach
       list.find_child([](const pugi::xml_node& node) { return node.type() == pugi::node_element; });
   if (!first)
     throw text::InputError({machine.file, 0}, "static",
-                           "the mounting of the camera has no place in this file: write <static><ToolShift/>"
-                           "<BaseShift/></static> under <variables>");
+                           "the machine file has no element for the mounting of the camera: write "
+                           "<static><ToolShift/><BaseShift/></static> under <variables>");
   result.text = text::apply_edits(text, {{static_cast<std::size_t>(first.offset_debug()) - 1, 0, elements}});
   return result;
 }

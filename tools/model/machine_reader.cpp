@@ -115,7 +115,7 @@ class Reader {
       } else if (is(node, "transforms")) {
         read_transforms(node, branches);
       } else if (is(node, "fitted")) {
-        if (machine_.fitted) fail(node, node.name(), "this element stands twice");
+        if (machine_.fitted) fail(node, node.name(), "this element occurs twice");
         read_fitted(node);
       } else {
         unknown(node);
@@ -441,7 +441,7 @@ class Reader {
       const auto axis = machine_.find_axis(node.name());
       if (!axis) fail(node, node.name(), "no such axis");
       for (const WorkRange& other : machine_.volume)
-        if (other.axis == *axis) fail(node, node.name(), "this axis stands twice");
+        if (other.axis == *axis) fail(node, node.name(), "this axis occurs twice");
       for (const char* end : {"min", "max"})
         if (!attribute(node, end)) fail(node, node.name(), std::string("the volume needs a ") + end);
       const WorkRange range{*axis, number(node, "min", 0), number(node, "max", 0)};
@@ -754,7 +754,7 @@ class Reader {
     if (!text::is_name(name))
       fail(node, name, "names are letters, digits and _, and begin with a letter or _");
     if (is_reserved_word(name)) fail(node, name, "this name is reserved");
-    if (!names_.insert(name).second) fail(node, name, "this name stands twice");
+    if (!names_.insert(name).second) fail(node, name, "this name occurs twice");
     return name;
   }
 
@@ -765,7 +765,7 @@ class Reader {
     for (const pugi::xml_attribute item : node.attributes()) {
       const std::string name = item.name();
       const std::string lower = text::in_small_letters(name);
-      if (!seen.insert(lower).second) fail_attribute(node, item.name(), name, "this attribute stands twice");
+      if (!seen.insert(lower).second) fail_attribute(node, item.name(), name, "this attribute occurs twice");
       if (lower.find("multiply") != std::string::npos) {
         machine_.notes.push_back(machine_.file + ":" + std::to_string(line(node)) + ": " + name +
                                  " is ignored");
@@ -820,7 +820,7 @@ class Reader {
            "this element must be empty");
   }
   void once(const pugi::xml_node& node, bool& seen) {
-    if (seen) fail(node, node.name(), "this element stands twice");
+    if (seen) fail(node, node.name(), "this element occurs twice");
     seen = true;
   }
   [[noreturn]] void unknown(const pugi::xml_node& node) { fail(node, node.name(), "unknown element"); }

@@ -93,13 +93,13 @@ class Translator {
     if (is_one_of(word,
                   {10, 28, 30, 33, 38.2, 38.3, 38.4, 38.5, 41, 41.1, 42, 42.1, 43.1, 51, 52,  53,  68,
                    73, 76, 81, 82, 83,   84,   85,   86,   87, 88,   89, 92,   95,   5,  5.1, 5.2, 5.3}))
-      throw text::InputError(
-          place_, word.text,
-          "this code changes positions in a way that is not supported; write the moves out first");
+      throw text::InputError(place_, word.text,
+                             "this code changes positions in a way that `vernier correct` does not support; "
+                             "replace it by single moves");
     if (word.letter == 'O' || word.letter == '#' ||
         (word.letter == 'M' && (word.value == 98 || word.value == 99)))
       throw text::InputError(place_, word.text,
-                             "subprograms and loops are not supported: write all their blocks out first");
+                             "subprograms and loops are not supported: replace them by all their blocks");
   }
 
   void take_code(double code) {

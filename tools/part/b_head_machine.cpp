@@ -71,9 +71,9 @@ BHeadMachine b_head_machine(model::Machine machine) {
     if (apart > kSameMm || turned > kSameAxis)
       throw text::InputError(
           place, result.machine.name,
-          fmt::format("the nominal chain is not X Z B on the tool side and Y C on the workpiece "
-                      "side with crossing axes: at X {} Y {} Z {} B {} C {} the tool is {:.3g} mm "
-                      "and {:.3g} rad away from it",
+          fmt::format("the nominal chain is not X Z B on the tool side and Y C on the workpiece side with "
+                      "crossing axes: at X {} Y {} Z {} B {} C {} the tool pose differs from that of such a "
+                      "chain by {:.3g} mm and {:.3g} rad",
                       kProbes[i].x_mm, kProbes[i].y_mm, kProbes[i].z_mm, kProbes[i].b_deg, kProbes[i].c_deg,
                       apart, turned));
   }

@@ -181,20 +181,18 @@ void warn_of_rest(const BHeadMachine& machine, const MeasuredPart& part, const I
       std::sqrt(result.chi_square / static_cast<double>(std::max<Eigen::Index>(1, result.freedom)));
   const bool loud = with_uncertainty && over > kLoud;
   if (loud)
-    result.warnings.push_back(
-        fmt::format("the rest is {:.2g} times the points' uncertainty: these errors do not explain the part, "
-                    "and their values "
-                    "may have errors far larger than their standard uncertainties",
-                    over));
+    result.warnings.push_back(fmt::format(
+        "the residual is {:.2g} times the uncertainty of the points: the fitted errors do not explain the "
+        "part, and their values may have errors far larger than their standard uncertainties",
+        over));
   if (options.tool_radius || result.freedom < 2 || (with_uncertainty && !loud)) return;
   IdentifyOptions more = options;
   more.tool_radius = true;
   const Identification with = identify(machine, part, more);
   if (result.chi_square < kExplains * with.chi_square || !with.errors.back().std) return;
   result.warnings.push_back(
-      fmt::format("a tool radius error of {:+.4f} +- {:.2g} mm would explain it (chi^2 {:.3g} -> "
-                  "{:.3g}): --tool-radius "
-                  "fits it too",
+      fmt::format("a tool radius error of {:+.4f} +- {:.2g} mm would explain the residual (chi^2 {:.3g} -> "
+                  "{:.3g}): --tool-radius also fits this error",
                   with.errors.back().value, *with.errors.back().std, result.chi_square, with.chi_square));
 }
 

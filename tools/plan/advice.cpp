@@ -20,8 +20,8 @@ std::vector<std::string> advice_on_instrument(const std::string& instrument) {
         "label for these runs. A shift between runs of one set-up is an error of the machine."};
   if (instrument == "drift")
     return {
-        "Test the instrument: read a mark that does not move with it for one day, and record times and "
-        "temperatures. If these readings change as much, the instrument drifts. They do not belong into the "
+        "Test the instrument: read a fixed mark with it for one day, and record times and temperatures. If "
+        "the readings of the mark change as much, the instrument drifts. Do not add these readings to the "
         "measurement files."};
   return {};
 }

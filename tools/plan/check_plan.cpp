@@ -190,14 +190,15 @@ CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& opti
 
 std::string check_plan_text(const CheckPlan& plan, double reading_um) {
   std::string text =
-      fmt::format("{} poses of {:g} um show from which change on:\n", plan.states.count, reading_um);
+      fmt::format("smallest change that {} poses with a standard uncertainty of {:g} um detect:\n",
+                  plan.states.count, reading_um);
   const std::size_t named = std::min(plan.shows.size(), kNamed);
   for (std::size_t i = 0; i < named; ++i)
     text += fmt::format("  {:<36} {:>10.3g} {:<4} ({:.3g} um at the tool)\n", plan.shows[i].quantity.name,
                         plan.shows[i].change, plan.shows[i].quantity.unit, plan.shows[i].tool_um);
   if (plan.shows.size() > named)
-    text += fmt::format("  and {} others, from {:.3g} um at the tool on\n", plan.shows.size() - named,
-                        plan.shows.back().tool_um);
+    text += fmt::format("  and {} other parameters; the smallest of their changes is {:.3g} um at the tool\n",
+                        plan.shows.size() - named, plan.shows.back().tool_um);
   if (!plan.not_seen.empty()) {
     std::vector<std::string> first = plan.not_seen;
     first.resize(std::min(first.size(), kNamed));

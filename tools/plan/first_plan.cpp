@@ -207,9 +207,8 @@ double planned_uncertainty_um(const model::Machine& machine, const model::States
 }
 
 std::string first_plan_csv(const model::Machine& machine, const FirstPlan& plan, double reading_um) {
-  return "# Approach every pose in the direction of dir. The first pose is repeated: a drift shows "
-         "there.\n"
-         "# Fill in x, y, z as they are read; rows with the role check test the fit and never enter it.\n" +
+  return "# Approach every pose in the direction of dir. The first pose is repeated: a drift shows there.\n"
+         "# Fill in x, y, z as they are read; rows with the role check only test the fit.\n" +
          pose_rows_csv(machine, plan.states, plan.check, reading_um, "first");
 }
 

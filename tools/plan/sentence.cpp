@@ -193,14 +193,14 @@ std::string Explanation::sentence() const {
     beyond += fmt::format(" {} is logged, but a plan cannot set it.", name);
   if (plan_.told_already && plan_.rows.rows() == 0)
     return fmt::format(
-        "The rows measured so far already distinguish the two: {} explains them better than {} by {:.3g} "
-        "(non-centrality {:.3g}, needed {:.3g}).",
+        "The rows measured so far already distinguish the two effects: {} explains the rows better than {} "
+        "by {:.3g} (non-centrality {:.3g}, required {:.3g}).",
         plan_.lead_of_a > 0 ? a : b, plan_.lead_of_a > 0 ? b : a, std::abs(plan_.lead_of_a), worse.now,
         worse.needed);
   if (!plan_.separable)
     return fmt::format(
-        "{} and {} cannot be separated by {} points of any admissible pose, sense, speed, time or "
-        "input: they reach a non-centrality of {:.3g}, {:.3g} are needed.{}",
+        "{} and {} cannot be separated by {} points of any admissible pose, sense, speed, time or input: "
+        "these points reach a non-centrality of {:.3g}, {:.3g} is required.{}",
         a, b, plan_.rows.rows(), worse.planned, worse.needed, beyond);
   double best = 0;
   std::string where = "in combinations that the existing rows do not contain", why;

@@ -310,16 +310,16 @@ TouchPlan touch_plan(const model::Machine& machine, const std::string& artefact,
 
 std::string touch_plan_text(const TouchPlan& plan, const std::string& artefact) {
   std::string text = fmt::format(
-      "{} touches of {}: tool point known to {:.3g} um (k = 2, mean over the volume) where now it is {:.3g} "
-      "um; all touches of this artefact: {:.3g} um\n",
+      "{} touches of {}: U95 of the tool point {:.3g} um (k = 2, mean over the volume), now {:.3g} um; with "
+      "all touches of this artefact: {:.3g} um\n",
       plan.states.count, artefact, plan.after_um, plan.before_um, plan.least_um);
   if (plan.place_is_assumed)
-    text += fmt::format("The plan assumes that the artefact stands at ({:.1f}, {:.1f}, {:.1f}) mm.\n",
+    text += fmt::format("The plan assumes that the artefact is at ({:.1f}, {:.1f}, {:.1f}) mm.\n",
                         plan.place_mm[0], plan.place_mm[1], plan.place_mm[2]);
   if (!plan.has_length)
     text +=
-        "The size of the machine cannot be found: no length is known. Give the radius of the artefact, or "
-        "the distance of two points.\n";
+        "Touches cannot determine the size of the machine, because no length is known. Give the radius of "
+        "the artefact, or the distance of two points.\n";
   constexpr std::size_t kListed = 12;  // entries of a printed list
   const std::size_t more = plan.not_seen.size() - std::min(kListed, plan.not_seen.size());
   const std::vector<std::string> named(plan.not_seen.begin(),

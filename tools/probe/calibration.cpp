@@ -35,16 +35,15 @@ struct LeverReach {
 
 void say_feeds(const VectorXd& feed, bool delay, std::vector<std::string>& findings) {
   if (!delay) {
-    findings.push_back(fmt::format(
-        "All touches have a feed near {:.0f} mm/min: the delay cannot be distinguished from pretravel and "
-        "tip radius. "
-        "The effective "
-        "tip radius holds at this feed only; touch again at a feed at least twice or half as fast.",
-        feed.mean()));
+    findings.push_back(
+        fmt::format("All touches have a feed near {:.0f} mm/min: the delay cannot be distinguished from "
+                    "pretravel and tip radius. The effective tip radius is valid at this feed only. Repeat "
+                    "the touches at a feed that is at least twice or at most half as fast.",
+                    feed.mean()));
   } else if (feed.maxCoeff() < 2 * feed.minCoeff()) {
     findings.push_back(
-        fmt::format("Feeds reach from {:.0f} to {:.0f} mm/min only: delay and pretravel are correlated; a "
-                    "wider range makes both surer.",
+        fmt::format("The feeds are only from {:.0f} to {:.0f} mm/min, so delay and pretravel are correlated; "
+                    "a wider range of feeds reduces the uncertainty of both.",
                     feed.minCoeff(), feed.maxCoeff()));
   }
 }
@@ -314,7 +313,8 @@ const Calibrated* find_calibrated(const std::vector<Calibrated>& parameters, con
 void say_outliers(const TouchFit& fit, const TouchTable& table, std::vector<std::string>& findings) {
   for (const TouchOutlier& outlier : fit.outliers)
     findings.push_back(
-        fmt::format("{}:{}: left out: {:+.2f} um from the others, {:.0f} times their scatter (chance {:.1g})",
+        fmt::format("{}:{}: excluded as an outlier: {:+.2f} um from the other touches, {:.0f} times their "
+                    "scatter (probability {:.1g})",
                     table.file(), table.line(outlier.touch), outlier.residual * maths::kUmPerMm,
                     std::abs(outlier.t), outlier.p_value));
 }
@@ -331,8 +331,9 @@ void refuse_absurd(const ProbeCalibration& result, const CalibrationSetup& setup
   if (const Calibrated* const delay = result.find("delay");
       delay &&
       (delay->value - 3 * delay->std > kMostDelay_ms || delay->value + 3 * delay->std < kLeastDelay_ms))
-    throw text::InputError(fmt::format("{}: the touches give a delay of {:.4g} ms, which no probe has: {}",
-                                       table.file(), delay->value, kHint));
+    throw text::InputError(
+        fmt::format("{}: the touches give a delay of {:.4g} ms, which is impossible for a probe: {}",
+                    table.file(), delay->value, kHint));
   const Calibrated* const tip = result.find("effective_tip_radius");
   if (tip && std::abs(tip->value) - 3 * tip->std > setup.size_mm)
     throw text::InputError(fmt::format(
@@ -386,12 +387,13 @@ GroupComparison compare_groups(const TouchTable& table, const CalibrationSetup& 
   if (extra > 0 && dof > 0 && within > 0)
     result.chance =
         std::exp(maths::log_f_tail(std::max(0.0, together - within) / extra / (within / dof), extra, dof));
-  result.words =
-      result.chance < kGroupChance
-          ? fmt::format("The groups differ (chance {:.1g} if they were alike): calibrate each by itself.",
-                        result.chance)
-          : fmt::format("The groups do not differ by more than their scatter (chance {:.2g}).",
-                        result.chance);
+  result.words = result.chance < kGroupChance
+                     ? fmt::format(
+                           "The groups differ significantly (probability {:.1g} for equal groups): calibrate "
+                           "each group separately.",
+                           result.chance)
+                     : fmt::format("The groups do not differ by more than their scatter (chance {:.2g}).",
+                                   result.chance);
   return result;
 }
 

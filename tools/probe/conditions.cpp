@@ -35,23 +35,23 @@ std::vector<std::string> broken_conditions(const TouchConditions& conditions, do
   constexpr double kRounding = 1 + 1e-9;  // a limit that a user typed is valid
   const double following = following_error(conditions, feed);
   if (clearance * kRounding < least_approach(conditions, feed))
-    broken.push_back(fmt::format(
-        "an approach of {:.4g} mm at {:.4g} mm/min touches before the speed is constant: {:.3g} mm "
-        "(the axis follows {:.3g} mm behind)",
-        clearance, feed, least_approach(conditions, feed), following));
+    broken.push_back(
+        fmt::format("an approach of {:.4g} mm at {:.4g} mm/min touches before the speed is constant: the "
+                    "approach must be at least {:.3g} mm (following error of the axis {:.3g} mm)",
+                    clearance, feed, least_approach(conditions, feed), following));
   if (overtravel && *overtravel * kRounding < least_overtravel(conditions, feed))
-    broken.push_back(fmt::format(
-        "an approach that ends {:.4g} mm beyond the surface at {:.4g} mm/min has stopped before the "
-        "contact: the axis follows {:.3g} mm behind",
-        *overtravel, feed, following));
+    broken.push_back(
+        fmt::format("an approach that ends {:.4g} mm beyond the surface at {:.4g} mm/min has stopped before "
+                    "the contact: the following error of the axis is {:.3g} mm",
+                    *overtravel, feed, following));
   if (overtravel && *overtravel > conditions.stylus_mm * kRounding)
     broken.push_back(
-        fmt::format("an approach that ends {:.4g} mm beyond the surface bends the stylus by that where no "
-                    "trigger comes: it bears {:.4g} mm",
+        fmt::format("an approach that ends {:.4g} mm beyond the surface bends the stylus by this distance if "
+                    "the probe does not trigger: the stylus permits {:.4g} mm",
                     *overtravel, conditions.stylus_mm));
   if (stopping_way(conditions, feed) > conditions.stylus_mm * kRounding)
     broken.push_back(fmt::format(
-        "at {:.4g} mm/min the machine stands {:.3g} mm behind the contact: the stylus bears {:.4g} mm", feed,
+        "at {:.4g} mm/min the machine stops {:.3g} mm behind the contact: the stylus permits {:.4g} mm", feed,
         stopping_way(conditions, feed), conditions.stylus_mm));
   return broken;
 }

@@ -261,7 +261,8 @@ MeasuredFeature fit_circle(const Touches& touches, const FeatureSetup& setup) {
   feature.deviation = side * feature.fit.residual;
   if (!flat)
     feature.findings.push_back(
-        fmt::format("The circle lies in the touches' own plane; they are up to {:.2f} um off it.",
+        fmt::format("The circle is in the best-fit plane of the touches; the largest distance of a touch "
+                    "from this plane is {:.2f} um.",
                     local.col(2).cwiseAbs().maxCoeff() * 1e3));
   return feature;
 }

@@ -93,8 +93,9 @@ std::vector<std::string> remarks(const residual::BeforeAfter& result) {
         "the two measurements have different poses: the comparison uses all rows of both, in blocks of "
         "neighbouring rows");
   if (result.unmatched_before + result.unmatched_after > 0)
-    list.push_back(fmt::format("left out, at poses that only one has: {} rows before, {} after",
-                               result.unmatched_before, result.unmatched_after));
+    list.push_back(fmt::format(
+        "excluded, because their poses occur only before or only after: {} rows before, {} rows after",
+        result.unmatched_before, result.unmatched_after));
   if (result.corrected_before > 0)
     list.push_back(
         fmt::format("{} rows of `before` state that a correction was on", result.corrected_before));

@@ -211,8 +211,8 @@ void print_domains(std::FILE* out, const ordered_json& domains) {
   for (const ordered_json& use : domains)
     if (use["rows_outside"].get<std::size_t>() > 0)
       fmt::print(out,
-                 "{}: {} goes from {:.4g} to {:.4g}, trained is {:.4g} to {:.4g}: the term fades on {} rows, "
-                 "on {} to nothing\n",
+                 "{}: {} is from {:.4g} to {:.4g}, the trained range is {:.4g} to {:.4g}: the term has a "
+                 "reduced weight in {} rows, in {} of them the weight 0\n",
                  use["domain"].get<std::string>(), use["quantity"].get<std::string>(),
                  use["least"].get<double>(), use["most"].get<double>(), use["low"].get<double>(),
                  use["high"].get<double>(), use["rows_outside"].get<std::size_t>(),

@@ -44,7 +44,8 @@ void print_safety(std::FILE* out, const safety::SafetySheet& sheet) {
                f.ok || f.culprit.empty() ? "" : ": " + f.culprit);
   for (const std::string& name : sheet.stale)
     fmt::print(out,
-               "  note: {} was added or set by hand since the fit: uncertain by as much as it was moved\n",
+               "  note: {} was added or set by hand since the fit: its uncertainty is increased by the size "
+               "of the change\n",
                name);
 }
 

@@ -143,9 +143,8 @@ std::string sentence_of_run(const model::Measurement& m, const RecordSeries& run
   }
   if (!best) return {};
   return fmt::format(
-      "In run {} the residual repeats {:.1f} samples later (correlation {:.3f}, difference {:.1f} um), where "
-      "the "
-      "positions say {:.1f} (correlation {:.2f}, difference {:.1f} um).",
+      "In run {} the residual repeats {:.1f} samples later (correlation {:.3f}, difference {:.1f} um), but "
+      "the positions repeat {:.1f} samples later (correlation {:.2f}, difference {:.1f} um).",
       m.states.run_names[run.run], best->lag, best->correlation, best->difference, best->implied_lag,
       best->implied_correlation, best->implied_difference);
 }

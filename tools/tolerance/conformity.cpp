@@ -80,10 +80,9 @@ class ConformityRunner {
  private:
   static const model::Machine& known(const model::Machine& machine) {
     if (!machine.fitted)
-      throw text::InputError(
-          {machine.file, 0}, machine.name,
-          "was never fitted (no <fitted>): how well it is known is not; give measurements, or "
-          "what `vernier fit` wrote");
+      throw text::InputError({machine.file, 0}, machine.name,
+                             "was never fitted (no <fitted>), so its uncertainty is not known; give "
+                             "measurements, or a machine file that `vernier fit` wrote");
     return machine;
   }
 

@@ -101,7 +101,7 @@ class PointSolver {
     const kinematics::Inverse& proof = result.each[0];
     if (!proof.converged)
       throw text::LimitNotMet(
-          fmt::format("{}:{}: \"{}\": the machine does not get to {:.6g} {:.6g} {:.6g}: {}", file_,
+          fmt::format("{}:{}: \"{}\": the machine cannot reach the point {:.6g} {:.6g} {:.6g}: {}", file_,
                       feature.line, feature.name, target.position(0, at), target.position(1, at),
                       target.position(2, at), kinematics::name_of(proof.fault)));
     for (std::size_t a = 0; a < nominal_.axes.size(); ++a) all.states.axis[a][at] = result.states.axis[a][0];

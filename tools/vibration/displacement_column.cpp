@@ -66,8 +66,8 @@ DisplacementSeries by_corner(const Signal& signal, double rate_Hz, double corner
   Displacement filter;
   if (!filter.start(scale))
     throw text::InputError(
-        fmt::format("--corner {:g} Hz: at {:g} Hz it must be within {:.3g} and {:.4g} Hz, and the "
-                    "resolution of \"{}\" such that a sample is at most 16 um",
+        fmt::format("--corner {:g} Hz: at a sample rate of {:g} Hz the corner must be from {:.3g} to {:.4g} "
+                    "Hz, and the resolution of \"{}\" must be such that a sample is at most 16 um",
                     corner_Hz, rate_Hz, std::max(0.001, rate_Hz / 131072), rate_Hz / 64, signal.name));
   DisplacementSeries series{signal.name, {}, corner_Hz, 0, 0};
   const double settled = kSettlingPeriods * rate_Hz / corner_Hz;
@@ -114,9 +114,9 @@ std::vector<Pairing> pairings_of(const VibrationRecord& record, const std::vecto
       pairing.um.push_back(one.at_row_um[row]);
     }
     if (pairing.um.size() < 3)
-      throw text::InputError(
-          fmt::format("\"{}\": {} rows within the record have a measured displacement, three are the least",
-                      one.signal, pairing.um.size()));
+      throw text::InputError(fmt::format(
+          "\"{}\": only {} rows within the record have a measured displacement; at least three are required",
+          one.signal, pairing.um.size()));
     pairings.push_back(std::move(pairing));
   }
   return pairings;

@@ -245,16 +245,16 @@ void require_limits(Table& settings, AxisEntry& axis, TimeUs tick) {
                     mend);
   };
   require("max_correction",
-          "max_correction = 0.1  # " + unit + ", the most that is ever added to the command");
-  require("max_speed",
-          "max_speed = 500  # " + unit + "/s of the axis; correction_share of it moves a correction");
+          "max_correction = 0.1  # " + unit + ", the largest correction that the board adds to the command");
+  require("max_speed", "max_speed = 500  # " + unit +
+                           "/s of the axis; a correction uses the share correction_share of it");
   if (settings.has("max_step")) return;
   const std::string step = number_text(default_step(settings, axis, tick));
   axis.default_step = "max_step = " + step + "  # " + unit + " in one tick";
   if (settings.has("max_acceleration")) return;
   settings.fail("max_step or max_acceleration is missing: an output of kind " + output.kind +
                 " needs one of them; add max_step = " + step + "  # " + unit +
-                ", the most that a correction changes in one tick");
+                ", the largest change of a correction in one tick");
 }
 
 /// `name`, motion and limits of an axis. device: its table has the settings of the position's device too.
@@ -398,9 +398,9 @@ void read_key(BoardFile& board, const toml::table& table) {
   settings.nothing_else();
   BoardIdentity& identity = board.service.upload.identity;
   if (identity.find(key.key.data(), kPublicKeyBytes) != nullptr)
-    settings.fail(name + ": this key is there twice");
+    settings.fail(name + ": the board file has this key twice");
   if (identity.keys.size() == BoardIdentity::kMostKeys)
-    settings.fail("more keys than the board has room for");
+    settings.fail("the board file has more keys than the board can store");
   identity.keys.push_back(key);
 }
 
@@ -500,7 +500,7 @@ void read_axes(BoardFile& board, Table& settings, const toml::table& file) {
       Table entry(table, board.path, "axis");
       const std::string name = entry.text("name", "");
       if (name.empty()) entry.fail("name is missing: the name of the axis in the machine file");
-      if (known(name)) entry.fail("name: '" + name + "' is there twice", table.get("name"));
+      if (known(name)) entry.fail("name: '" + name + "' occurs twice", table.get("name"));
       read_flat_axis(board, name, table, output_of(name));
     });
   } else if (const toml::table* const tables = settings.table("axis")) {

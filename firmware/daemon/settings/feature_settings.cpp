@@ -36,7 +36,8 @@ double nm_s2_in_a_millionth(const InputEntry& input, const SignalSource& source)
   if (input.unit == "g") return 9806.65;  // standard gravity, ISO 80000-3
   if (input.unit == "m/s^2") return 1000;
   if (input.unit == "mm/s^2") return 1;
-  source.fail(input.name + " is in \"" + input.unit + "\": a displacement is made of g, m/s^2 or mm/s^2");
+  source.fail(input.name + " is in \"" + input.unit +
+              "\": a displacement needs an acceleration in g, m/s^2 or mm/s^2");
 }
 
 /// The settings of feature = "DISPLACEMENT". What only the rate decides is refused where windows are.

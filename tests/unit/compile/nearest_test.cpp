@@ -45,8 +45,8 @@ TEST(Nearest, ATelescopePointsWhereItIsTold) {
   const TestMachine test = mount(-40, 70, 0);
   // THEN two axes are corrected, and nothing is left but what the bound admits
   EXPECT_EQ(test.compiled.program.outputs.size(), 2u);
-  EXPECT_TRUE(says(test.compiled, "in other directions at each pose"));
-  EXPECT_FALSE(says(test.compiled, "fades"));
+  EXPECT_TRUE(says(test.compiled, "in directions that depend on the pose"));
+  EXPECT_FALSE(says(test.compiled, "the correction is reduced"));
   const LeftOver left = left_over(test, 20000, kSeed);
   const double bound = largest_bound_um(test.compiled);
   std::printf("seed %u: %.1f um before, %.5f um left, %.5f um proved, %zu operations\n", kSeed,
@@ -71,7 +71,7 @@ TEST(Nearest, WhatLiesAcrossTheAxesStays) {
 
 TEST(Nearest, TowardsThePoleTheCorrectionFades) {
   const TestMachine test = mount(0, 90, 0);
-  EXPECT_TRUE(says(test.compiled, "fades"));
+  EXPECT_TRUE(says(test.compiled, "the correction is reduced"));
   const Agreement seen = compare(test, 2, 4000, kSeed);
   EXPECT_LE(seen.worst_share, 1);
   EXPECT_GT(seen.poses, 7000u);

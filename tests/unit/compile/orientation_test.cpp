@@ -133,7 +133,8 @@ TEST(Orientation, SingularPoseIsToldAndKeepsTheTiltThatItsAxesReach) {
   const TestMachine test(five_axis());
   EXPECT_TRUE(std::any_of(test.compiled.notes.begin(), test.compiled.notes.end(),
                           [](const std::string& note) {
-                            return note.find("B and C tilt the tool the same way") != std::string::npos;
+                            return note.find("B and C tilt the tool in the same direction") !=
+                                   std::string::npos;
                           }))
       << "no note";
   ASSERT_TRUE(test.compiled.orientation && test.compiled.orientation->damped);

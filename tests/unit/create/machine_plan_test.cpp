@@ -111,7 +111,7 @@ TEST(MachinePlan, RefusalsSayWhatToDo) {
   const auto has = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
   };
-  EXPECT_TRUE(has(refusal([] { plan("delta", {"X:0:1"}); }), "closes several"));
+  EXPECT_TRUE(has(refusal([] { plan("delta", {"X:0:1"}); }), "has closed loops"));
   EXPECT_TRUE(has(refusal([] { plan("lathe", {"X:0:1"}); }), "known types are gantry bridge"));
   EXPECT_TRUE(has(refusal([] { plan("gantry", {}); }), "no axis"));
   EXPECT_TRUE(has(refusal([] { plan("gantry", {"X:0:1", "X:0:2"}); }), "given twice"));

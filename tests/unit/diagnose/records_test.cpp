@@ -326,7 +326,7 @@ TEST(Records, OutliersDoNotTurnAGrowthIntoADriftOfTheInstrument) {
   const Diagnosis answer = diagnosed(machine, text);
   EXPECT_EQ(answer.verdict, Verdict::kMissingEffect) << answer.explanation;
   EXPECT_EQ(answer.candidates.at(0).candidate.choice.effect->id, "thermal-scale");
-  EXPECT_NE(answer.explanation.find("Left out:"), std::string::npos) << answer.explanation;
+  EXPECT_NE(answer.explanation.find("Excluded as outliers:"), std::string::npos) << answer.explanation;
 }
 
 /// Rows at random positions with an error of the move before, noise of 1 um and a drift of 0.3 um a row.

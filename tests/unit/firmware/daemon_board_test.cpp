@@ -340,7 +340,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadBoard{"DisplacementOfDegrees", "source = { kind = \"sim\" }",
                  "source = { kind = \"sim\" }\n[input.D]\nunit = \"um\"\nsource = { kind = \"feature\", of = "
                  "\"T\", feature = \"DISPLACEMENT\", corner_Hz = 0.5 }",
-                 "input.D.source: T is in \"degC\": a displacement is made of g"},
+                 "input.D.source: T is in \"degC\": a displacement needs an acceleration in g"},
         BadBoard{"DisplacementUnit", "source = { kind = \"sim\" }",
                  "source = { kind = \"feature\", of = \"A\", feature = \"DISPLACEMENT\", corner_Hz = 0.5 }\n"
                  "[input.A]\nunit = \"g\"\nsource = { kind = \"sim\" }",
@@ -354,7 +354,7 @@ INSTANTIATE_TEST_SUITE_P(
             "source = { kind = \"sim\" }\n[input.D]\nunit = \"um\"\nsource = { kind = \"feature\", of = "
             "\"A\", feature = \"DISPLACEMENT\", corner_Hz = 20 }\n[input.A]\nunit = \"g\"\nsource = { kind "
             "= \"sim\" }",
-            "input.D.source: no window or filter can be made of it"},
+            "input.D.source: the settings do not give a window or a filter"},
         BadBoard{"DisplacementWindow", "source = { kind = \"sim\" }",
                  "source = { kind = \"sim\" }\n[input.D]\nunit = \"um\"\nsource = { kind = \"feature\", of = "
                  "\"A\", feature = \"DISPLACEMENT\", corner_Hz = 1, window = 800 }\n[input.A]\nunit = "
@@ -365,7 +365,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadBoard{"Role", "[[link]]", "[[key]]\nname = \"a\"\nfile = \"key.pub\"\nrole = \"boss\"\n[[link]]",
                  "role: 'boss' is not one of"},
         BadBoard{"KeyTwice", "[[link]]", "[[key]]\nname = \"a\"\nfile = \"key.pub\"\n[[link]]",
-                 "this key is there twice"},
+                 "the board file has this key twice"},
         BadBoard{"Access", "port = 0", "access = \"all\"", "access: 'all' is not one of"},
         BadBoard{"Link", "kind = \"modbus-tcp\"", "kind = \"telnet\"", "no link of kind telnet"}),
     [](const auto& parameter) { return parameter.param.name; });

@@ -206,7 +206,7 @@ TEST(OtherSetUp, AFileOfAnotherSetUpIsNamedWithBothResiduals) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].before_um, 1e6 / std::sqrt(3), 1e3);
   EXPECT_LT(found[0].own_um, 3);
-  EXPECT_NE(found[0].sentence().find("s.csv: the set-up of this file is not known to the model"),
+  EXPECT_NE(found[0].sentence().find("s.csv: the model does not contain the set-up of this file"),
             std::string::npos);
 }
 

@@ -61,7 +61,7 @@ TEST(PrinterFile, WrongMeshesAreNamedWithTheirLine) {
   EXPECT_THAT(read(with("0.02", "nan")), HasSubstr("p.cfg:13: "));
   EXPECT_THAT(read(with("min_x", "mix_x")), HasSubstr("lacks this setting"));
   EXPECT_THAT(read(with("x_count = 3", "x_count = 3000000000")), HasSubstr("from 1 to 1000"));
-  EXPECT_THAT(read("[stepper_x]\n"), HasSubstr("the file has none"));
+  EXPECT_THAT(read("[stepper_x]\n"), HasSubstr("the file has no touches"));
 }
 
 TEST(PrinterFile, LogOfKlipperHasTimesAndTemperatures) {

@@ -515,7 +515,7 @@ TEST(SheetNote, NamesEveryRowThatIsLeftOutOrShort) {
       "Punkt;X [mm];x [mm];y [mm]\nP1;0;1\nP2;9;10;1\nMittelwert;4,5;5,5;1\n", "s.csv", SheetWords());
   const std::vector<std::string> wanted = {
       "line 2: 3 cells, 4 headings: no value for \"y [mm]\"",
-      "line 4: the row \"Mittelwert\" is computed from the rows above, left out"};
+      "line 4: the row \"Mittelwert\" is computed from the rows above it and is omitted"};
   EXPECT_EQ(reading.sheet.notes, wanted);
   const SheetReading off = read_as_sheet("X [mm];x [mm]\n0;1\n#9;10\n", "s.csv", SheetWords());
   ASSERT_EQ(off.sheet.notes.size(), 1u);

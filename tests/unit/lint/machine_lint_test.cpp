@@ -53,7 +53,7 @@ TEST(MachineLint, EveryErrorIsSaidAtOnce) {
   some_line_has(lines, "m.xml:5: warning: \"inch\": unknown unit, of offset -- did you mean in?");
   some_line_has(lines,
                 "m.xml:6: error: \"5mm\": value must be a number -- write the unit as the attribute unit=");
-  some_line_has(lines, "m.xml:8: error: \"offset\": this name stands twice");
+  some_line_has(lines, "m.xml:8: error: \"offset\": this name occurs twice");
   some_line_has(lines,
                 "m.xml:11: error: \"maxcorection\": unknown attribute of <X> -- did you mean maxcorrection?");
   some_line_has(lines, "m.xml:13: warning: \"Q\": no transform uses this axis");

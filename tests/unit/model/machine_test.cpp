@@ -113,7 +113,7 @@ TEST(MachineFile, ErrorsNameFileLineAndWord) {
             "m.xml:11: \"alhpa\": unknown name, in X=\"X+alh");
   EXPECT_EQ(error_of(with("<k value=\"one\"/>\n", "<X/>\n", "")), "m.xml:4: \"one\": value must be a number");
   EXPECT_EQ(error_of(with("<k value=\"1\"/>\n<k value=\"2\"/>\n", "<X/>\n", "")),
-            "m.xml:5: \"k\": this name stands twice");
+            "m.xml:5: \"k\": this name occurs twice");
   EXPECT_EQ(error_of(with("<t value=\"1\"/>\n", "<X/>\n", "")), "m.xml:4: \"t\": this name is reserved");
   EXPECT_EQ(error_of(with("<vX value=\"1\"/>\n", "<X/>\n", "")),
             "m.xml:4: \"vX\": this name is already a quantity of the axes");

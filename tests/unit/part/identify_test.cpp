@@ -179,7 +179,7 @@ TEST(Identify, AToolOfAnotherRadiusIsToldAndFitted) {
     IdentifyOptions options{{{}, reading}};
     const Identification plain = identify(part_data::machine(), part, options);
     ASSERT_EQ(plain.warnings.size(), 2u);
-    EXPECT_NE(plain.warnings[0].find("times the points' uncertainty"), std::string::npos)
+    EXPECT_NE(plain.warnings[0].find("times the uncertainty of the points"), std::string::npos)
         << plain.warnings[0];
     EXPECT_NE(plain.warnings[1].find("--tool-radius"), std::string::npos) << plain.warnings[1];
     options.tool_radius = true;

@@ -76,7 +76,7 @@ TEST(TouchPlan, APointFromAllPosturesShowsAnArmAllButItsSize) {
   EXPECT_FALSE(plan.has_length);
   EXPECT_THAT(plan.not_seen, Contains("far"));
   EXPECT_THAT(plan.not_seen, Not(Contains("zero")));
-  EXPECT_THAT(touch_plan_text(plan, "p"), HasSubstr("size of the machine cannot be found"));
+  EXPECT_THAT(touch_plan_text(plan, "p"), HasSubstr("cannot determine the size of the machine"));
 }
 
 TEST(TouchPlan, WhatCannotBePlannedIsNamed) {

@@ -53,7 +53,8 @@ TEST(ProbeCal, ARenamedColumnKeepsTheUnitInItsNameAndNonsenseIsRefused) {
     published({"mean_lp_um=lower[mm]"}, {});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("which no probe has"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("which is impossible for a probe"), std::string::npos)
+        << error.what();
   }
 }
 

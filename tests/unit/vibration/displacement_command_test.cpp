@@ -195,7 +195,7 @@ TEST(DisplacementColumn, RefusesWhatMakesNone) {
     EXPECT_NE(said.find(with), std::string::npos) << said;
   };
   refused(kFolder + "volts.csv --features DISPLACEMENT ", "no signal of the record is an acceleration");
-  refused(record + "--corner 20 ", "--corner 20 Hz: at 1000 Hz it must be within");
+  refused(record + "--corner 20 ", "--corner 20 Hz: at a sample rate of 1000 Hz the corner must be from");
   refused(record + "--corner wide ", "--corner wide");
   refused(record + "--cutoff -1 ", "--cutoff -1");
   refused(record + "--cutoff fit ", "--against");

@@ -96,7 +96,8 @@ void run_add(const AddArguments& arguments) {
   refuse_known_key(machine, registry.machines());
   registry.put(machine);
   if (arguments.trust)
-    fmt::print(stderr, "{}: board {} with {} is entered, on the word of the board that answers at {}\n",
+    fmt::print(stderr,
+               "{}: board {} with {} is entered; the name and key are those that the board at {} states\n",
                machine.name, machine.board,
                machine.board_key.empty() ? "no board key" : "key " + machine.board_key, machine.url);
 }
@@ -204,7 +205,7 @@ void run_status(const ListArguments& arguments) {
     for (const auto& [name, value] : one.values) fmt::print(out, "  {:<40} {}\n", name, value);
   }
   if (!arguments.machine.empty() && all.empty())
-    throw text::InputError({}, arguments.machine, "the registry has not received data of this machine");
+    throw text::InputError({}, arguments.machine, "the registry has not received any data of this machine");
   Json unknown = Json::array();
   for (const registry::NotEntered& one : registry.not_entered()) {
     unknown.push_back({{"machine", one.machine},

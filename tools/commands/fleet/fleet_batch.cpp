@@ -46,7 +46,7 @@ const CLI::App& command_for(const CLI::App& vernier, const std::vector<std::stri
   }
   if (command == nullptr)
     throw text::InputError({}, words.empty() ? "" : words.front(),
-                           "the command of each machine is wanted here, e.g. diagnose models/{machine}.xml "
+                           "the command for each machine is missing here, e.g. diagnose models/{machine}.xml "
                            "data/{machine}.csv");
   return *command;
 }
@@ -70,7 +70,7 @@ std::vector<std::string> command_of(const CLI::App& vernier, const BatchArgument
                              "remove this option: the batch stores the result of each machine by itself");
   if (std::none_of(words.begin(), words.end(),
                    [](const std::string& word) { return word.find("{machine}") != std::string::npos; }))
-    throw text::InputError("no {machine} in the command: it would be the same for each machine");
+    throw text::InputError("no {machine} in the command, so the command would be the same for each machine");
   if (command.get_option_no_throw("--json") != nullptr) words.insert(words.end(), {"--json", "-"});
   return words;
 }
@@ -243,10 +243,11 @@ void add_batch(CLI::App& fleet) {
       ->allow_extra_args(false);
   command->prefix_command();
   command->footer(
-      "Behind NAME and the options: the command of each machine, as for vernier, with {machine} for the "
-      "name:\n"
+      "After NAME and the options, write the vernier command for each machine, with {machine} in place of "
+      "its name:\n"
       "  vernier fleet batch night --scheduler slurm diagnose models/{machine}.xml data/{machine}.csv\n"
-      "The command runs in the present directory. Its result (--json) is the answer of the machine.\n"
+      "The command for each machine runs in the present directory. The result of the command (--json) is the "
+      "answer of the machine.\n"
       "Exit status 0 done, 1 bad input.");
   CLI::App* const vernier = fleet.get_parent();
   command->callback([batch, command, vernier] {
@@ -275,9 +276,8 @@ void add_batch(CLI::App& fleet) {
   add_registry(*command, collect->registry);
   command->add_option("--json", collect->json, "result for programs; - for standard output");
   command->footer(
-      "May be called while the batch runs, and again. Exit status 0 the answers of all machines are booked, "
-      "1 "
-      "bad\ninput, 2 some are not booked: they are listed.");
+      "The command may be called several times, also while the batch runs. Exit status 0 the answers of all\n"
+      "machines are booked, 1 bad input, 2 some answers are not booked (the command lists these answers).");
   command->callback([collect] { run_collect(*collect); });
 
   const auto answers = std::make_shared<CollectArguments>();

@@ -221,7 +221,8 @@ void add_rollout(CLI::App& fleet) {
       ->capture_default_str();
   command->add_option(
       "--judge", arguments->options.judge,
-      "command for a shell, {machine} for the name: 0 not worse; anything else takes the image back");
+      "shell command that evaluates a machine with the new image, {machine} in place of the name: exit "
+      "status 0: the machine is not worse; any other exit status reverts the image");
   command
       ->add_option("--settle", arguments->options.settle_s,
                    "time in s within which the board must start to use a correction image")
@@ -229,8 +230,8 @@ void add_rollout(CLI::App& fleet) {
       ->capture_default_str();
   command
       ->add_option("--lease", arguments->options.lease_s,
-                   "duration of the lock on a machine, s: after a killed call, another call must wait so "
-                   "long. The value must be longer than the slowest answer of a board")
+                   "duration of the lock on a machine, s: after a call was killed, another call must wait "
+                   "for this time. The value must be longer than the slowest answer of a board")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
   command->add_flag("--go-on", arguments->options.go_on,
@@ -243,13 +244,12 @@ void add_rollout(CLI::App& fleet) {
   command->footer(
       "The judge command must answer within the trial time of the board, e.g. measure and `vernier compare "
       "--limit`.\n"
-      "Before anything is signed or sent, each board must give its name and prove its key (vernier fleet add "
-      "--board, --board-key, --trust).\n"
-      "Exit status 0 all kept and in effect (without --images: reported), 1 bad input (no board was asked), "
-      "2 it "
-      "has stopped: a machine was worse, not available,\nanother board or not in effect, or another caller "
-      "has one of the "
-      "machines.");
+      "Before the command signs or sends an image, each board must state its name and prove its key (vernier "
+      "fleet add --board, --board-key, --trust).\n"
+      "Exit status 0 all images are kept and in effect (without --images: the state is printed), 1 bad input "
+      "(no request was sent to a board),\n"
+      "2 the rollout has stopped: a machine was worse or not available, a board was another board, an image "
+      "was not in effect, or another caller has one of the machines.");
   command->callback([arguments] { run_or_stand(*arguments); });
 }
 

@@ -63,7 +63,8 @@ void add_services(CLI::App& fleet) {
       ->type_name(kReads)
       ->required();
   gateway->footer(
-      "Runs until interrupted. The broker's password is taken from VERNIER_MQTT_PASSWORD.\n"
+      "The gateway runs until it is interrupted. It reads the password of the broker from "
+      "VERNIER_MQTT_PASSWORD.\n"
       "Exit status 0 stopped on request, 1 bad input, 70 the store fails (full or broken medium).");
   gateway->callback([file] { run_gateway_command(*file); });
 
@@ -84,9 +85,10 @@ void add_services(CLI::App& fleet) {
                    "name of this host application (Sparkplug); the gateway files must state the same name")
       ->capture_default_str();
   ingest->footer(
-      "Runs until interrupted; broker and database may go and come back. The broker's password is taken "
-      "from\n"
-      "VERNIER_MQTT_PASSWORD. Exit status 0 stopped on request, 1 bad input.");
+      "The command runs until it is interrupted, also if the broker or the database is not available for a "
+      "time. It reads\n"
+      "the password of the broker from VERNIER_MQTT_PASSWORD. Exit status 0 stopped on request, 1 bad "
+      "input.");
   ingest->callback([options] {
     fleet::require_broker_address(options->broker.address);
     if (options->registry.empty()) make_registry(options->registry);

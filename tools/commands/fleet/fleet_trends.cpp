@@ -67,12 +67,12 @@ void run_alike(const TrendArguments& arguments) {
        registry::drifts(registry.readings(time_of(arguments.since, 0)), arguments.alike)) {
     all.push_back(drift_json(drift));
     if (!drift.judged) {
-      fmt::print(out, "{}: too little ({} machines, {} times)\n", drift.quantity, drift.machines,
-                 drift.times);
+      fmt::print(out, "{}: too few readings for a result ({} machines, {} times)\n", drift.quantity,
+                 drift.machines, drift.times);
       continue;
     }
     if (drift.common)
-      fmt::print(out, "{}: {} machines change alike, by {:.3g} {} (p {:.1e}): look for a common cause\n",
+      fmt::print(out, "{}: {} machines have the same change, {:.3g} {} (p {:.1e}): look for a common cause\n",
                  drift.quantity, drift.machines - drift.own.size(), drift.common_swing, drift.unit,
                  drift.common_p);
     for (const registry::OwnDrift& one : drift.own)
@@ -121,9 +121,12 @@ void add_trends(CLI::App& fleet) {
       ->capture_default_str();
   command->add_option("--json", alike->json, "result for programs; - for standard output");
   command->footer(
-      "reading = level of the machine + common curve of time + own rate x time, weighted by the stated\n"
-      "uncertainties; individual rates are added one by one if an F test is significant. Readings count as\n"
-      "independent and normal. Exit status 0 done, for every finding; 1 bad input.");
+      "Model: reading = constant of the machine + common curve of time + rate of the machine x time, "
+      "weighted by the stated\n"
+      "uncertainties. The command adds the rates of single machines one by one if an F test is significant, "
+      "and treats the\n"
+      "readings as independent and normally distributed. Exit status 0 done (for every result), 1 bad "
+      "input.");
   command->callback([alike] { run_alike(*alike); });
 }
 

@@ -90,8 +90,10 @@ void run_check(const CheckArguments& arguments) {
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   if (anew)
-    fmt::print(out, "note: {} holds checks of another fit, or of an older version; a new history begins\n",
-               arguments.history);
+    fmt::print(
+        out,
+        "note: the history file {} has checks of another fit or of an older version; a new history begins\n",
+        arguments.history);
   fmt::print(out, "verdict: {}. {}\n", check::verdict_name(answer.verdict), answer.explanation);
   fmt::print(out, "evidence for a change: {:.3g} over {} check{}, alarm threshold {:g}\n", answer.evidence,
              history.checks.size(), history.checks.size() == 1 ? "" : "s", answer.alarm);
@@ -137,10 +139,13 @@ void register_check(CLI::App& vernier) {
       ->type_name(kReadsFolder);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "Each check fits the set-up of the instrument again. Readings count as independent, normal, and as\n"
-      "uncertain by their u (without u: as the fit's own residual). Exit status 0 done, for every\n"
-      "finding; 1 bad input (nothing written); 2 -o was given, and the change is not a parameter (the\n"
-      "verdict and the history are written, the machine file is not).");
+      "Each check fits the set-up of the instrument again. The command treats the readings as independent "
+      "and\n"
+      "normally distributed, with the standard uncertainty u (without u: the rms of the residual of the "
+      "fit).\n"
+      "Exit status 0 done (for every verdict), 1 bad input (nothing written), 2 -o was given, but the change "
+      "is not\n"
+      "that of a parameter (the verdict and the history are written, the machine file is not).");
   command->callback([arguments] { run_check(*arguments); });
 }
 

@@ -75,7 +75,8 @@ evaluate::PositioningBudget budget_of(const PositioningArguments& arguments,
 }
 
 void run_positioning(const PositioningArguments& arguments) {
-  if (arguments.axes.size() != 1) throw text::InputError("--axis: one axis a call");
+  if (arguments.axes.size() != 1)
+    throw text::InputError("--axis: give only one axis; call the command again for each further axis");
   evaluate::PositioningWords words;
   words.axis = arguments.axes.front();
   words.files = arguments.measurements;
@@ -152,20 +153,19 @@ void register_evaluate(CLI::App& vernier) {
                    "characteristic")
       ->allow_extra_args(false);
   kind->add_option("--budget", arguments->budget,
-                   "a part of the uncertainty, from which the uncertainty of each characteristic is "
-                   "computed: device=0.8 "
-                   "(um/m, k = 2), misalignment=1 (mm/m), thermometer=1 (range, K), expansion=11.5 and "
-                   "expansion-range=2 (um/(m K)), away=3 (K from 20), drift=1.5 (range, um); again for each")
+                   "one contribution to the uncertainty budget, from which the command computes the "
+                   "uncertainty of each characteristic: device=0.8 (um/m, k = 2), misalignment=1 (mm/m), "
+                   "thermometer=1 (range, K), expansion=11.5 and expansion-range=2 (um/(m K)), away=3 (K "
+                   "from 20), drift=1.5 (range, um); repeat the option for each contribution")
       ->allow_extra_args(false);
   add_report_header(*kind, arguments->header);
   kind->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
-      "Deviation = reading - position. A, R, E, B, M by ISO 230-2:2014, both approach directions, from dirX "
-      "or the order "
-      "of the rows. Exit status 0 "
-      "done, 1 bad input, 2 a tolerance is not met (ISO 14253-1: the value exceeds the tolerance by more "
-      "than its uncertainty).");
+      "The deviation is the reading minus the commanded position. The command computes A, R, E, B, M by ISO "
+      "230-2:2014, with the approach directions from dirX or from the order of the rows. Exit status 0 done, "
+      "1 bad input, 2 a tolerance is not met (ISO 14253-1: the value exceeds the tolerance by more than its "
+      "uncertainty).");
   kind->callback([arguments] { run_positioning(*arguments); });
   add_diagonals_kind(*evaluate);
   add_robot_kind(*evaluate);

@@ -82,7 +82,8 @@ Json shortcomings(const std::vector<evaluate::PoseReading>& readings, const Robo
   double u = 0;
   for (const evaluate::PoseReading& reading : readings) u = std::max(u, reading.u_mm);
   if (page.fewest < page.wanted)
-    notes.push_back(fmt::format("{} cycles where ISO 9283 asks for {}", page.fewest, page.wanted));
+    notes.push_back(
+        fmt::format("the measurement has {} cycles, ISO 9283 requires {}", page.fewest, page.wanted));
   if (u == 0) notes.push_back("no uncertainty of the instrument is given (u): U contains only the scatter");
   if (2 * u > page.least_spread_mm / 4)
     notes.push_back(
@@ -193,12 +194,13 @@ void add_robot_kind(CLI::App& evaluate) {
       ->allow_extra_args(false);
   kind->add_option("--json", arguments->json, "result for programs; - for standard output");
   kind->footer(
-      "Rows with one commanded pose belong together. AP = distance of their barycentre from it, RP = mean\n"
-      "distance from the barycentre + 3 S; AD = mean distance of two poses less the commanded one, RD = 3 "
-      "S;\n"
+      "All rows with the same commanded pose form one group. AP = distance of the barycentre of the group "
+      "from the commanded\n"
+      "pose, RP = mean distance from the barycentre + 3 S. AD = mean distance of two poses minus the "
+      "commanded distance, RD = 3 S.\n"
       "dAP, dRP = largest change of AP, RP since the first block. Exit status 0 done, 1 bad input, 2 a "
       "tolerance is not met\n"
-      "(ISO 14253-1: beyond it by more than the uncertainty).");
+      "(ISO 14253-1: the value exceeds the tolerance by more than its uncertainty).");
   kind->callback([arguments] { run_robot(*arguments); });
 }
 

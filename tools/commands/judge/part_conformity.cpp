@@ -251,8 +251,9 @@ model::Machine machine_of(const ConformityArguments& arguments) {
     repeat_findings(machine);
   }
   if (!machine.fitted)
-    throw text::InputError({machine.file, 0}, machine.name,
-                           "was never fitted (no <fitted>): give measurements, or what `vernier fit` wrote");
+    throw text::InputError(
+        {machine.file, 0}, machine.name,
+        "was never fitted (no <fitted>): give measurements, or a machine file that `vernier fit` wrote");
   if (!machine.fitted->converged) throw text::LimitNotMet("the fit of this machine file did not converge");
   return arguments.tool.empty() ? machine : kinematics::tooled(machine, arguments.tool);
 }
@@ -351,13 +352,16 @@ void add_conformity(CLI::App& part) {
   add_report_header(*command, a->header);
   command->add_option("--json", a->json, "result for programs; - for standard output");
   command->footer(
-      "Monte Carlo over the covariance of the last fit (JCGM 101). A tolerance is kept, or not, from a\n"
-      "probability of 95 % on (ISO 14253-1:2017), else the verdict is: cannot be said. Columns of a list: "
-      "feature, kind\n"
+      "Monte Carlo simulation over the covariance of the last fit (JCGM 101). The verdict is \"conforms\" or "
+      "\"does not\n"
+      "conform\" if its probability is at least 95 % (ISO 14253-1:2017), else \"cannot be said\". Columns of "
+      "a list: feature, kind\n"
       "(point plane cylinder), x y z, nx ny nz, i j k, diameter, length, width, position, size or size_low\n"
-      "and size_high, form, datum (yes). Exit status 0 done (also if it cannot be said), 1 bad input\n"
-      "(nothing written), 2 something does not conform (all is written), or is out of reach (nothing is). "
-      "See tools/docs/conformity.md.");
+      "and size_high, form, datum (yes). Exit status 0 done (also for the verdict \"cannot be said\"), 1 "
+      "bad\n"
+      "input (nothing written), 2 a feature does not conform (all files are written) or is out of reach "
+      "(nothing is written). See\n"
+      "tools/docs/conformity.md.");
   command->callback([a] { run_conformity(*a); });
 }
 

@@ -125,11 +125,13 @@ void add_displacements(const FeaturesArguments& arguments, const vibration::Vibr
 
 void print_displacements(std::FILE* out, const Json& displacement) {
   for (const Json& signal : displacement["signals"])
-    fmt::print(out, "{}: displacement cut off at {:.4g} {}, {} rows without\n",
+    fmt::print(out, "{}: displacement with the cut-off {:.4g} {}; {} rows have no displacement\n",
                signal["name"].get<std::string>(), signal["value"].get<double>(),
                displacement["unit"].get<std::string>(), signal["rows_without"].get<std::size_t>());
   if (displacement.contains("agreement"))
-    fmt::print(out, "found by agreement with the rows: {:.4g} um rms are left of {:.4g}\n",
+    fmt::print(out,
+               "found by agreement with the rows: the rms of the difference is {:.4g} um, of the measured "
+               "displacement {:.4g} um\n",
                displacement["agreement"]["rms_um"].get<double>(),
                displacement["agreement"]["measured_rms_um"].get<double>());
 }
@@ -262,8 +264,8 @@ void run_features(const FeaturesArguments& arguments) {
   text::write_file(arguments.output, text_of(rows, columns));
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
-  fmt::print(out, "{} rows, {} of them without a full window of {} samples at {:.6g} Hz\n", rows.rows.size(),
-             columns.empty_rows, choice.window, record.rate_Hz);
+  fmt::print(out, "{} rows, of which {} have no full window of {} samples at {:.6g} Hz before their time\n",
+             rows.rows.size(), columns.empty_rows, choice.window, record.rate_Hz);
   if (displaced) print_displacements(out, json["displacement"]);
   if (!arguments.align.empty())
     fmt::print(out, "clock: t = {:.6g} s + {:.8f} t_record, correlation {:.3f} (next best lag {:.3f})\n",

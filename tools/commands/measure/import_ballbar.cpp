@@ -221,10 +221,10 @@ std::vector<importer::TraceCircle> circles_of(const BallbarArguments& arguments)
 
 void add_ballbar_kind(CLI::App& kind) {
   kind.footer(
-      "Samples between the file's START and END are fit rows, the overshoot arcs before and after are check "
-      "rows. With --repair-time-base the first whole turn that repeats is fit, the rest is check; samples of "
-      "the "
-      "feed-in that do not repeat have no length.");
+      "Samples between START and END of the file are fit rows; the overshoot arcs before START and after END "
+      "are check rows. With --repair-time-base the samples of the first whole turn that repeats are fit "
+      "rows, and the other samples are check rows; samples of the feed-in that do not repeat have no "
+      "length.");
   const auto arguments = add_common(kind);
   kind.add_flag("--repair-time-base", arguments->repair,
                 "Estimate the samples per turn and the missing samples from the record itself, and compute "

@@ -48,10 +48,10 @@ void run_printer(PrinterArguments& arguments) {
   fmt::print(out, "{}{}: {} touches of the artefact \"{}\"\n", name_of(read.kind),
              read.name.empty() ? "" : " " + read.name, rows, arguments.options.artefact);
   if (read.kind != importer::PrinterFile::Kind::kProbeLog || read.offset_mm[0] != 0 || read.offset_mm[1] != 0)
-    fmt::print(out, "axes: the point of the probe less its offset ({:g}, {:g}) mm\n", read.offset_mm[0],
-               read.offset_mm[1]);
+    fmt::print(out, "axis positions: the touched point minus the offset of the probe ({:g}, {:g}) mm\n",
+               read.offset_mm[0], read.offset_mm[1]);
   if (read.not_probed > 0)
-    fmt::print(out, "{} places of the map have no reading: omitted\n", read.not_probed);
+    fmt::print(out, "{} points of the height map have no reading and are omitted\n", read.not_probed);
   if (read.left_out > 0) fmt::print(out, "{} touches that the printer discarded: omitted\n", read.left_out);
   fmt::print(out,
              "{}: {} rows. The machine file needs <artefact name=\"{}\" type=\"plane\"/> in <variables>.\n",
@@ -70,9 +70,8 @@ void add_printer_kind(CLI::App& kind) {
   kind.add_option("--on", arguments->options.artefact, "name of the <artefact> of the bed")
       ->capture_default_str();
   kind.add_option("--offset", arguments->offset,
-                  "X,Y mm, probe less nozzle, for a mesh, a height map or a log with places of the probe; "
-                  "default: that "
-                  "of the configuration in the file, else 0")
+                  "offset of the probe from the nozzle, X,Y in mm, for a mesh, a height map or a log with "
+                  "positions of the probe; default: the offset in the configuration of the file, else 0")
       ->delimiter(',')
       ->expected(2);
   kind.add_option("--series", arguments->options.series,

@@ -82,16 +82,17 @@ void print_pairing(std::FILE* out, const importer::LoggedTable& logged, const st
   fmt::print(out, "{} of {} points paired with {} dwells", logged.table.line.size(), pairing.dwell.size(),
              logged.dwells.size());
   if (pairing.rms_mm)
-    fmt::print(out, "; {:.3g} mm rms from where the nominal machine stood", *pairing.rms_mm);
+    fmt::print(out, "; rms distance of the points from the positions of the nominal machine: {:.3g} mm",
+               *pairing.rms_mm);
   fmt::print(out, "\n");
   if (pairing.offset_s)
     fmt::print(out, "clock of the log = {:.3f} +- {:.2g} s + (1 {:+.2g} +- {:.1g}) x the tracker's\n",
                *pairing.offset_s, *pairing.offset_std_s, *pairing.drift, *pairing.drift_std);
   for (const std::size_t line : logged.unmatched_line)
-    fmt::print(out, "not paired: {}:{}, which fits no dwell\n", file, line);
+    fmt::print(out, "not paired: the point {}:{} agrees with no dwell of the log\n", file, line);
   for (const std::size_t j : pairing.unused)
-    fmt::print(out, "no point for the dwell from {:.2f} to {:.2f} s\n", logged.dwells[j].begin_s,
-               logged.dwells[j].end_s);
+    fmt::print(out, "not paired: the dwell of the log from {:.2f} to {:.2f} s has no point\n",
+               logged.dwells[j].begin_s, logged.dwells[j].end_s);
 }
 
 void write_survey(const std::string& kind, const SurveyArguments& arguments,
@@ -186,10 +187,11 @@ void add_tracker_kind(CLI::App& kind) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   kind.footer(
-      "Columns by the names of the measurement file, with the unit that the table has: axes, inputs, x y "
-      "z,\n"
-      "u, run, role … Orientation: rx ry rz (rotation vector), or rX rY rZ (angles of Rx*Ry*Rz), or\n"
-      "qw qx qy qz (quaternion); the latter two become rx ry rz.");
+      "Name the columns as in a measurement file, with the unit of the table: axes, inputs, x y z, u, run, "
+      "role …\n"
+      "An orientation is rx ry rz (rotation vector), rX rY rZ (angles of Rx*Ry*Rz) or qw qx qy qz "
+      "(quaternion);\n"
+      "the command converts angles and quaternions to rx ry rz.");
 }
 
 void add_camera_kind(CLI::App& kind) {

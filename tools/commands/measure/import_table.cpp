@@ -34,7 +34,8 @@ void print_columns(std::FILE* out, const importer::SheetReading& reading) {
                sheet.line[table.heading_row],
                table.units_row > 0 ? fmt::format(", units in line {}", sheet.line[table.units_row]) : "",
                sheet.line[table.first_data]);
-  if (runs > 0) fmt::print(out, "{} columns, one per run and direction, are read as one\n", runs);
+  if (runs > 0)
+    fmt::print(out, "{} columns, one per run and direction, are read as one column of readings\n", runs);
   for (std::size_t k = 0; k < columns.size(); ++k)
     fmt::print(out, "  {:>2}  {:<24} {:<26} {}\n", k + 1, table.headings[k].text,
                importer::becomes(columns[k]), columns[k].why);
@@ -121,7 +122,8 @@ void add_table_kind(CLI::App& kind) {
           "meaning of a column: \"x[mm]=X ist\" (heading or number); repeat the option for each column")
       ->allow_extra_args(false);
   kind.add_option("--deviation", arguments->words.deviations,
-                  "\"X[um]=Abweichung\": position of X plus this was measured; again for each")
+                  "column with deviations, \"X[um]=Abweichung\": the measured position is the position of X "
+                  "plus this deviation; repeat the option for each column")
       ->allow_extra_args(false);
   kind.add_option("--leave", arguments->words.left,
                   "heading of a column that the command ignores; repeat the option for each column")
@@ -166,11 +168,15 @@ void add_table_kind(CLI::App& kind) {
   kind.add_option("--json", arguments->json, "result for programs; - for standard output")
       ->type_name(kWrites);
   kind.footer(
-      "Headings are read in their usual forms: X [mm], X(mm), X soll, X ist in \u00b5m,\n"
-      "Abweichung X; in two lines or with a row of units too. A column a run and sense (1+ 1- 2+ 2-,\n"
-      "Run 1 fwd, hin 1, Messung 1 \u2191) becomes a row a reading. \"(Soll-Ist)\", \"(nominal-actual)\"\n"
-      "behind a deviation reverses its sign, and this is printed. Detected settings are printed; --preview\n"
-      "prints it and writes nothing.");
+      "The command reads headings in their usual forms: X [mm], X(mm), X soll, X ist in \u00b5m, Abweichung "
+      "X;\n"
+      "also in two lines or with a row of units. If the table has a column for each run and direction (1+ 1- "
+      "2+ 2-,\n"
+      "Run 1 fwd, hin 1, Messung 1 \u2191), each reading becomes a row. \"(Soll-Ist)\" or "
+      "\"(nominal-actual)\" after\n"
+      "the heading of a deviation inverts its sign, with a note. The command prints the detected settings; "
+      "with\n"
+      "--preview it writes no file.");
   kind.callback([arguments] { run_table(*arguments); });
 }
 

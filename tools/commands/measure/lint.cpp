@@ -63,9 +63,11 @@ void register_lint(CLI::App& vernier) {
       ->required();
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "error: the file cannot be used; warning: it can be used, but its meaning may differ from what was\n"
-      "meant; remark: good to know. With a machine file among them the measurements are looked\n"
-      "at with its eyes. Exit status 0 if no file has an error, else 1.");
+      "error: the file cannot be used; warning: the file can be used, but its meaning may differ from the "
+      "intended\n"
+      "meaning; remark: for information. If a machine file is among the files, the command compares the "
+      "measurement\n"
+      "files with the machine file. Exit status 0 if no file has an error, else 1.");
   command->callback([arguments] { run_lint(*arguments); });
 }
 

@@ -150,13 +150,15 @@ void run_new(const NewArguments& arguments, const CLI::App& command) {
   fmt::print(out, "{}: {} axes, {} tables, tool {} {} {} mm\n", arguments.output, machine.axes.size(),
              machine.tables.size(), plan.tool[0], plan.tool[1], plan.tool[2]);
   if (plan.arm == create::default_arm())
-    fmt::print(out, "the arm has the lengths of a UR10e: give those of yours with --dh FILE or --joint\n");
+    fmt::print(out,
+               "the machine file has the arm lengths of a UR10e; give the lengths of your robot with --dh "
+               "FILE or --joint\n");
   const std::string meas = arguments.measurements.empty() ? "MEAS.csv" : arguments.measurements;
   if (!arguments.measurements.empty())
     fmt::print(out, "{}: rows to be measured, with empty cells for the readings\n", meas);
   if (meas.ends_with(".xlsx"))
-    fmt::print(out, "next: fill it in, then vernier import table {} -o survey.csv --machine {}\n", meas,
-               arguments.output);
+    fmt::print(out, "next: fill in the readings, then vernier import table {} -o survey.csv --machine {}\n",
+               meas, arguments.output);
   else
     fmt::print(out, "next: vernier lint {0} {1}, then vernier fit {0} {1} -o fitted.xml\n", arguments.output,
                meas);
@@ -222,9 +224,12 @@ void register_new(CLI::App& vernier) {
       "last link of the arm in the URDF (default: the only last link); --tool is in the frame of this link");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "The type of the machine sets the side of each axis, printed as a line; --tool-side and\n"
-      "--work-side change it. A robot without rows is six joints with the lengths of a\n"
-      "UR10e. A delta or hexapod cannot be written: its chain closes loops.");
+      "The type of the machine determines the order of the axes and whether each axis carries the tool or "
+      "the workpiece;\n"
+      "the command prints this chain, and --tool-side and --work-side change it. A robot without --dh, "
+      "--joint and --urdf\n"
+      "has six joints with the lengths of a UR10e. A machine file cannot describe a delta robot or a hexapod "
+      "(closed loops).");
   command->callback([arguments, command] { run_new(*arguments, *command); });
 }
 

@@ -67,9 +67,10 @@ void register_ballbar_path(CLI::App& vernier) {
   command->add_option("--acceleration", path.acceleration_mm_s2, "urscript: mm/s^2")->capture_default_str();
   command->add_option("-o,--output", arguments->output, "the program")->type_name(kWrites)->required();
   command->footer(
-      "Both directions, each with its approach and its exit; it stops at the start point for the bar to be "
-      "mounted.\n"
-      "Check the path before you run it: obstacles are not known.");
+      "The program moves along the circle in both directions, each with its approach and its exit, and stops "
+      "at the start\n"
+      "point so that the ball bar can be mounted. Check the path for collisions before you run it: the "
+      "command knows no obstacles.");
   command->callback([arguments] { run(*arguments); });
 }
 

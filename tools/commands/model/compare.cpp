@@ -69,7 +69,8 @@ void print_circle(std::FILE* out, const nlohmann::ordered_json& circle) {
                circle["hysteresis_by_angle_deg"].get<double>());
   if (circle["diagnostics"].is_null()) return;
   constexpr std::size_t kMost = 6;
-  fmt::print(out, "  what shapes it, strongest first (effect on the radius, peak to peak)\n");
+  fmt::print(out,
+             "  causes of the circular deviation, strongest first (effect on the radius, peak to peak)\n");
   for (std::size_t i = 0; i < std::min(kMost, circle["diagnostics"].size()); ++i) {
     const auto& one = circle["diagnostics"][i];
     fmt::print(out, "    {:<38} {:>9.3g} {:<5} {:>7.1f} um\n", one["name"].get<std::string>(),
@@ -111,7 +112,7 @@ void print_failure(std::FILE* out, const nlohmann::ordered_json& json) {
   if (findings.size() > kMost)
     fmt::print(out, "  {} further findings are in the report\n", findings.size() - kMost);
   if (!structure["pure_error_um"].is_null())
-    fmt::print(out, "  repeats scatter by {:.4g} um; the model misses {:.4g} um more\n",
+    fmt::print(out, "  repeated rows scatter by {:.4g} um; the lack of fit of the model is {:.4g} um\n",
                structure["pure_error_um"].get<double>(), structure["lack_of_fit_um"].get<double>());
   if (structure["outliers"].get<std::size_t>() > 0)
     fmt::print(out, "  {} readings differ by more than 5 robust standard deviations\n",
@@ -287,15 +288,17 @@ void register_compare(CLI::App& vernier) {
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
   command->footer(
-      "Changes no parameter. For ball-bar data the ISO 230-4 numbers and the polar plot; for all data the\n"
-      "residual against everything that was recorded, where the model fails in plain sentences, and the\n"
-      "model's error field over the volume. Nothing is fitted, so a wrong offset, squareness or scale "
-      "counts\n"
-      "as a failure here that a fit would remove: run `fit` first to see what no parameter can explain.\n"
-      "With --before and --after: the error against the nominal machine in the best set-up of each, how "
-      "much\n"
-      "smaller it became, in all, by reading and feed, and between which limits (tools/docs/compare.md).\n"
-      "Exit status 0 done, 1 bad input, 2 --limit is not kept.");
+      "The report has the ISO 230-4 values and the polar plot (for ball-bar data), the residual against "
+      "every recorded\n"
+      "quantity, sentences about where the model fails, and the error field of the model over the volume. "
+      "The command fits no\n"
+      "parameter: a wrong offset, squareness or scale is therefore also a finding; run `fit` first to see "
+      "only errors that no\n"
+      "parameter explains. With --before and --after the report has the errors against the nominal machine "
+      "in the best set-up\n"
+      "of each measurement, and their reduction with its interval, in all and by reading and feed "
+      "(tools/docs/compare.md).\n"
+      "Exit status 0 done, 1 bad input, 2 a residual exceeds --limit.");
   command->callback([arguments] { run_compare(*arguments); });
 }
 

@@ -135,11 +135,11 @@ void register_diagnose(CLI::App& vernier) {
       ->check(CLI::Range(1, 10))
       ->capture_default_str();
   command->footer(
-      "Fits the model first, then looks for what explains the residual beyond what its free parameters can\n"
-      "absorb. Verdict: missing-effect, ambiguous, unexplained, instrument or consistent. Check rows test "
-      "the model, "
-      "they\n"
-      "enter nothing. Exit status 0 for every finding, 1 bad input.");
+      "The command first fits the model, and then searches for effects that explain the residual better than "
+      "the free\n"
+      "parameters of the model can. The verdict is missing-effect, ambiguous, unexplained, instrument or "
+      "consistent.\n"
+      "Check rows only test the result. Exit status 0 for every verdict, 1 bad input.");
   command->callback([arguments] { run_diagnose(*arguments); });
 }
 

@@ -83,7 +83,8 @@ void register_exclude(CLI::App& vernier) {
   command->add_flag("--restore", arguments->restore, "include again the excluded rows on these lines");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "An excluded row stays in its place as a comment with its reason, so every other row keeps its line\n"
+      "An excluded row stays in its line as a comment with the reason, so every other row keeps its line "
+      "number\n"
       "and all commands accept the file. Exit status 0 done, 1 bad input (nothing written).");
   command->callback([arguments] { run_exclude(*arguments); });
 }

@@ -124,7 +124,8 @@ void register_add(CLI::App& vernier) {
       "to, runs,\n"
       "start.NAME, and for ID custom as the last one term=EXPRESSION with the unknown k. Coefficients start "
       "at 0 with\n"
-      "nominal 0: nothing changes until a fit. Exit status 0 done, 1 bad input (nothing written).");
+      "nominal 0, so the predictions of the model do not change until a fit. Exit status 0 done, 1 bad input "
+      "(nothing written).");
   command->callback([arguments] { run_add(*arguments); });
 }
 

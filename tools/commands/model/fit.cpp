@@ -119,7 +119,8 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
   print_things(out, result);
   print_odd_inputs(out, result.machine);
   for (const auto& [name, std] : result.priors)
-    fmt::print(out, "held near nominal as if measured there: {} with std {:g}\n", name, std);
+    fmt::print(out, "prior: {} counts as measured at its nominal value, with standard uncertainty {:g}\n",
+               name, std);
   print_weakest(out, result);
   const fit::RoleStatistics &before = result.before, &after = result.after, &check = result.check;
   using results::error_or_dash;
@@ -191,8 +192,7 @@ void run_fit(const FitArguments& arguments) {
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   for (const fit::OtherSetUp& one : fit::files_set_up_elsewhere(result.machine, m))
-    fmt::print(stderr,
-               "note: {}; give at least three of its rows the role fit, then its set-up is fitted too\n",
+    fmt::print(stderr, "note: {}; to fit this set-up, give at least three rows of the file the role fit\n",
                one.sentence());
   print_result(human_stream(arguments.json), result, m);
   results::print_domains(human_stream(arguments.json), json["domains"]);
@@ -238,10 +238,10 @@ void register_fit(CLI::App& vernier) {
       ->check(CLI::IsMember({"normal-equations", "ceres"}))
       ->capture_default_str();
   command->footer(
-      "Weighted least squares (1/u^2) on rows with role fit. Parameters that the readings do not determine "
-      "are as near\n"
-      "to nominal as possible, in units of each parameter's scale, and are listed (tools/docs/fit.md). Exit "
-      "status 0 done,\n"
+      "Weighted least squares (1/u^2) on rows with role fit. The fit sets parameters that the readings do "
+      "not determine\n"
+      "to the values nearest nominal, in units of each parameter's scale, and lists them "
+      "(tools/docs/fit.md). Exit status 0 done,\n"
       "1 bad input, 2 the fit did not converge or the readings are not of this machine: nothing written.");
   command->callback([arguments] { run_fit(*arguments); });
 }

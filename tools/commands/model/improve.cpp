@@ -147,8 +147,8 @@ class Improver {
     for (const std::string& next : d.next_measurement) fmt::print(out_, "measure next: {}\n", next);
     if (d.verdict == diagnose::Verdict::kAmbiguous)
       fmt::print(out_,
-                 "nothing is added: measure, and give all files to improve; or add one cause with "
-                 "vernier add\n");
+                 "no effect is added: measure the proposed poses and give all files to improve; or add one "
+                 "cause with vernier add\n");
     if (d.verdict != diagnose::Verdict::kMissingEffect) return false;
     for (std::size_t i = 1; i < d.ladder.size(); ++i) {
       const diagnose::LadderStep& step = d.ladder[i];
@@ -226,7 +226,8 @@ class Improver {
       const Json r = replayed(*model_step, all_rows_, first_);
       json["loop"].push_back(r);
       if (r.contains("why_not")) {
-        fmt::print(out_, "1 kHz loop, {}: not run: {}\n", model_step->label, r["why_not"].get<std::string>());
+        fmt::print(out_, "1 kHz loop with {}: the loop did not run: {}\n", model_step->label,
+                   r["why_not"].get<std::string>());
         continue;
       }
       const auto figure = [&](const std::string& key) -> std::optional<double> {
@@ -286,11 +287,11 @@ void register_improve(CLI::App& vernier) {
   command->add_flag("--yes", arguments->yes,
                     "add every effect that diagnose names, without a question to the user");
   command->footer(
-      "Only effects of a verdict missing-effect are added. Each step writes its fitted machine file; the "
-      "last line\n"
-      "of figures contains the readings of the measurement with the 1 kHz correction running. Exit status 0 "
-      "done\n"
-      "(for every finding), 1 bad input, 2 the readings are not those of this machine or the fit did not\n"
+      "The command adds an effect only if the verdict is missing-effect. Each step writes its fitted machine "
+      "file. The last\n"
+      "line of figures has the residuals of the measurement with the correction in the simulated 1 kHz loop. "
+      "Exit status 0 done\n"
+      "(for every verdict), 1 bad input, 2 the readings are not those of this machine or the fit did not\n"
       "converge: nothing written.");
   command->callback([arguments] { Improver(*arguments).run(); });
 }

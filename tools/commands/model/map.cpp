@@ -222,11 +222,10 @@ void run_map(const MapArguments& arguments) {
     const double all = json["field"]["rms_std_um"].get<double>(),
                  open = json["field"]["rms_std_not_measured_um"].get<double>();
     if (open > kMostlyOpen * all)
-      fmt::print(
-          out,
-          "not measured: {:.4g} um of it come from parameters that no reading determined; they stay at "
-          "nominal +- scale\n",
-          open);
+      fmt::print(out,
+                 "not measured: {:.4g} um of this uncertainty come from parameters that no reading "
+                 "determined; these parameters stay at nominal +- scale\n",
+                 open);
   }
   if (!measured) fmt::print(out, "{}\n", kNotMeasured);
   if (!measured) return;

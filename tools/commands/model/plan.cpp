@@ -100,8 +100,8 @@ void run_check_plan(const PlanArguments& arguments) {
   const double worst = plan.shows.empty() ? 0 : plan.shows.front().tool_um;
   if (arguments.accuracy_um > 0 && (worst > arguments.accuracy_um || plan.shows.empty()))
     throw text::LimitNotMet(
-        fmt::format("{} poses show {} only where it moves the tool by {:.3g} um: more --points, or readings "
-                    "surer than {:g} um",
+        fmt::format("{} poses show {} only if its change moves the tool by {:.3g} um: give more "
+                    "--points, or use readings with a standard uncertainty below {:g} um",
                     plan.states.count, plan.shows.empty() ? "nothing" : plan.shows.front().quantity.name,
                     worst, options.reading_um));
   if (!arguments.output.empty())
@@ -122,7 +122,8 @@ void run_touch_plan(const PlanArguments& arguments) {
   const plan::TouchPlan plan = plan::touch_plan(machine, arguments.artefact, options);
   if (arguments.accuracy_um > 0 && plan.after_um > arguments.accuracy_um)
     throw text::LimitNotMet(fmt::format(
-        "{:g} um cannot be reached: {} touches of {} lead to {:.3g} um, all to {:.3g} um",
+        "U95 of {:g} um cannot be reached: {} touches of {} give {:.3g} um, all considered touches give "
+        "{:.3g} um",
         arguments.accuracy_um, plan.states.count, arguments.artefact, plan.after_um, plan.least_um));
   Json json = {{"machine", machine.name},
                {"artefact", arguments.artefact},
@@ -171,7 +172,7 @@ void run_first_plan(const PlanArguments& arguments) {
   }
   if (!plan.reached)
     throw text::LimitNotMet(fmt::format(
-        "{:g} um cannot be reached: {} poses lead to {:.3g} um, all that were looked at to {:.3g} um",
+        "U95 of {:g} um cannot be reached: {} poses give {:.3g} um, all considered poses give {:.3g} um",
         arguments.accuracy_um, count, plan.after_um, plan.least_um));
   if (!arguments.output.empty())
     text::write_file(arguments.output, plan::first_plan_csv(machine, plan, options.reading_um));
@@ -179,12 +180,11 @@ void run_first_plan(const PlanArguments& arguments) {
     text::write_file(arguments.gcode,
                      plan::poses_gcode(machine, plan.states, "first measurement of " + machine.name));
   write_json(arguments.json, json);
-  fmt::print(human_stream(arguments.json),
-             "{} poses to fit, {} of them the first one again, and {} to check: tool point known to {:.3g} "
-             "um (k = 2, mean over "
-             "the volume) where now it is {:.3g} um; as many poses at random: {:.3g} um\n",
-             count, plan.references, plan.check.size() - count, plan.after_um, plan.before_um,
-             plan.random_um);
+  fmt::print(
+      human_stream(arguments.json),
+      "{} poses to fit ({} of them repeat the first pose) and {} to check: U95 of the tool point {:.3g} um "
+      "(k = 2, mean over the volume), now {:.3g} um; the same number of random poses gives {:.3g} um\n",
+      count, plan.references, plan.check.size() - count, plan.after_um, plan.before_um, plan.random_um);
 }
 
 void run_plan(const PlanArguments& arguments) {
@@ -233,8 +233,9 @@ void run_plan(const PlanArguments& arguments) {
                "if {} is the true effect: non-centrality now {:.3g}, with the plan {:.3g}, required {:.3g}\n",
                hypothesis->candidate.label, side->now, plan.rows.rows() > 0 ? side->planned : side->now,
                side->needed);
-  for (const std::string& other : plan.ruled_out) fmt::print(out, "rules out as well: {}\n", other);
-  for (const std::string& other : plan.not_ruled_out) fmt::print(out, "does not rule out: {}\n", other);
+  for (const std::string& other : plan.ruled_out) fmt::print(out, "the plan also distinguishes: {}\n", other);
+  for (const std::string& other : plan.not_ruled_out)
+    fmt::print(out, "the plan does not distinguish: {}\n", other);
   if (plan.rows.rows() > 0) fmt::print(out, "\n{}", plan::plan_table(plan));
 }
 
@@ -304,13 +305,13 @@ void register_plan(CLI::App& vernier) {
   command->add_flag("--check", arguments->check,
                     "plan a short measurement for `vernier check` of a fitted machine (default: 10 points)");
   command->add_option("--artefact", arguments->artefact,
-                      "touches of this <artefact> of the machine file (default: 40 at most), and what no "
-                      "touch of it determines");
+                      "plan touches of this <artefact> of the machine file (default: 40 at most), and list "
+                      "the parameters that no touch of it determines");
   plan::PositioningTestOptions& test = arguments->positioning;
   CLI::Option* const positioning = command->add_option(
       "--positioning", test.axis,
-      "AXIS: the test of ISO 230-2 with a laser or a dial gauge, its program (--gcode) and its rows (-o); "
-      "--points: targets (default: as the standard requires)");
+      "AXIS: plan the positioning test of ISO 230-2 with a laser or a dial gauge: NC program (--gcode) and "
+      "rows for the readings (-o); --points: number of targets (default: as the standard requires)");
   command->add_option("--from", test.from, "first target, mm or deg (default: the range less --overrun)")
       ->needs(positioning);
   command->add_option("--to", test.to, "last target, mm or deg")->needs(positioning);
@@ -320,10 +321,9 @@ void register_plan(CLI::App& vernier) {
       ->check(CLI::PositiveNumber)
       ->needs(positioning);
   command
-      ->add_option(
-          "--period", test.period,
-          "of a possible periodic error, mm or deg: the targets vary by at most one period (default: "
-          "30 % of the interval)")
+      ->add_option("--period", test.period,
+                   "period of a possible periodic error, mm or deg: each target is shifted by a random "
+                   "amount of at most one period (default: 30 % of the interval)")
       ->check(CLI::PositiveNumber)
       ->needs(positioning);
   command->add_option("--runs", test.runs, "runs in both directions (default: 5; 1 on an axis beyond 2 m)")
@@ -362,15 +362,19 @@ void register_plan(CLI::App& vernier) {
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "With MEAS and --accuracy: fits, then chooses the next poses one by one that lower U95 (k = 2) over "
-      "the\n"
-      "volume, a region or a part's features most, until it is reached; exit status 2 if it cannot be.\n"
-      "--separate: fits the model with either effect, then chooses the rows whose readings differ most after "
-      "the wrong\n"
-      "one and all free parameters were fitted again (T-optimal, the worse of both directions). Points: as\n"
-      "many as bring the non-centrality to (z + sqrt(z^2 + 6))^2, z the normal quantile of the confidence.\n"
-      "Exit status 0 done (also if no pose separates them: a sentence reports it), 1 bad input or usage\n"
-      "(nothing written), 2 the accuracy asked for cannot be reached (nothing written), 70 internal error. "
+      "With MEAS and --accuracy the command fits the model, then chooses the next poses one by one: each "
+      "pose gives the largest\n"
+      "decrease of U95 (k = 2) over the volume, a region or the features of a part, until U95 is at most "
+      "--accuracy.\n"
+      "With --separate the command fits the model with each effect, then chooses the rows whose readings "
+      "differ most after the\n"
+      "wrong effect and all free parameters were fitted again (T-optimal, the worse of both directions). The "
+      "number of points\n"
+      "is sufficient for a non-centrality of (z + sqrt(z^2 + 6))^2, where z is the normal quantile of the "
+      "confidence.\n"
+      "Exit status 0 done (also if no pose distinguishes the two effects: a sentence reports this), 1 bad "
+      "input or usage\n"
+      "(nothing written), 2 the required accuracy cannot be reached (nothing written), 70 internal error. "
       "See tools/docs/plan.md.");
   command->callback([arguments] { run_plan(*arguments); });
 }

@@ -95,12 +95,12 @@ std::string named(const std::vector<plan::AccuracyLimit>& limits) {
 std::string why_not(const plan::AccuracyPlan& plan, double asked_um) {
   if (plan.floor_um > asked_um)
     return fmt::format(
-        "U95 of {:g} um cannot be reached: no number of such readings goes below {:.3g} um; they do "
-        "not determine {}",
+        "U95 of {:g} um cannot be reached: no number of such readings reduces U95 below {:.3g} um, because "
+        "the readings do not determine {}",
         asked_um, plan.floor_um, named(plan.unseen));
   return fmt::format(
-      "U95 of {:g} um is not reached: {} poses lead to {:.3g} um, limited by {}; more --points, or "
-      "surer readings",
+      "U95 of {:g} um is not reached: {} poses give {:.3g} um, limited by {}; give more --points, or use "
+      "readings with a smaller uncertainty",
       asked_um, plan.states.count, plan.after_um, named(plan.limits));
 }
 
@@ -114,7 +114,9 @@ void print_accuracy(std::FILE* out, const plan::AccuracyAim& aim, const plan::Ac
   fmt::print(out, "U95 (k = 2) over {}:\n{:>8} {:>9} {:>10}\n", aim.words, "points", "minutes", "U95 um");
   for (const plan::AccuracyStep& step : plan.steps)
     fmt::print(out, "{:>8} {:>9.1f} {:>10.3g}\n", step.points, step.minutes, step.u95_um);
-  fmt::print(out, "as many poses anywhere: {:.3g} um; any number of such readings: {:.3g} um\n",
+  fmt::print(out,
+             "the same number of random poses gives {:.3g} um; any number of such readings gives at least "
+             "{:.3g} um\n",
              plan.random_um, plan.floor_um);
   for (const plan::AccuracyOf& one : plan.parts)
     fmt::print(out, "  {:<36} {:>8.3g} -> {:.3g} um\n", one.name, one.now_um, one.after_um);

@@ -57,12 +57,11 @@ void run_pose(const PoseArguments& arguments) {
         out, "known to   {:10.4f} {:10.4f} {:10.4f} um (standard uncertainty, with the model discrepancy)\n",
         json["std_um"][0].get<double>(), json["std_um"][1].get<double>(), json["std_um"][2].get<double>());
   if (mostly_open)
-    fmt::print(
-        out,
-        "not measured: of this {:.4f} {:.4f} {:.4f} um come from parameters that no reading determined; "
-        "they stay at nominal +- scale\n",
-        json["std_not_measured_um"][0].get<double>(), json["std_not_measured_um"][1].get<double>(),
-        json["std_not_measured_um"][2].get<double>());
+    fmt::print(out,
+               "not measured: {:.4f} {:.4f} {:.4f} um of this uncertainty come from parameters that no "
+               "reading determined; these parameters stay at nominal +- scale\n",
+               json["std_not_measured_um"][0].get<double>(), json["std_not_measured_um"][1].get<double>(),
+               json["std_not_measured_um"][2].get<double>());
   fmt::print(out, "tilt       {:10.6f} deg\n", tilt_deg);
   const bool with_rotary = arguments.with_rotary || machine.correct_orientation;
   if (!with_rotary && kinematics::linear_axes(machine).empty()) {

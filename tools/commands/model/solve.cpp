@@ -156,8 +156,8 @@ void register_solve(CLI::App& vernier) {
       ->capture_default_str();
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "Every answer is verified: the forward kinematics of the axes found, compared with the target. Exit "
-      "status\n"
+      "The command verifies every solution: it compares the forward kinematics of the computed axis "
+      "positions with the target. Exit status\n"
       "0 done, 1 bad input, 2 no solution: the pose is singular, out of reach, or beyond an axis range.");
   command->callback([arguments] { run_solve(*arguments); });
 }

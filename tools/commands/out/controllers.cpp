@@ -149,9 +149,11 @@ void add_controller(CLI::App* parent, const char* name, const char* what, Contro
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
   command->footer(
-      "Writes what the tables of the controller hold, and prints the error that remains, evaluated on the\n"
-      "chain between the points in both directions. Offsets of the axes do not count. The files were not\n"
-      "tried on a controller: do the test moves that they describe before you cut with the tables.");
+      "The command writes the corrections that the tables of the controller can express, and prints the "
+      "remaining error,\n"
+      "evaluated on the chain between the points in both directions, without offsets of the axes. The files "
+      "were not\n"
+      "tried on a controller: do the test moves that the files describe before you cut with the tables.");
   command->callback([arguments, controller, name] { export_controller(*arguments, controller, name); });
 }
 

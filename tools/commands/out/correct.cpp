@@ -179,9 +179,11 @@ void register_correct(CLI::App& vernier) {
                     "correct with all axes, tool point and tool direction; default: as in the machine file");
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "What was corrected, or converted back, is marked, and refused a second time. Exit status 0 done,\n"
-      "1 bad input (nothing written), 2 some position cannot be corrected with these axes, a target cannot\n"
-      "be reached, or the blocks of a program leave the corrected path by more than --deviation.");
+      "The output file is marked as corrected or converted back, and the command refuses a second "
+      "conversion. Exit status\n"
+      "0 done, 1 bad input (nothing written), 2 a position cannot be corrected with these axes, a target "
+      "cannot\n"
+      "be reached, or the blocks of a program deviate from the corrected path by more than --deviation.");
   command->callback([arguments] { run_correct(*arguments); });
 }
 

@@ -172,11 +172,14 @@ void register_export(CLI::App& vernier) {
       vernier.add_subcommand("export", "Write the corrections of a machine in the format of a controller");
   parent->require_subcommand(1);
   parent->footer(
-      "What a table cannot express is refused with the reason; --leave-out writes the rest. The formats of\n"
-      "siemens, heidenhain, fanuc, printers and robots are written, with the error that remains. Exit "
-      "status\n"
-      "0 done, 1 bad input, 2 the sheet \"safe to run?\" fails or the tolerance takes more lines than the\n"
-      "controller keeps: nothing written.");
+      "If the tables of a format cannot express an error of the machine, the command refuses the format and "
+      "names the reason;\n"
+      "with --leave-out it writes the errors that the tables can express. For siemens, heidenhain, fanuc, "
+      "printers and robots\n"
+      "the command writes the files and prints the remaining error. Exit status 0 done, 1 bad input, 2 the "
+      "sheet\n"
+      "\"safe to run?\" fails, or the tolerance needs more lines than the controller can store: nothing "
+      "written.");
   auto screw = std::make_shared<ExchangeArguments>();
   CLI::App* linuxcnc = add_export(
       parent, "linuxcnc", "LinuxCNC: screw compensation (COMP_FILE), and a configuration of its component",

@@ -98,9 +98,11 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
             "default: the only touched plane")
         ->type_name("NAME");
   command->footer(
-      "Writes squareness, heights and steps per mm as far as the firmware holds them, and prints the error\n"
-      "that remains, evaluated on the chain between the points. The offset of the axes and a turn of the\n"
-      "whole part about Z do not count.");
+      "The command writes the corrections of squareness, heights and steps per mm that the firmware "
+      "supports, and prints the\n"
+      "remaining error, evaluated on the chain between the points. The remaining error does not include a "
+      "constant offset of an\n"
+      "axis and a rotation of the whole part about Z.");
   command->callback([arguments, firmware, name] { export_printer(*arguments, firmware, name); });
 }
 

@@ -35,8 +35,10 @@ void add_robot_exports(CLI::App* parent) {
   CLI::App* command =
       add_export(parent, "urdf", "URDF: the calibrated joints of an arm (ROS)", "directory", arguments);
   command->footer(
-      "Writes robot.urdf: a joint for each axis, where the fitted chain really moves. Prints the error that\n"
-      "ideal joints leave: compliance, cyclic errors, reversal and heat.");
+      "The command writes robot.urdf with a joint for each axis, at the origin and axis about which the "
+      "fitted chain moves. It\n"
+      "prints the errors that ideal joints cannot express: compliance, cyclic errors, reversal and thermal "
+      "errors.");
   command->callback([arguments] { export_urdf(*arguments); });
 }
 

@@ -114,7 +114,8 @@ void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const m
              c.shares.shares.size());
   if (c.evaluations > 1)
     fmt::print(out,
-               "{} evaluations of the deviation, each where the one before leads; with one, {} operations\n",
+               "{} evaluations of the deviation, each at the position that the previous evaluation gives; "
+               "with one evaluation, {} operations\n",
                c.evaluations, c.operations_of_one);
   fmt::print(out, "proved bound of each correction, um:\n");
   fmt::print(out, "  {:<8}{:>10} ={:>12} +{:>8} +{:>10} +{:>9} +{:>8} +{:>8} +{:>11}{:>13}\n", "axis",
@@ -137,12 +138,12 @@ void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const m
   }
   if (c.tilt)
     fmt::print(out,
-               "tilt of the tool: up to {:.4g} deg, {:.2g} left where it is neither damped nor at a limit "
-               "(program {:.2g}, 2nd order {:.2g})\n",
+               "tilt of the tool: up to {:.4g} deg without correction; {:.2g} deg remain where the "
+               "correction is neither damped nor limited (program {:.2g}, 2nd order {:.2g})\n",
                c.tilt->deviation_deg, c.tilt->left_deg(), c.tilt->fixed_point_deg, c.tilt->second_order_deg);
   if (c.bounds.empty()) fmt::print(out, "  no axis has a correction\n");
   for (const std::string& step : c.switching)
-    fmt::print(out, "note: the bound holds away from the step of {}\n", step);
+    fmt::print(out, "note: the bound does not hold at the discontinuity of {}\n", step);
   for (const std::string& note : c.notes) fmt::print(out, "note: {}\n", note);
 }
 
@@ -221,10 +222,10 @@ void register_compile(CLI::App& vernier) {
                       "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
                       "override; the image records the name; may be repeated");
   command->footer(
-      "The sheet tests the correction over <volume> (else the axes' ranges) and with the <tools> of the "
-      "file.\n"
-      "Exit status 0 done, 1 bad input, 2 the bound exceeds the budget or the sheet refuses: nothing "
-      "written.");
+      "The safety sheet tests the correction over <volume> (else over the axis ranges), with the <tools> of "
+      "the machine file.\n"
+      "Exit status 0 done, 1 bad input, 2 the error bound exceeds the budget or a rule of the safety sheet "
+      "fails: nothing written.");
   command->callback([arguments] { run_compile(*arguments); });
 }
 

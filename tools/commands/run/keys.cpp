@@ -40,8 +40,9 @@ void run(const Arguments& arguments) {
   write_secret(secret, upload::secret_key_text(key));
   text::write_file(open, upload::public_key_text(key));
   fmt::print(human_stream(arguments.json),
-             "{}  signs uploads: keep it where images are made, with `vernier upload --key`\n"
-             "{}  goes to the board: public_key in its board file\n",
+             "{}  secret key: signs uploads (`vernier upload --key`); keep it only on the computer that "
+             "makes the images\n"
+             "{}  public key: copy it to the board, and name it as public_key in the board file\n",
              secret, open);
   write_json(arguments.json, {{"secret_key", secret}, {"public_key", open}});
 }

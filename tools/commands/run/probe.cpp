@@ -248,9 +248,10 @@ void register_probe_cal(CLI::App& vernier) {
   command->add_option("-o", arguments->output, "output file: the delay as lines of a board file")
       ->type_name(kWrites);
   command->footer(
-      "Columns: feed[mm/min]; block: upper, lower; ring, sphere: x, y, z, and a[mm/s^2] where an approach\n"
-      "was not at constant feed; u. Exit status: 0 done, 1 bad input, 2 -o asked for a delay that the "
-      "touches do not give.");
+      "Columns: feed[mm/min]; block: upper, lower; ring, sphere: x, y, z, and a[mm/s^2] if an approach was "
+      "not at\n"
+      "constant feed; u. Exit status: 0 done, 1 bad input, 2 -o was given, but the touches do not determine "
+      "the delay.");
   command->callback([arguments] { run_cal(*arguments); });
 }
 

@@ -82,12 +82,11 @@ void run(const Arguments& arguments) {
       std::this_thread::sleep_for(std::chrono::duration<double>(arguments.every * tick_s));
   }
   text::write_file(arguments.output, text);
-  fmt::print(
-      human_stream(arguments.json), "{}: {} rows{}\n", arguments.output, rows,
-      lost > 0
-          ? fmt::format(
-                "; {} ticks were overwritten before this line could carry them: record fewer (--every)", lost)
-          : "");
+  fmt::print(human_stream(arguments.json), "{}: {} rows{}\n", arguments.output, rows,
+             lost > 0 ? fmt::format("; {} ticks were overwritten before the line could transmit them: record "
+                                    "fewer ticks (--every)",
+                                    lost)
+                      : "");
   write_json(arguments.json, {{"rows", rows}, {"lost_ticks", lost}, {"every", arguments.every}});
 }
 

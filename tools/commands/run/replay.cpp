@@ -109,7 +109,8 @@ void register_replay(CLI::App& vernier) {
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
   command->footer(
-      "Runs the firmware along the measured motion and moves every reading by what its correction does to\n"
+      "The command runs the firmware along the measured motion, and shifts every reading by the effect of "
+      "the correction on\n"
       "the nominal machine. Exit status 0 done, 1 bad input, 2 the firmware never became active.");
   command->callback([arguments] { run_replay(*arguments); });
 }

@@ -77,11 +77,15 @@ void register_simulate(CLI::App& vernier) {
       ->check(CLI::Range(0, 1000));
   command->add_option("--seed", arguments->loop.seed, "seed of the noise")->capture_default_str();
   command->footer(
-      "Error of a tick: p_truth(q + correction) - p_nominal(q) after the best rigid alignment of the whole\n"
-      "path; before: correction 0. Tilt: the angle between the two tool directions, not aligned. Ticks are "
-      "counted from the first one in Active: until then the machine\n"
-      "is at the path's first point, in the motion state of the first tick. The analogue chain: 0-10 V,\n"
-      "25 um/V, 5 V = zero; 8 bit: step 0.98 um, +-124.5 um.\n"
+      "The error of a tick (control cycle) is p_truth(q + correction) - p_nominal(q) after the best rigid "
+      "alignment of the whole\n"
+      "path; the error before is that with correction 0. The tilt is the angle between the two tool "
+      "directions, without\n"
+      "alignment. The first counted tick is the first tick in mode Active: until then the machine is at the "
+      "first point of the\n"
+      "path, with the speed of the first tick. The analogue output has 0-10 V, 25 um/V, 5 V = zero; with 8 "
+      "bits a step of\n"
+      "0.98 um and +-124.5 um.\n"
       "Exit status 0 done, 1 bad input, 2 the firmware never became active.");
   command->callback([arguments] { run_simulate(*arguments); });
 }

@@ -64,7 +64,7 @@ std::string in_words(const Lost& lost) {
   };
   say(lost.overwritten, "touches were overwritten before they were read");
   say(lost.without_position, "touches have no position (an edge or samples near it were lost)");
-  say(lost.board.lost_edges, "times edges were lost on the way to the board");
+  say(lost.board.lost_edges, "times edges of the probe signal were lost between the probe and the board");
   say(lost.board.lost_touches, "touches came faster than the board could publish them");
   say(lost.board.missing, "edges are missing from the line");
   say(lost.board.spikes, "spikes were no touches");
@@ -141,8 +141,8 @@ void register_touches(CLI::App& vernier) {
       ->type_name(kReads);
   command->add_option("-o", arguments->output, "CSV file")->type_name(kWrites);
   command->add_option("--first", arguments->first, "number of the first touch")->capture_default_str();
-  command->add_option("--count", arguments->count, "stop after so many touches");
-  command->add_option("--seconds", arguments->seconds, "wait so long for further touches")
+  command->add_option("--count", arguments->count, "stop after this number of touches");
+  command->add_option("--seconds", arguments->seconds, "time to wait for further touches, s")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   command->add_option("--run", arguments->run, "label of the run column")->default_val("probe");
@@ -160,7 +160,8 @@ void register_touches(CLI::App& vernier) {
   frame("--angle", arguments->angle,
         "angle about Z from the X direction of the machine to the X direction of the workpiece, deg");
   command->footer(
-      "Touches are numbered from power-on. The result names touches that the board no longer has.\n"
+      "Touches are numbered from the power-on of the board. The result lists touches that the board no "
+      "longer has.\n"
       "Exit status: 0 done, 1 bad input or no board.");
   command->callback([arguments] { run(*arguments); });
 }

@@ -152,7 +152,7 @@ void tell(const Arguments& arguments, upload::Client& client, const Done& done) 
   if (slots.trial != kNoSlot)
     fmt::print(people,
                "{}: {:016x} runs on trial for {:.0f} s more, then the board returns to its previous image\n"
-               "keep it: vernier upload --confirm --to {}{}\n",
+               "to keep the new image: vernier upload --confirm --to {}{}\n",
                on, slots.trial_fingerprint, slots.trial_left_ms * 1e-3, arguments.url,
                board.empty() ? "" : " --board " + board);
   else

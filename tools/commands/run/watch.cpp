@@ -98,7 +98,7 @@ void register_watch(CLI::App& vernier) {
   command->add_option("--rate", arguments->rate, "pictures a second")
       ->check(CLI::Range(0.01, 100.0))
       ->capture_default_str();
-  command->add_option("--seconds", arguments->seconds, "stop after so long (0: never)")
+  command->add_option("--seconds", arguments->seconds, "stop after this time, s (0: never)")
       ->check(CLI::Range(0.0, 1e9));
   command
       ->add_option("--json", arguments->json,

@@ -207,8 +207,9 @@ class InputAxis {
     if (wishes_.step_mm > 0) {
       const Points points = points_of(rules_, low_, high_, reference, wishes_.step_mm);
       if (points.count > most(output))
-        throw text::InputError(fmt::format("--step: {} mm needs {} points of {}; the controller keeps {}",
-                                           wishes_.step_mm, points.count, kLetters[input_], most(output)));
+        throw text::InputError(
+            fmt::format("--step: {} mm needs {} points of {}; the controller stores {} points",
+                        wishes_.step_mm, points.count, kLetters[input_], most(output)));
       return points;
     }
     // More points can be worse: points 8 mm apart misread an error with a period of 10 mm.

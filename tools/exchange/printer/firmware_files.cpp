@@ -139,7 +139,7 @@ std::vector<ConfigurationFile> marlin(const PresentSetting& present, const std::
 
 std::vector<ConfigurationFile> grbl(const PresentSetting& present, const std::string& name,
                                     PrinterCorrection& correction) {
-  std::string text = fmt::format("({}: steps per mm; grbl holds no other correction)\n", name);
+  std::string text = fmt::format("({}: steps per mm; grbl supports no other correction)\n", name);
   text += steps_lines(present, correction, "", false,
                       [](std::size_t i, double next) { return fmt::format("${}={:.6f}\n", 100 + i, next); });
   return {{"vernier.nc", text}};

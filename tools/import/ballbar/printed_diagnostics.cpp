@@ -14,7 +14,7 @@ namespace {
 using Values = std::map<std::string, double>;
 
 constexpr const char* kOnlyPrinted =
-    "the definition of this result is not published, and recomputing did not find it";
+    "the definition of this result is not published, and no tested definition gives the printed value";
 
 std::optional<double> printed(const BallbarAnalysis& analysis, const std::string& name) {
   for (const auto& feature : analysis.features)

@@ -70,8 +70,9 @@ void print_run(std::FILE* out, const RunRepair& run) {
   fmt::print(out, "  {:<4} a turn takes {:.1f} +- {:.1f} samples, not {:.0f}", run.label, run.turn_after,
              run.turn_uncertainty, run.turn_before);
   if (!run.start_from.empty())
-    fmt::print(out, "; its angles turned by {:.1f} +- {:.1f} deg to agree with {} (correlation {:.2f})",
-               run.start_shift_deg, *run.start_uncertainty_deg, run.start_from, *run.start_correlation);
+    fmt::print(
+        out, "; the angles of the run rotated by {:.1f} +- {:.1f} deg to agree with {} (correlation {:.2f})",
+        run.start_shift_deg, *run.start_uncertainty_deg, run.start_from, *run.start_correlation);
   fmt::print(out, "\n");
   for (const auto& gap : run.gaps)
     fmt::print(out,
@@ -79,7 +80,10 @@ void print_run(std::FILE* out, const RunRepair& run) {
                "waited there\n",
                gap.missing, gap.uncertainty, gap.sample, gap.sample_uncertainty);
   if (run.feed_in > 0)
-    fmt::print(out, "       the first {} samples do not repeat (feeding in): without length\n", run.feed_in);
+    fmt::print(out,
+               "       the second pass does not repeat the first {} samples (feed-in): these samples have no "
+               "length\n",
+               run.feed_in);
   fmt::print(out, "       pass to pass: difference {:.1f} -> {:.1f} um, correlation {:.2f} -> {:.2f}\n",
              run.before.difference_um, run.after.difference_um, run.before.correlation,
              run.after.correlation);
@@ -124,7 +128,7 @@ Json repair_json(const RepairReport& report) {
 }
 
 void print_repair(std::FILE* out, const RepairReport& report) {
-  fmt::print(out, "{}: time base repaired from what repeats\n", report.repair.file.path);
+  fmt::print(out, "{}: time base repaired from the samples that repeat\n", report.repair.file.path);
   for (const auto& run : report.repair.runs) print_run(out, run);
   for (std::size_t k = 0; k < report.after.size(); ++k) {
     print_error(out, "as filed", report.before[k]);

@@ -518,9 +518,8 @@ PrinterFile read_printer_file(const std::string& text, const std::string& file,
   if (touches.empty())
     throw text::InputError(
         {file, 0}, "touches",
-        "the file has none: it is no configuration with a saved mesh (Klipper), no log with "
-        "lines \"probe at X,Y is z=Z\" or \"Bed X: X Y: Y Z: Z\", and no heightmap.csv of "
-        "RepRapFirmware");
+        "the file has no touches: it is no configuration with a saved mesh (Klipper), no log with lines "
+        "\"probe at X,Y is z=Z\" or \"Bed X: X Y: Y Z: Z\", and no heightmap.csv of RepRapFirmware");
   result.table = table_of(file, touches, options);
   return result;
 }

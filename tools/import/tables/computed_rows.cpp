@@ -114,8 +114,8 @@ void leave_computed_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
   if (rows.empty() || rows.size() + table.first_data >= sheet.rows.size()) return;
   std::sort(computed.begin(), computed.end());
   for (const auto& [row, word] : computed)
-    sheet.notes.push_back(fmt::format("line {}: the row \"{}\" is computed from the rows above, left out",
-                                      sheet.line[row], word));
+    sheet.notes.push_back(fmt::format(
+        "line {}: the row \"{}\" is computed from the rows above it and is omitted", sheet.line[row], word));
   for (auto row = rows.rbegin(); row != rows.rend(); ++row) sheet::remove_row(sheet, *row);
 }
 

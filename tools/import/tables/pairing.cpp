@@ -171,8 +171,8 @@ Pairing pair_points(const PairingInput& input) {
   if (input.stand.cols() == 0 && !input.time) {
     if (points != input.dwells.size())
       throw text::InputError(
-          fmt::format("{} points and {} dwells, and no data to assign them: give a "
-                      "column t, or --machine for the ways between them",
+          fmt::format("{} points and {} dwells, but no data to pair them: give a column t, or --machine for "
+                      "the distances between the dwells",
                       points, input.dwells.size()));
     for (std::size_t i = 0; i < points; ++i) result.dwell.emplace_back(i);
     return result;

@@ -163,7 +163,7 @@ void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& 
                (columns[k].use == SheetColumn::Use::kDeviation || readings.contain(columns[k]));
   for (std::size_t k = 0; reading && k < columns.size(); ++k)
     if (columns[k].why == "by its heading" && names_statistic(table.headings[k]))
-      leave(columns[k], "computed from the readings beside it");
+      leave(columns[k], "this column is computed from the readings in the other columns");
 }
 
 /// A sign that is stated: in the heading of a deviation, or in a title for all of them.
@@ -235,7 +235,7 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       leave(column, "the axis of this approach direction is not known: state the axis, --column \"dirX=" +
                         table.headings[k].text + "\"");
     else if (column.name == columns::kTime && content == Holds::kDates)
-      leave(column, "dates or times of day, no seconds");
+      leave(column, "this column has dates or times of day, not seconds");
     // Dates where a position or a reading should be are refused with their row.
     else if (!column.words && !is_label(column.name) && !is_sense(column.name) &&
              content != Holds::kNumbers && content != Holds::kDates && !holds_units(sheet, table, k))

@@ -192,7 +192,8 @@ std::string positioning_test_text(const model::Machine& machine, const Positioni
   text += test.dwell_s > 0 ? fmt::format(", about {:.0f} minutes\n", std::max(1.0, test.minutes)) : "\n";
   if (!rest.empty()) text += fmt::format("The other axes stand at {}.\n", rest);
   text += fmt::format("The axis moves {:g} {} beyond the first and the last target.\n", test.overrun, unit);
-  if (test.runs < 2) text += "One run gives no repeatability; --runs 5 is the test of an axis up to 2 m.\n";
+  if (test.runs < 2)
+    text += "One run gives no repeatability. ISO 230-2 requires five runs (--runs 5) on an axis up to 2 m.\n";
   text += fmt::format("After the test: vernier evaluate iso230-2 FILE --axis {}{}\n", axis.name,
                       test.reading == text::in_small_letters(axis.name) ? "" : " --reading " + test.reading);
   return text;
