@@ -9,9 +9,9 @@ namespace vernier::importer {
 /// Determines from the values whether a column contains measured positions or deviations, because a heading
 /// such as "Messwert X [um]" does not state this. A measured position follows the target position. A
 /// deviation stays small while the axis moves. A reading is changed only if its heading gave its meaning (not
-/// the user). Throws InputError if the values fit neither
-/// meaning: positions whose unit is wrong by a factor, deviations that follow the axis (also if the user
-/// stated them), or values that are neither positions nor deviations.
+/// the user). Throws InputError if the values fit neither meaning: positions whose unit is wrong by a factor,
+/// deviations that follow the axis (also if the user stated them), or values that are neither positions nor
+/// deviations.
 void settle_by_values(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                       std::vector<SheetColumn>& columns);
 
