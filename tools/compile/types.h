@@ -79,8 +79,8 @@ struct Orientation {
   std::vector<NodeId> values;     // deviation as motion of each axis, deg; the board subtracts this value
   std::vector<double> limit_deg;  // upper limit of |value|: the attribute maxcorrection of the axis, or the
                                   // largest value of the solution
-  NodeVector deviation{};  // deviation of the direction, in a frame of the chain
-  double spread = 0;       // upper limit of the length of `deviation`
+  NodeVector deviation{};         // deviation of the direction, in a frame of the chain
+  double spread = 0;              // upper limit of the length of `deviation`
   std::vector<Neglected> neglected;
   NodeId determinant = 0;        // determinant of J'J; J is the motion of the direction with the axes, each
                                  // divided by its lever
