@@ -23,8 +23,8 @@ class SampledInput;
 using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
 
 // Each function of this file opens one device of the board file. If the device is missing, the function
-// returns null and sets `error`. If its kind or a setting is wrong, the function throws BoardError. For the
-// set-up of a board only.
+// returns null and sets `error`. If its kind or a setting is wrong, the function throws BoardError. Not
+// real-time safe.
 
 /// Reads the settings of a Modbus line for one use: `device`, `baud` and `parity`, or `address` and `port`.
 /// `wait`: longest time to wait for an answer.
