@@ -35,7 +35,7 @@ struct MeasuredFeature {
                                        // last
   double form_mm = 0;                  // range of the residuals of all touches that were not excluded
   Eigen::MatrixXd points,
-      normals;                // one column per touch: centre of the ball (at 20 degC if the temperature is
+      normals;                // one row per touch: centre of the ball (at 20 degC if the temperature is
                               // known), and normal of the surface
   Eigen::VectorXd deviation;  // distance of each touch from the fitted feature along its normal, mm
   std::vector<std::string> findings;
