@@ -89,7 +89,7 @@ struct Program {
 
 /// A Deviation is the actual minus the nominal position of an axis. A Correction is the value that is added
 /// to the command of an axis. The unit of both is counts of the axis. Deviation and Correction are separate
-/// types. Therefore the compiler detects a wrong sign.
+/// types. Because Deviation and Correction are separate types, the compiler detects a wrong sign.
 struct Deviation {
   std::int32_t counts = 0;
 };
@@ -160,8 +160,9 @@ class Compensator {
   /// Resets the lags and the slew limits. The next step then starts from zero correction. Not real-time safe.
   void reset() noexcept;
 
-  /// Copies the channels and lags at the start of the last step. The result is empty for a program with more
-  /// than kMostChannels channels. Only channels and lags that the program uses are copied. Real-time safe.
+  /// Copies the channels and lags at the start of the last step. The copied state is empty for a program with
+  /// more than kMostChannels channels. Only channels and lags that the program uses are copied. Real-time
+  /// safe.
   void state(EquationState& state) const noexcept;
 
   /// After this call, step() executes the compiled C++ code `equation` instead of interpreting the program.

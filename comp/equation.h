@@ -9,7 +9,8 @@
 
 namespace vernier {
 
-/// Limits of a program. These constants determine the memory of the cycle and limit its computing time.
+/// Limits of a program. The limits of a program determine the memory of the cycle and limit its computing
+/// time.
 constexpr std::uint32_t kMaxAxes = 8;
 constexpr std::uint32_t kMaxInputs = 24;
 constexpr std::uint32_t kMaxRegisters = 1024;

@@ -108,8 +108,8 @@ constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position
 }
 
 /// Returns the value between two stations: near + fraction * rise with c = {near, rise}. It is rounded once,
-/// ties up (<= 1/2 LSB of the column). The result is between the values of both stations; the product is
-/// below 2^62. Real-time safe.
+/// ties up (<= 1/2 LSB of the column). The interpolated value is between the values of both stations; the
+/// product is below 2^62. Real-time safe.
 constexpr std::int32_t linear_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   return c[0] + narrow(round_shift(c[1] * fraction, 30));
 }

@@ -29,7 +29,8 @@ constexpr std::int64_t round_shift(std::int64_t value, unsigned shift) noexcept 
 
 /// Integer type for register values during a computation. It has at least 32 bits and the width with which
 /// the processor multiplies fastest. On every target a Word contains only values that fit int32 (proved by
-/// the verifier). Therefore the results do not depend on the width of Word.
+/// the verifier). Because each Word contains a value that fits int32, the results do not depend on the width
+/// of Word.
 using Word = std::int_fast32_t;
 
 /// Converts a value that the caller has proved to fit int32 to a Word. If Word has 64 bits, this needs no
@@ -52,7 +53,7 @@ constexpr std::int32_t saturate(std::int64_t value, bool& saturated) noexcept {
 constexpr std::int64_t product(Word a, Word b) noexcept { return std::int64_t{a} * b; }
 
 /// Returns a * b / 2^shift. Formats: `a` Qm, `b` Qn, result Q(m+n-shift). The product has 64 bits and is
-/// rounded once (<= 1/2 LSB). The result must fit int32; the caller proves this. `shift`: 0..61. Real-time
+/// rounded once (<= 1/2 LSB). The product must fit int32; the caller proves this. `shift`: 0..61. Real-time
 /// safe.
 constexpr Word multiply(Word a, Word b, unsigned shift) noexcept {
   return word_of(round_shift(product(a, b), shift));

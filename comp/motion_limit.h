@@ -37,13 +37,13 @@ class MotionLimit {
   }
   constexpr std::int64_t value() const noexcept { return value_; }
   constexpr std::int64_t speed() const noexcept { return speed_; }
-  /// Sets the value, with speed zero. It is used at a start, and if a drive refused to move.
+  /// Sets the value, with speed zero. This function is used at a start, and if a drive refused to move.
   constexpr void stop_at(std::int64_t value) noexcept { value_ = value, speed_ = 0; }
 
   /// Returns a speed from which `way` counts are sufficient to stop: (v + a/2)^2 <= 2 a way. The distance (v
   /// + a/2)^2 / (2 a) is at least the sum v + (v - a) + (v - 2a) ... of the ticks to a stop, and at most a/8
   /// more. If one tick is sufficient, the speed is `way`. `way`: >= 0; `acceleration`: as in MotionBounds.
-  /// Both sides of the condition stay below 2^64. Real-time safe.
+  /// Both sides of the condition for braking stay below 2^64. Real-time safe.
   static constexpr std::int64_t braking_speed(std::int64_t way, std::int64_t acceleration) noexcept {
     if (way <= acceleration) return way;
     const auto a = static_cast<std::uint64_t>(acceleration);

@@ -48,7 +48,8 @@ struct WeightQ16;
 using LengthNm = Quantity<unit::Nanometre, std::int32_t>;
 /// An angle, ±2.1 rad with a resolution of 1 nrad.
 using AngleNrad = Quantity<unit::Nanoradian, std::int32_t>;
-/// Position of a linear axis. It has 64 bits, because 20 m with a resolution of 1 nm do not fit 32 bits.
+/// Position of a linear axis. A position has 64 bits, because 20 m with a resolution of 1 nm do not fit 32
+/// bits.
 using PositionNm = Quantity<unit::NanometrePosition, std::int64_t>;
 /// Position of a rotary axis in 2^-32 turn. Whole turns are in the bits above bit 31, so that a mask removes
 /// them.

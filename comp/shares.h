@@ -23,8 +23,9 @@ static_assert(offsetof(Share, axis) == 0 && offsetof(Share, source) == 2 && offs
               offsetof(Share, multiplier) == 8);
 
 /// An equation that is computed in addition to the equation of a program. The channels of a share program are
-/// registers of the tick. Its results are the shares of the effects. A share program contains no tables,
-/// periods and lags, because the tick has already evaluated them. It is executed outside the tick.
+/// registers of the tick. The results of a share program are the shares of the effects in the correction. A
+/// share program contains no tables, periods and lags, because the tick has already evaluated them. A share
+/// program is executed outside the tick.
 struct ShareProgram {
   Equation equation;
   View<std::uint16_t> sources;  // for each channel: index of the tick's register
@@ -32,13 +33,13 @@ struct ShareProgram {
 };
 
 /// Proves the same properties for a share program as verify_program proves for a program. `program`: a
-/// verified program. `ranges`: memory for kMaxRegisters ranges. It contains the ranges of the program's
+/// verified program. `ranges`: memory for kMaxRegisters ranges. `ranges` contains the ranges of the program's
 /// registers; the function adds the ranges of the shares after them. Not real-time safe.
 ProgramFault verify_shares(const ShareProgram& shares, const Program& program, ValueRange* ranges) noexcept;
 
 /// Computes the shares of the correction of one tick, before limits and ramps. There is one value per share,
 /// in the order of the shares. The function run_shares executes the equation of the tick again from the start
-/// values of the tick. Therefore the tick itself does no work for a display. The share program must be
+/// values of the tick. For the display of shares, the tick itself does no work. The share program must be
 /// VERIFIED. `state`: state of the same program; `registers`: memory for kMaxRegisters registers. Returns
 /// false if the state belongs to another program. Not real-time safe.
 bool run_shares(const ShareProgram& shares, const Program& program, const EquationState& state,

@@ -55,7 +55,8 @@ class LatchRing {
 
   /// Computes the position of an axis at the time of the last successful seek(). `axis`: below kMaxAxes;
   /// `rollover`: true ignores whole turns (2^32 counts) between two samples. `time_uncertainty`: standard
-  /// uncertainty of the time, 0 to 2^31 ns. The result is kTooFast or kNone. Real-time safe.
+  /// uncertainty of the time, 0 to 2^31 ns. The function position_of() returns kTooFast or kNone. Real-time
+  /// safe.
   LatchFault position_of(std::uint32_t axis, bool rollover, InstantNs time_uncertainty,
                          LatchedPosition& latched) const noexcept;
 

@@ -49,8 +49,8 @@ class Displacement {
   bool start(const DisplacementScale& scale) noexcept;
 
   /// Takes one sample in LSB. Returns the displacement at the time of this sample. A sample beyond +-kLimit
-  /// is limited to +-kLimit, and a displacement beyond int32 is limited to int32. Both cases are counted.
-  /// Real-time safe.
+  /// is limited to +-kLimit, and a displacement beyond int32 is limited to int32. Both kinds of limited
+  /// values are counted. Real-time safe.
   LengthNm step(std::int32_t sample) noexcept;
 
   std::uint32_t held() const noexcept { return held_; }
