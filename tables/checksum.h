@@ -9,7 +9,7 @@ namespace vernier {
 std::uint32_t crc32c(const std::uint8_t* bytes, std::uint32_t size) noexcept;
 
 /// Computes the hash FNV-1a, 64 bit. With `seed`, several parts of a text give one hash. The hash FNV-1a
-/// distinguishes versions. It gives no protection against manipulation. Not real-time safe.
+/// distinguishes versions. The hash FNV-1a gives no protection against manipulation. Not real-time safe.
 constexpr std::uint64_t kFnvSeed = 0xcbf29ce484222325u;
 constexpr std::uint64_t fnv1a(const std::uint8_t* bytes, std::uint32_t size,
                               std::uint64_t seed = kFnvSeed) noexcept {

@@ -80,8 +80,8 @@ static_assert(offsetof(SectionEntry, type) == 0 && offsetof(SectionEntry, offset
 
 /// Form of a station table in the image. The records of a table are pieces * (4 + columns * (degree + 1))
 /// words in the section kRecords. For each segment there is its Segment (start, length, reciprocal, shift),
-/// and then the coefficients of one column after another. With six linear columns a record has 64 bytes. Then
-/// an interpolation reads at most two cache lines.
+/// and then the coefficients of one column after another. With six linear columns a record has 64 bytes. With
+/// records of 64 bytes, an interpolation reads at most two cache lines.
 struct TableRecord {
   std::uint32_t pieces;
   std::uint16_t columns;

@@ -37,8 +37,8 @@ enum class ImageFault : std::uint8_t {
 /// Returns the cause as one line of text for people: "checksum: bytes changed on the way".
 const char* describe(ImageFault fault) noexcept;
 
-/// Memory for the verification of an image. It is not on the stack, because the stack of small targets is
-/// small.
+/// Memory for the verification of an image. The memory for the verification is not on the stack, because the
+/// stack of small targets is small.
 struct ImageWorkspace {
   ValueRange ranges[kMaxRegisters];
 };

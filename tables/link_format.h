@@ -6,10 +6,11 @@
 #include "tables/image_format.h"
 #include "tables/upload_format.h"
 
-/// Messages between a board and a tool. They are identical over Modbus and ISO-TP. A request contains op,
-/// sequence, payload. A reply contains op, sequence, status, payload. The numbers in messages are
-/// little-endian and have the declared sizes. A board answers every request with one reply, and sends no
-/// other messages. The client selects the sequence number of a request, and the reply repeats this number.
+/// Messages between a board and a tool. The messages of the link are identical over Modbus and ISO-TP. A
+/// request contains op, sequence, payload. A reply contains op, sequence, status, payload. The numbers in
+/// messages are little-endian and have the declared sizes. A board answers every request with one reply, and
+/// sends no other messages. The client selects the sequence number of a request, and the reply repeats this
+/// number.
 namespace vernier {
 
 constexpr std::uint16_t kLinkVersion = 3;

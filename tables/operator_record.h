@@ -43,8 +43,8 @@ constexpr std::uint32_t kOperatorMagic = 0x3152504f;  // "OPR1"
 /// Indices of the two records in the store; the indices 0 and 1 are the slot records.
 constexpr std::uint32_t kOperatorPlace = 2, kOperatorRecordCount = 2;
 
-/// Returns the number of an axis in a record, computed from its name. Therefore a board file with another
-/// order of axes keeps the weight of each axis. The number of an axis is never 0. Not real-time safe.
+/// Returns the number of an axis in a record, computed from its name. A board file with another order of axes
+/// therefore keeps the weight of each axis. The number of an axis is never 0. Not real-time safe.
 std::uint32_t operator_axis(const char* name, std::uint32_t size) noexcept;
 
 /// A record, and the place in the store where it must be written.

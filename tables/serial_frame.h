@@ -4,10 +4,10 @@
 
 #include "tables/link_format.h"
 
-/// Frame for a message of the link on a serial line (UART, 8 bits). It contains the message and its CRC-32C,
-/// low byte first, between two END bytes. In the frame, two bytes replace each END or ESC byte of the message
-/// (SLIP, RFC 1055). After a disturbance, the receiver is synchronised again at the next END byte. A frame
-/// with a wrong CRC is ignored.
+/// Frame for a message of the link on a serial line (UART, 8 bits). A frame contains the message and its
+/// CRC-32C, low byte first, between two END bytes. In the frame, two bytes replace each END or ESC byte of
+/// the message (SLIP, RFC 1055). After a disturbance, the receiver is synchronised again at the next END
+/// byte. A frame with a wrong CRC is ignored.
 namespace vernier {
 
 constexpr std::uint8_t kFrameEnd = 0xc0, kFrameEscape = 0xdb, kFrameEscapedEnd = 0xdc,

@@ -69,10 +69,10 @@ struct SlotChange {
 };
 
 /// State machine of the two slots, without access to the medium. Slots returns the record that must be stored
-/// for a change. It applies the change only after the record is stored. The stored records are intact if both
-/// are valid and differ by one change, or if there is only the first record. After a power failure at any
-/// byte of any write, the state is the state before or after the change. If the pair of records is damaged,
-/// it is the state before the change.
+/// for a change. Slots applies a change only after its record is stored. The stored records are intact if
+/// both are valid and differ by one change, or if there is only the first record. After a power failure at
+/// any byte of any write, the state is the state before or after the change. If the pair of records is
+/// damaged, it is the state before the change.
 ///
 ///   confirmed A ── (image written to B) ── try ──► confirmed A, trial B ── confirm ──► confirmed B
 ///                                                          └──── revert, or a reset ──► confirmed A
@@ -93,7 +93,8 @@ class Slots {
   std::uint64_t issued() const noexcept { return now_.issued; }
   std::uint64_t trial_issued() const noexcept { return now_.trial_issued; }
   /// Limits for a new upload: its signing time must be later than newest_issued(), and its security number
-  /// must be at least security(). Both values are the highest of all images that the board has run on trial.
+  /// must be at least security(). Both limits are the highest values of all images that the board has run on
+  /// trial.
   std::uint64_t newest_issued() const noexcept { return now_.newest_issued; }
   std::uint32_t security() const noexcept { return now_.security; }
   /// Returns the slot that may be overwritten, which is neither confirmed nor on trial; kNoSlot while an

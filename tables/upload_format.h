@@ -18,7 +18,7 @@ struct UploadHeader {
                          // that were ever on trial
   std::uint64_t fingerprint;  // fingerprint of the equation in the image
   std::uint32_t security;  // security number; it must be at least the highest number that was ever on trial.
-                           // It is increased to exclude older images permanently
+                           // The security number is increased to exclude older images permanently
   std::uint32_t reserved;  // 0
   char board[kBoardNameBytes];  // name of the board (or of the board class) for which the image is; zeros: a
                                 // board without a name
