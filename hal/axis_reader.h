@@ -33,8 +33,8 @@ class AxisReader {
   /// Begins a tick of the firmware. Readings that came before this call are the readings of the tick. They do
   /// not change until the next call. The function begin_tick() never waits. Real-time safe.
   virtual void begin_tick() noexcept {}
-  /// Returns the newest reading of an axis. The result is kNoReading if there is no reading since the last
-  /// tick. Real-time safe.
+  /// Returns the newest reading of an axis. The function read_axis() returns kNoReading if there is no
+  /// reading since the last tick. Real-time safe.
   virtual HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept = 0;
   /// Reads feed and curvature of the path, if the controller knows them. Real-time safe.
   virtual HalFault read_path(PathReading& reading) noexcept = 0;

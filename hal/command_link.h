@@ -33,11 +33,11 @@ class CommandHandler {
   virtual std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply) = 0;
   /// True if the request of the last answer() had a valid signature. Not real-time safe.
   virtual bool was_signed() const { return false; }
-  /// Returns the argument for later(). It is valid directly after answer() or give() returned kLater. Not
-  /// real-time safe.
+  /// Returns the argument for later(). The argument for later() is valid directly after answer() or give()
+  /// returned kLater. Not real-time safe.
   virtual std::uint32_t ticket() const { return 0; }
-  /// Returns a delayed reply. The result is the number of bytes in the reply, kLater while the reply is not
-  /// ready, or 0 if no reply is delayed. Not real-time safe.
+  /// Returns a delayed reply. The function later() returns the number of bytes in the reply, kLater while the
+  /// reply is not ready, or 0 if no reply is delayed. Not real-time safe.
   virtual std::uint32_t later(std::uint32_t ticket, std::uint8_t* reply) {
     return static_cast<void>(ticket), static_cast<void>(reply), 0;
   }
@@ -52,9 +52,9 @@ class CommandLink {
  public:
   virtual ~CommandLink() = default;
   /// Waits for requests for at most `wait`, and answers them. serve() never waits for a peer that stops
-  /// within a request or does not read the reply. The result is kRefused if the connection was lost. This
-  /// call or the next call opens the connection again. An error of the peer is not a fault of the board. Not
-  /// real-time safe.
+  /// within a request or does not read the reply. The function serve() returns kRefused if the connection was
+  /// lost. This call or the next call of serve() opens a lost connection again. An error of the peer is not a
+  /// fault of the board. Not real-time safe.
   virtual HalFault serve(CommandHandler& handler, TimeUs wait) noexcept = 0;
   /// Writes the handles on which the operating system can wait for a request to `handles`, at most `room`
   /// handles. handles() returns the number of handles; 0 if the link has no handle. Not real-time safe.

@@ -8,7 +8,8 @@ namespace vernier {
 class DigitalInput {
  public:
   virtual ~DigitalInput() = default;
-  /// The result is kRefused if the line cannot be read; `on` is not changed in this case. Real-time safe.
+  /// The function read_line() returns kRefused if the line cannot be read; `on` is not changed in this case.
+  /// Real-time safe.
   virtual HalFault read_line(bool& on) noexcept = 0;
 };
 

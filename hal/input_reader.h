@@ -13,8 +13,8 @@ class InputReader {
   /// Begins a tick of the firmware. Each input is read once until the next call. The function begin_tick()
   /// never waits. Real-time safe.
   virtual void begin_tick() noexcept {}
-  /// Reads the newest value of an input, in 1e-6 of the unit that the correction image declares. The result
-  /// is kNoReading if the sensor gives no reading. Real-time safe.
+  /// Reads the newest value of an input, in 1e-6 of the unit that the correction image declares. The function
+  /// read_input() returns kNoReading if the sensor gives no reading. Real-time safe.
   virtual HalFault read_input(std::uint32_t input, InputMicro& value) noexcept = 0;
 };
 

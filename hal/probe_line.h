@@ -15,9 +15,9 @@ struct ProbeEdge {
 class ProbeLine {
  public:
   virtual ~ProbeLine() = default;
-  /// Reads the oldest edge that was not yet read. The result is kNoReading if no edge is waiting. The result
-  /// is kRefused if edges were lost since the last call. The next call continues with the remaining edges.
-  /// The function read_edge() never waits. Real-time safe.
+  /// Reads the oldest edge that was not yet read. The function read_edge() returns kNoReading if no edge is
+  /// waiting. The function read_edge() returns kRefused if edges were lost since the last call. The next call
+  /// continues with the remaining edges. The function read_edge() never waits. Real-time safe.
   virtual HalFault read_edge(ProbeEdge& edge) noexcept = 0;
   /// Returns the largest time between the recorded time `at` and the edge; 0 if the device does not know this
   /// time. Not real-time safe.

@@ -10,7 +10,7 @@ namespace vernier {
 
 /// The correction of one axis as an analogue output: the pulse width of a PWM channel, or a channel of a D/A
 /// converter. An AnalogueOutput has only one axis, with index 0. Opening an output does not change the value
-/// of a running channel. Therefore a correction of an earlier process can be read back and removed.
+/// of a running channel. A correction of an earlier process can therefore be read back and removed.
 class AnalogueOutput : public OutputDevice {
  public:
   /// `channel`: directory of an exported channel of the PWM class (/sys/class/pwm/pwmchip0/pwm0); `scale`: in
@@ -24,9 +24,9 @@ class AnalogueOutput : public OutputDevice {
   static std::unique_ptr<AnalogueOutput> iio_dac(const std::string& device, unsigned channel,
                                                  const AnalogueScale& scale, std::string& error);
 
-  /// A correction beyond the range is limited to the end of the range, and the write is counted. The result
-  /// is kRefused if the driver refused the value. Real-time safe if the bus of the device is fast: a write to
-  /// an SPI converter takes some ten microseconds.
+  /// A correction beyond the range is limited to the end of the range, and the write is counted. The function
+  /// write_correction() returns kRefused if the driver refused the value. Real-time safe if the bus of the
+  /// device is fast: a write to an SPI converter takes some ten microseconds.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
 
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;

@@ -37,8 +37,8 @@ class CounterAxis : public PositionReader {
   /// Reads the count with two system calls. The function is real-time safe if the bus of the counter is fast
   /// enough.
   void begin_tick() noexcept override;
-  /// The result is kNoReading if the driver gave an error, or a count beyond the range of the counter.
-  /// Real-time safe.
+  /// The function read_axis() returns kNoReading if the driver gave an error, or a count beyond the range of
+  /// the counter. Real-time safe.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
   /// Returns the directory of the count, without symbolic links. Not real-time safe.
   const std::string& place() const noexcept { return place_; }

@@ -34,10 +34,10 @@ class GpioLine {
   virtual void read_edges(EdgeQueue& queue) noexcept = 0;
 };
 
-/// Edges of the signal of a touch probe. Their times are those of the kernel's interrupt (CLOCK_MONOTONIC,
-/// from Linux 5.7 on). On an older kernel, an edge has the time of another clock and is reported as lost. If
-/// two edges are closer than the latency of the interrupt, they are reported as a loss, because the kernel
-/// reads the level after the interrupt.
+/// Edges of the signal of a touch probe. The times of the edges are those of the kernel's interrupt
+/// (CLOCK_MONOTONIC, from Linux 5.7 on). On an older kernel, an edge has the time of another clock and is
+/// reported as lost. If two edges are closer than the latency of the interrupt, they are reported as a loss,
+/// because the kernel reads the level after the interrupt.
 class GpioProbeLine : public ProbeLine {
  public:
   static std::unique_ptr<GpioProbeLine> open(const GpioAddress& address, std::string& error);
@@ -47,8 +47,8 @@ class GpioProbeLine : public ProbeLine {
   InstantNs resolution() const noexcept override { return InstantNs{}; }
   /// Returns the number of gaps in the sequence of edges since the start. The number never decreases.
   std::uint64_t losses() const noexcept { return queue_.losses(); }
-  /// Reads the level of the probe's line. The result is 1 if the probe is in contact, 0 if it is not in
-  /// contact, and -1 if the line cannot be read. Not real-time safe.
+  /// Reads the level of the probe's line. The function level() returns 1 if the probe is in contact, 0 if it
+  /// is not in contact, and -1 if the line cannot be read. Not real-time safe.
   int level() noexcept { return line_->get(); }
 
  private:

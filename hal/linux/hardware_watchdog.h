@@ -5,12 +5,12 @@
 
 namespace vernier {
 
-/// A hardware watchdog of the Linux kernel (/dev/watchdog). It resets the computer if the daemon does not
-/// trigger the watchdog within its time.
+/// A hardware watchdog of the Linux kernel (/dev/watchdog). The watchdog resets the computer if the daemon
+/// does not trigger the watchdog within its time.
 class HardwareWatchdog {
  public:
-  /// Starts the watchdog immediately. Its time is set to `seconds` if the driver supports this. Returns null
-  /// with `error` set if the watchdog cannot be opened. Not real-time safe.
+  /// Starts the watchdog immediately. The time of the watchdog is set to `seconds` if the driver supports
+  /// this. Returns null with `error` set if the watchdog cannot be opened. Not real-time safe.
   static std::unique_ptr<HardwareWatchdog> open(const std::string& device, int seconds, std::string& error);
   /// If disarm() was not called before the destructor, the watchdog resets the computer when its time is
   /// over.

@@ -15,8 +15,8 @@ class OutputDevice : public CorrectionWriter {
   /// Reserves the device for exclusive use. Returns false if another process or another output uses the
   /// device. Not real-time safe.
   virtual bool lock() noexcept = 0;
-  /// Reads the correction that the device has at present and that the daemon must remove. The result is
-  /// kNoReading if the device does not report its value. Not real-time safe.
+  /// Reads the correction that the device has at present and that the daemon must remove. The function
+  /// read_back() returns kNoReading if the device does not report its value. Not real-time safe.
   virtual HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept = 0;
   /// Tests the device without a motion of the axis. Returns the error, or an empty text. Not real-time safe.
   virtual std::string attempt(std::uint32_t axis) = 0;

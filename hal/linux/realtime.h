@@ -18,8 +18,8 @@ struct RealtimeGrant {
 /// real-time safe.
 RealtimeGrant become_realtime(int priority) noexcept;
 
-/// Sets only SCHED_FIFO for the calling thread. It is used for threads besides the tick. The result is 0 or
-/// the errno. Not real-time safe.
+/// Sets only SCHED_FIFO for the calling thread. The function is used for threads besides the tick. The
+/// function become_realtime_thread() returns 0 or the errno. Not real-time safe.
 int become_realtime_thread(int priority) noexcept;
 
 /// After this call, new threads have stacks of 1 MB instead of 8 MB, because all stacks are locked in memory.

@@ -15,8 +15,9 @@ class SampledInput : public InputReader {
   /// read_input() will have. Only one thread may call sample(), and this thread must not be the thread of the
   /// tick.
   HalFault sample() noexcept;
-  /// Reads the newest sample; called once per tick. The result is kNoReading if the last attempt failed, if
-  /// no sample was taken yet, or if no new sample came for stale_reads calls. Real-time safe.
+  /// Reads the newest sample; called once per tick. The function read_input() returns kNoReading if the last
+  /// attempt failed, if no sample was taken yet, or if no new sample came for stale_reads calls. Real-time
+  /// safe.
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
 
   static constexpr double kPerUnit = 1e6;  // inputs are counted in millionths of their unit
@@ -27,8 +28,8 @@ class SampledInput : public InputReader {
  protected:
   /// `stale_reads`: number of reads without a new sample after which the sensor counts as missing.
   explicit SampledInput(std::uint32_t stale_reads) : stale_reads_(stale_reads) {}
-  /// Takes one sample in 1e-6 of the unit of the input. The result is kNoReading if the device gave no
-  /// sample. take() waits for the device.
+  /// Takes one sample in 1e-6 of the unit of the input. The function take() returns kNoReading if the device
+  /// gave no sample. take() waits for the device.
   virtual HalFault take(std::int64_t& micro) noexcept = 0;
 
  private:

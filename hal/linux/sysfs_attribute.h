@@ -9,8 +9,8 @@
 namespace vernier {
 
 /// One attribute of a device in sysfs: a file that contains a number as text. The attribute is opened once,
-/// before the first tick. Each read or write is at the beginning of the file. It is a single system call
-/// without allocation of memory.
+/// before the first tick. Each read or write is at the beginning of the file. Each read or write of the
+/// attribute is a single system call without allocation of memory.
 class SysfsAttribute {
  public:
   enum class Use { kRead, kWrite, kBoth };
@@ -26,14 +26,14 @@ class SysfsAttribute {
   /// real-time safe.
   bool lock() noexcept;
 
-  /// Writes a number and a line feed to the attribute. The result is kRefused if the driver or the device
-  /// refused the number. The function is real-time safe if the bus of the device is fast enough.
+  /// Writes a number and a line feed to the attribute. The function write() returns kRefused if the driver or
+  /// the device refused the number. The function is real-time safe if the bus of the device is fast enough.
   HalFault write(std::int64_t value) noexcept;
   /// Writes a word (for example "normal") to the attribute. Not real-time safe.
   HalFault write(const std::string& word) noexcept;
   /// Reads a decimal number, with or without a fraction, in millionths. Further digits are omitted. The
-  /// result is kNoReading if the driver gave an error, an empty text, or text that is not a number. In this
-  /// case `micro` is not changed. The duration of the call depends on the driver.
+  /// function read_micro() returns kNoReading if the driver gave an error, an empty text, or text that is not
+  /// a number. Without a reading, `micro` is not changed. The duration of the call depends on the driver.
   HalFault read_micro(std::int64_t& micro) noexcept;
   /// Reads a whole number. The errors are those of read_micro. Not real-time safe.
   HalFault read(std::int64_t& value) noexcept;

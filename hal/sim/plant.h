@@ -21,7 +21,8 @@ enum class PlantFaultKind : std::uint8_t {
   kSensorWild,       // the reading of the input is too large by `counts`
 };
 
-/// One simulated fault. It is active during [first, first + ticks) in the tick count of the plant.
+/// One simulated fault. The simulated fault is active during [first, first + ticks) in the tick count of the
+/// plant.
 struct PlantFault {
   PlantFaultKind kind;
   std::uint32_t index;  // index of the axis or input
@@ -42,9 +43,9 @@ struct PlantOptions {
   std::vector<PlantFault> faults;
 };
 
-/// A simulated machine that moves on a trajectory. Its readings have the errors of imperfect instruments,
-/// from a seeded random generator. With the same seed, SimPlant gives the same readings. The simulated
-/// machine stays at the first point of its trajectory until release().
+/// A simulated machine that moves on a trajectory. The readings of the plant have the errors of imperfect
+/// instruments, from a seeded random generator. With the same seed, SimPlant gives the same readings. The
+/// simulated machine stays at the first point of its trajectory until release().
 class SimPlant : public AxisReader, public InputReader, public CorrectionWriter {
  public:
   SimPlant(Trajectory& trajectory, std::uint32_t axes, std::uint32_t inputs, PlantOptions options = {});

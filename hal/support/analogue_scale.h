@@ -8,9 +8,9 @@
 
 namespace vernier {
 
-/// Scale of an analogue output. It converts a correction to the code of a D/A converter, or to the on-time of
-/// a pulse width in ns. The conversion is linear, is rounded to the nearest code, and is limited at both ends
-/// of the range.
+/// Scale of an analogue output. The scale converts a correction to the code of a D/A converter, or to the
+/// on-time of a pulse width in ns. The conversion is linear, is rounded to the nearest code, and is limited
+/// at both ends of the range.
 ///
 ///   code = zero + round(±correction * codes / span), halves away from zero
 ///

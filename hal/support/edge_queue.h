@@ -15,9 +15,10 @@ class EdgeQueue {
   static constexpr std::uint32_t kRoom = 128;
   static constexpr std::uint32_t kNoNumber = 0;
 
-  /// Adds an edge. `number`: number that the device gave to the edge. It increases by one with each edge. A
-  /// device never gives the number 0. The value kNoNumber (0) means that the device does not number its
-  /// edges. If the queue is full, the edge is dropped and reported as lost. Real-time safe.
+  /// Adds an edge. `number`: number that the device gave to the edge. The number of the edges increases by
+  /// one with each edge. A device never gives the number 0. The value kNoNumber (0) means that the device
+  /// does not number its edges. If the queue is full, the edge is dropped and reported as lost. Real-time
+  /// safe.
   void put(const ProbeEdge& edge, std::uint32_t number = kNoNumber) noexcept {
     if (count_ == kRoom) return put_loss();
     const bool out_of_turn = known_ && edge.made == last_made_;
@@ -34,8 +35,9 @@ class EdgeQueue {
     loss_ = true;
     known_ = false;
   }
-  /// Reads the oldest edge. The result is kNoReading if the queue is empty, and kRefused if edges are missing
-  /// before the next edge. The call after kRefused continues with the next edge. Real-time safe.
+  /// Reads the oldest edge. The function take() returns kNoReading if the queue is empty, and kRefused if
+  /// edges are missing before the next edge. The call after kRefused continues with the next edge. Real-time
+  /// safe.
   HalFault take(ProbeEdge& edge) noexcept {
     bool& missing = count_ > 0 ? entries_[first_].after_loss : loss_;
     if (missing) {

@@ -7,9 +7,10 @@
 
 namespace vernier {
 
-/// Computes round(value * numerator / denominator) with halves away from zero. The result is exact and needs
-/// no division. The ratio numerator / denominator is computed once, in the constructor. The product of a
-/// value and the ratio is the exact quotient or one less. The remainder determines which of both is correct.
+/// Computes round(value * numerator / denominator) with halves away from zero. The rounded ratio is exact and
+/// needs no division. The ratio numerator / denominator is computed once, in the constructor. The product of
+/// a value and the ratio is the exact quotient or one less. The remainder determines which of both is
+/// correct.
 class RoundedRatio {
  public:
   static constexpr std::int64_t kMost = std::int64_t{1} << 50;
@@ -30,7 +31,7 @@ class RoundedRatio {
     }
   }
 
-  /// `value`: limited to +-kMost. The result is limited to the same range. Real-time safe.
+  /// `value`: limited to +-kMost. The rounded ratio is also limited to +-kMost. Real-time safe.
   constexpr std::int64_t of(std::int64_t value) const noexcept {
     const bool beyond = value >= kMost || value <= -kMost;
     const auto size = static_cast<std::uint64_t>(beyond ? kMost : magnitude_of(value));

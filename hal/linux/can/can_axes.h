@@ -49,8 +49,8 @@ class CanAxes : public PositionReader {
 
   /// Reads the frames that came since the last call, at most kMostFrames, without waiting. Real-time safe.
   void begin_tick() noexcept override;
-  /// The result is kNoReading if no new, valid frame of this axis came since the previous tick. Real-time
-  /// safe.
+  /// The function read_axis() returns kNoReading if no new, valid frame of this axis came since the previous
+  /// tick. Real-time safe.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
 
   const CanCounts& counts() const noexcept { return counts_; }

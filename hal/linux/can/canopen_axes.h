@@ -32,7 +32,8 @@ class CanopenAxes : public PositionReader {
   CanopenAxes& operator=(const CanopenAxes&) = delete;
 
   void begin_tick() noexcept override;
-  /// The result is kNoReading if no TPDO of the drive came since the previous tick. Real-time safe.
+  /// The function read_axis() returns kNoReading if no TPDO of the drive came since the previous tick.
+  /// Real-time safe.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
   const CanopenCounts& counts(std::uint32_t index) const noexcept { return drives_[index].drive.counts(); }
 

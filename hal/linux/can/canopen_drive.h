@@ -46,7 +46,7 @@ struct CanopenCounts {
 /// device.
 ///
 /// The drive uses an offset from the next SYNC on (RPDO transmission type 0 to 240). The board also receives
-/// its own frames in their order on the bus. Therefore the board detects if a SYNC comes before an offset
+/// its own frames in their order on the bus. The board therefore detects if a SYNC comes before an offset
 /// that waits for the bus.
 ///   Operation enabled                    the offset follows, within parts_per_sync; it stays while
 ///                                        the drive leaves out a TPDO
@@ -60,7 +60,7 @@ class CanopenDrive {
  public:
   explicit CanopenDrive(const CanopenSettings& settings) noexcept : settings_(settings) {}
 
-  /// Takes a frame from the bus. It may also be a frame that the board has sent. Real-time safe.
+  /// Takes a frame from the bus. The frame may also be one that the board has sent. Real-time safe.
   void take(const can_frame& frame, InstantNs now) noexcept;
 
   struct Step {

@@ -33,8 +33,8 @@ class CanopenOutput : public OutputDevice {
   CanopenOutput(const CanopenOutput&) = delete;
   CanopenOutput& operator=(const CanopenOutput&) = delete;
 
-  /// The result is kRefused if the drive does not accept an offset (no SYNC, bus off), or if a loss must be
-  /// reported to the tick. Real-time safe.
+  /// The function write_correction() returns kRefused if the drive does not accept an offset (no SYNC, bus
+  /// off), or if a loss must be reported to the tick. Real-time safe.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
   /// Returns the correction that the drive has if the drive does not follow the required correction.
   /// Real-time safe.

@@ -32,12 +32,12 @@ class CanopenSdo {
   /// Reads a value of 1 to 4 bytes. read() returns an empty text, or the reason of a failure. read() waits
   /// for at most kWaitMs. Not real-time safe.
   std::string read(CanopenObject object, std::uint32_t& value);
-  /// Tests the RPDO with the identifier `rpdo`. The result is empty if the RPDO is mapped to one 32-bit value
-  /// of `object` that the drive uses with the next SYNC. Otherwise it describes the difference, or names
-  /// another RPDO that also writes `object`. Not real-time safe.
+  /// Tests the RPDO with the identifier `rpdo`. The result of check_offset() is empty if the RPDO is mapped
+  /// to one 32-bit value of `object` that the drive uses with the next SYNC. If the RPDO is not suitable, the
+  /// result describes the difference, or names another RPDO that also writes `object`. Not real-time safe.
   std::string check_offset(std::uint32_t rpdo, CanopenObject object);
-  /// Tests the TPDO like check_offset(). It must contain the statusword and then the position actual value,
-  /// with each SYNC. Not real-time safe.
+  /// Tests the TPDO like check_offset(). The TPDO must contain the statusword and then the position actual
+  /// value, with each SYNC. Not real-time safe.
   std::string check_position(std::uint32_t tpdo);
 
   static constexpr int kWaitMs = 300;

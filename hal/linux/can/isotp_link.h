@@ -26,8 +26,8 @@ class IsotpLink : public CommandLink {
     return 1;
   }
 
-  /// Sends a request as the client of an ISO-TP link, and waits for the reply. The result is the number of
-  /// bytes in the reply; -1 with errno set if no reply came. Not real-time safe.
+  /// Sends a request as the client of an ISO-TP link, and waits for the reply. The function ask() returns the
+  /// number of bytes in the reply; -1 with errno set if no reply came. Not real-time safe.
   int ask(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, std::uint32_t room,
           TimeUs wait) noexcept;
 

@@ -11,8 +11,8 @@
 
 namespace vernier {
 
-/// A channel in the buffer of a device. Its name is that of its files in scan_elements, without "in_"
-/// ("accel_x").
+/// A channel in the buffer of a device. The name of a channel is that of its files in scan_elements, without
+/// "in_" ("accel_x").
 struct IioChannel {
   std::string name;
   IioScale scale;
@@ -40,15 +40,16 @@ struct IioBufferCounts {
 /// class. The clock of the sensor or a trigger starts each scan of the channels. Each tick uses the next scan
 /// in order; each scan is used once. Input i of the board is the i-th channel. A scan waits in a queue until
 /// a tick uses it. If the clock of the sensor is faster than the ticks, the queue grows to kMostWaiting
-/// scans. Then a scan is removed from time to time. If the clock of the sensor is slower than the ticks, some
-/// ticks have no scan (kNoReading). The window of a feature then repeats a sample.
+/// scans. If the queue has kMostWaiting scans and the clock of the sensor is faster than the ticks, a scan is
+/// removed from time to time. If the clock of the sensor is slower than the ticks, some ticks have no scan
+/// (kNoReading). The window of a feature then repeats a sample.
 class IioBuffer : public InputReader {
  public:
   static constexpr std::uint32_t kMostWaiting = 4;  // number of ticks by which a tick may be late without
                                                     // loss of a scan
 
-  /// Sets up the device (channels, trigger, rate) and starts it. If this fails, open() returns null and sets
-  /// `error`. Not real-time safe.
+  /// Sets up the device (channels, trigger, rate) and starts it. If the device cannot be set up, open()
+  /// returns null and sets `error`. Not real-time safe.
   static std::unique_ptr<IioBuffer> open(const IioBufferSettings& settings, std::string& error);
   /// The destructor stops the device.
   ~IioBuffer() override;
@@ -58,7 +59,7 @@ class IioBuffer : public InputReader {
   /// Reads the received scans without waiting, and goes to the next scan. The function is real-time safe: one
   /// or two system calls.
   void begin_tick() noexcept override;
-  /// The result is kNoReading if this tick has no scan. Real-time safe.
+  /// The function read_input() returns kNoReading if this tick has no scan. Real-time safe.
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
   const IioBufferCounts& counts() const noexcept { return counts_; }
 

@@ -45,7 +45,8 @@ class ModbusAxes : public PositionReader {
   ModbusAxes& operator=(const ModbusAxes&) = delete;
 
   void begin_tick() noexcept override;
-  /// The result is kNoReading if no new positions came since the previous tick. Real-time safe.
+  /// The function read_axis() returns kNoReading if no new positions came since the previous tick. Real-time
+  /// safe.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
 
   /// Returns statistics of the reading for the end of the daemon. Not real-time safe.

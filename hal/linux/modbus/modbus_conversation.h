@@ -16,11 +16,11 @@ struct ModbusLayout {
   int mailbox = 0, mailbox_registers = 0, live_registers = 0;
 };
 
-/// Conversation with one Modbus client, from the side of the server. It processes bytes, uses no device and
-/// never waits. The conversation has one buffer for each direction. While a reply is not ready or is not
-/// completely sent, the conversation accepts no further bytes. The functions 3, 4, 6 and 16 are supported.
-/// Any other function is refused with the exception of the standard (Modbus Application Protocol V1.1b3;
-/// Modbus over Serial Line V1.02 for the frames of RTU).
+/// Conversation with one Modbus client, from the side of the server. The conversation processes bytes, uses
+/// no device and never waits. The conversation has one buffer for each direction. While a reply is not ready
+/// or is not completely sent, the conversation accepts no further bytes. The functions 3, 4, 6 and 16 are
+/// supported. Any other function is refused with the exception of the standard (Modbus Application Protocol
+/// V1.1b3; Modbus over Serial Line V1.02 for the frames of RTU).
 class ModbusConversation {
  public:
   static constexpr std::uint32_t kMostFrame = 260;           // 7 bytes of MBAP and 253 bytes of a request

@@ -29,13 +29,13 @@ class ModbusLine {
   ModbusLine& operator=(const ModbusLine&) = delete;
 
   enum class Registers { kInput, kHolding };
-  /// Reads `count` registers (1 to 125). The result is false if there is no answer in time, if the answer is
-  /// an exception, or if it has another unit, transaction, function or length. After a missing answer, the
-  /// line is not used for the time `wait`. Otherwise a late answer could be taken for the answer to the next
-  /// request. Not real-time safe.
+  /// Reads `count` registers (1 to 125). The function read() returns false if there is no answer in time, if
+  /// the answer is an exception, or if it has another unit, transaction, function or length. After a missing
+  /// answer, the line is not used for the time `wait`. Otherwise a late answer could be taken for the answer
+  /// to the next request. Not real-time safe.
   bool read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;
-  /// Writes `count` holding registers (1 to 123) in one request. The result is false for the same reasons as
-  /// in read(). The peer may nevertheless have received the values. Not real-time safe.
+  /// Writes `count` holding registers (1 to 123) in one request. The function write() returns false for the
+  /// same reasons as in read(). The peer may nevertheless have received the values. Not real-time safe.
   bool write(int unit, int address, int count, const std::uint16_t* values) noexcept;
   /// Returns the number of answers that did not belong to their request or were damaged. Only the thread that
   /// reads may call wrong_answers(). Not real-time safe.

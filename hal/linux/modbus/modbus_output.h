@@ -43,13 +43,13 @@ struct ModbusOutputSettings {
 /// Writes the corrections of several axes to registers of a controller. A separate thread writes the block
 /// and reads the echo. A tick only stores its value and never waits. If no new sequence number is returned
 /// within `timeout`, the thread clears the valid bits, and all writes are refused. The valid bit of an axis
-/// is set again when the board's own correction of the axis is zero. Therefore a restored connection causes
-/// no step. The same rule applies if a controller was restarted within the time-out and has lost the block,
-/// or if the process was stopped for longer than the time-out. A value that an earlier process left in the
-/// block stays there without its valid bit, until writes of this process move the value to zero. Only one
-/// board may write a block. An echo that is not one of the last sequence numbers is a loss: another board
-/// writes the block, or the controller was restarted. After a loss, the thread writes nothing until the
-/// sequence number has not changed for the time that another board may need for a block.
+/// is set again when the board's own correction of the axis is zero. A restored connection therefore causes
+/// no step of the correction. The same rule applies if a controller was restarted within the time-out and has
+/// lost the block, or if the process was stopped for longer than the time-out. A value that an earlier
+/// process left in the block stays there without its valid bit, until writes of this process move the value
+/// to zero. Only one board may write a block. An echo that is not one of the last sequence numbers is a loss:
+/// another board writes the block, or the controller was restarted. After a loss, the thread writes nothing
+/// until the sequence number has not changed for the time that another board may need for a block.
 class ModbusOutput : public OutputDevice {
  public:
   /// Returns the longest time for an answer, which the Modbus line must use. After a missing answer, a serial
@@ -69,8 +69,8 @@ class ModbusOutput : public OutputDevice {
   ModbusOutput(const ModbusOutput&) = delete;
   ModbusOutput& operator=(const ModbusOutput&) = delete;
 
-  /// The result is kRefused if the controller does not return the sequence number, or if a correction
-  /// increases whose valid bit is not set. Real-time safe.
+  /// The function write_correction() returns kRefused if the controller does not return the sequence number,
+  /// or if a correction increases whose valid bit is not set. Real-time safe.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 
