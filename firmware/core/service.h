@@ -79,8 +79,8 @@ class Service : private CommandHandler {
   /// again. Real-time safe.
   void end() noexcept { ending_ = true; }
 
-  /// Sets the weight of all corrections. It multiplies the weights that the links set for the axes. Real-time
-  /// safe.
+  /// Sets the weight of all corrections. The weight of all corrections multiplies the weights that the links
+  /// set for the axes. Real-time safe.
   void set_weight(WeightQ16 weight) noexcept { weight_ = weight; }
 
   /// Sets the delay of the probe (ProbeSettings) for later edges of its signal. Real-time safe.

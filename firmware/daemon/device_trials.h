@@ -14,8 +14,8 @@ class IioBuffer;
 /// Longest time for which a trial waits for a device.
 inline constexpr TimeUs kPatience(1'000'000);
 
-// Each function of this file tests an open device. It returns an empty text or the error. For the set-up of a
-// board only.
+// Each function of this file tests an open device. Each test returns an empty text if the device works, or
+// the error. For the set-up of a board only.
 
 /// Waits for one frame of an axis on the bus, and returns a description of the frame.
 std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis);

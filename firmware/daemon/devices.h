@@ -28,7 +28,7 @@ struct OpenLink {
   LinkRights rights;
 };
 
-/// The devices that a board file names. They exist as long as the board runs.
+/// The devices that a board file names. The devices exist as long as the board runs.
 class Devices {
  public:
   /// Opens all devices. The function findings() lists the missing devices. `file`: must exist longer than the
@@ -53,9 +53,9 @@ class Devices {
   std::vector<std::string> not_looked_at() const;
 
   /// Removes corrections that are in the drives before the start: the correction of a program that was
-  /// killed, or the start value of a converter. This removal is done before the first tick, within the limits
-  /// of the axis, and takes at least one second. All outputs are moved at the same time. Returns false if
-  /// `stop` is set and a correction still remains ten seconds later. Not real-time safe.
+  /// killed, or the start value of a converter. The corrections are removed before the first tick, within the
+  /// limits of the axis; this takes at least one second. All outputs are moved at the same time. Returns
+  /// false if `stop` is set and a correction still remains ten seconds later. Not real-time safe.
   bool take_left_overs_out(const std::atomic<bool>& stop) noexcept;
   /// Opens the hardware watchdog if the board file names a watchdog. Returns an error text, or an empty text
   /// if there is no error. In the latter case the caller must trigger the watchdog, and switch it off at an

@@ -13,7 +13,7 @@ class ImageFile {
  public:
   /// Copies the bytes of an image to aligned memory, and checks the image. Not real-time safe.
   ImageFault open(const std::vector<std::uint8_t>& bytes);
-  /// Returns a view of the image. It is valid after open() returned kNone.
+  /// Returns a view of the image. The view is valid after open() returned kNone.
   const ImageView& view() const noexcept { return view_; }
 
  private:

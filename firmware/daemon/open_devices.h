@@ -23,8 +23,8 @@ class SampledInput;
 using ModbusLines = std::map<std::string, std::shared_ptr<ModbusLine>>;
 
 // Each function of this file opens one device of the board file. If the device is missing, the function
-// returns null and sets `error`. If its kind or a setting is wrong, the function throws BoardError. Not
-// real-time safe.
+// returns null and sets `error`. If the kind of a device or a setting is wrong, the function throws
+// BoardError. Not real-time safe.
 
 /// Reads the settings of a Modbus line for one use: `device`, `baud` and `parity`, or `address` and `port`.
 /// `wait`: longest time to wait for an answer.
@@ -32,8 +32,8 @@ ModbusLineOpener modbus_line_of(const SignalSource& source, TimeUs wait);
 /// Returns a text that is equal for all outputs of one device; empty if each output is a separate device.
 std::string device_of_output(const SignalSource& source);
 /// Reads the settings of the output device of these axes: one output, or several outputs of one device.
-/// Output k of the device belongs to axes[k]. Opening an output can write to the machine. Therefore outputs
-/// are opened last.
+/// Output k of the device belongs to axes[k]. Opening an output can write to the machine. Outputs are opened
+/// last, because opening an output can write to the machine.
 OutputOpener output_of(const std::vector<OutputAxis>& axes);
 /// Opens a sensor of the board file. `lines`: the open Modbus lines; a line that the sensor needs is added.
 std::unique_ptr<SampledInput> open_sensor(const SignalSource& source, ModbusLines& lines, std::string& error);

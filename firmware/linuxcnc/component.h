@@ -73,7 +73,7 @@ class Component {
   Introduction met_;
   // Members that only the tick uses.
   bool cleared_ = false, held_ = false;
-  // The last reported state. Only the keeper thread uses it.
+  // The last reported state. Only the keeper thread uses the last reported state.
   std::atomic<std::uint32_t> fault_{0}, limits_{0};
   std::uint32_t told_fault_ = 0, told_limits_ = 0;
 };

@@ -19,7 +19,7 @@ class HatchLink : public CommandLink {
   Call& call_;
 };
 
-/// The part of a link that is in vernier-hal. It passes the requests of the link to the component.
+/// The part of a link that is in vernier-hal. This part passes the requests of the link to the component.
 class HatchHandler : public CommandHandler {
  public:
   /// `hatch`, `stop`: must exist longer than the handler. Not real-time safe.

@@ -8,14 +8,14 @@
 namespace vernier {
 
 /// The joints with the positions that LinuxCNC commands, and the corrections for their drives. The commanded
-/// values have no noise. Therefore speed and acceleration are differences between the present tick and the
-/// previous ticks, without smoothing. If a correction would move a joint beyond its limit, the correction
-/// decreases to zero before the limit. Near a limit, the correction is at most a share of the distance
-/// between command and limit. The share is so small that the correction decreases within the slew limit at
-/// the joint's largest speed (the pin max-velocity, or the largest observed speed if it is larger). The
-/// correction at the output always changes within the slew limit. The drive stays within the joint's limits
-/// if the joint is not faster than its largest speed (max-velocity or observed speed). If a connected pin
-/// (command, position or feedback) has a value that is not a number, the reading of the joint is missing.
+/// values have no noise. Speed and acceleration of a joint are therefore differences between the present tick
+/// and the previous ticks, without smoothing. If a correction would move a joint beyond its limit, the
+/// correction decreases to zero before the limit. Near a limit, the correction is at most a share of the
+/// distance between command and limit. The share is so small that the correction decreases within the slew
+/// limit at the joint's largest speed (the pin max-velocity, or the largest observed speed if it is larger).
+/// The correction at the output always changes within the slew limit. The drive stays within the joint's
+/// limits if the joint is not faster than its largest speed (max-velocity or observed speed). If a connected
+/// pin (command, position or feedback) has a value that is not a number, the reading of the joint is missing.
 /// After a missing reading, the command to the drive and the feedback to the controller keep their values. If
 /// the command jumps to the feedback position, this does not count as a jump of the axis. The reading
 /// continues from the new command. (LinuxCNC makes such a jump for a joint that is disabled.) A joint that is
@@ -36,12 +36,12 @@ class Joints : public AxisReader, public CorrectionWriter {
   /// Real-time safe.
   void set_slew(std::uint32_t joint, std::int64_t counts) noexcept { joints_[joint].slew = counts; }
   bool all_homed() const noexcept { return all_homed_; }
-  /// True if the correction would move this joint (any_at_limit: any joint) beyond its limit. In this case
-  /// the correction is limited. Real-time safe.
+  /// True if the correction would move this joint (any_at_limit: any joint) beyond its limit. If the
+  /// correction would move a joint beyond its limit, the correction is limited. Real-time safe.
   bool at_limit(std::uint32_t joint) const noexcept { return joints_[joint].at_limit; }
   bool any_at_limit() const noexcept;
-  /// Reads the position of a joint in counts: the feedback without the correction. The result is kNoReading
-  /// if there is no feedback. Real-time safe.
+  /// Reads the position of a joint in counts: the feedback without the correction. The function stands()
+  /// returns kNoReading if there is no feedback. Real-time safe.
   HalFault stands(std::uint32_t joint, AxisPosition& position) const noexcept;
 
   HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override;

@@ -34,8 +34,8 @@ class EnablePin : public DigitalInput {
   const Joints& joints_;
 };
 
-/// Probe signal from the pin `probe-in`, which is read once per tick. Therefore an edge is half a tick old on
-/// average.
+/// Probe signal from the pin `probe-in`, which is read once per tick. An edge of the probe signal is
+/// therefore half a tick old on average.
 class PinProbe : public ProbeLine {
  public:
   PinProbe(const Pins& pins, TimeUs tick) noexcept : pins_(pins), tick_(instant_ns(tick)) {}

@@ -18,7 +18,8 @@ Wiring wiring_of(const ImageView& view);
 /// uses. A BoundProgram is built outside the tick. Cycle::use() then starts it within one tick. A
 /// BoundProgram contains pointers to the bytes of the image.
 struct BoundProgram {
-  /// Constructs the empty program, which computes no correction. It is used if there is no image.
+  /// Constructs the empty program, which computes no correction. The empty program is used if there is no
+  /// image.
   BoundProgram() noexcept : compensator(Program{}) {}
   /// Binds axis i and input i of the correction image to axis i and input i of the board. Not real-time safe.
   explicit BoundProgram(const ImageView& view) noexcept;

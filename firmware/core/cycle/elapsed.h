@@ -8,9 +8,9 @@
 
 namespace vernier {
 
-/// Time between two readings, in 1/256 of a tick. The value is 256 if both readings were on time. A time of
-/// less than one tick counts as one tick. Reason: after a late tick, the next tick reads positions that the
-/// controller sends at a constant rate.
+/// Time between two readings, in 1/256 of a tick. The time between two readings is 256 if both readings were
+/// on time. A time of less than one tick counts as one tick. Reason: after a late tick, the next tick reads
+/// positions that the controller sends at a constant rate.
 struct TicksQ8 {
   std::int32_t count = 256;
 };
@@ -44,9 +44,9 @@ class ElapsedTicks {
                              // 1 us
 };
 
-/// Returns 2^24 / elapsed, rounded down. It is the factor (Q16) that converts a travel since the last reading
-/// to a travel per tick. The quotient is computed bit by bit, for targets without a divider. `elapsed`: 1 to
-/// kMostElapsed. Real-time safe.
+/// Returns 2^24 / elapsed, rounded down. This quotient is the factor (Q16) that converts a travel since the
+/// last reading to a travel per tick. The quotient is computed bit by bit, for targets without a divider.
+/// `elapsed`: 1 to kMostElapsed. Real-time safe.
 constexpr std::int64_t per_tick_q16(TicksQ8 elapsed) noexcept {
   std::uint32_t rest = 0, quotient = 0;
   for (int bit = 24; bit >= 0; --bit) {

@@ -25,9 +25,9 @@ struct TickTimes {
   Histogram execution;  // duration of a tick: read, step, write
 };
 
-/// Runs a cycle on a clock, tick by tick. The runner sleeps until a tick is due. It measures how late the
-/// tick starts and how long the tick takes. An overrun is a tick that ends after the next tick was due. Ticks
-/// that were due during the overrun are omitted.
+/// Runs a cycle on a clock, tick by tick. The runner sleeps until a tick is due. The runner measures how late
+/// the tick starts and how long the tick takes. An overrun is a tick that ends after the next tick was due.
+/// Ticks that were due during the overrun are omitted.
 class Runner {
  public:
   /// Constructs a runner whose first tick is due one period from now. Not real-time safe.

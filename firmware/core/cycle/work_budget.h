@@ -27,11 +27,11 @@ struct WorkBudget {
 
 /// Measures the amount of work that this board can do in a quarter of a tick. The other three quarters of a
 /// tick are for devices, the link and the other tasks of the processor. The measurement takes some
-/// milliseconds. It computes sums of products, and reads `memory` in random order (its words are
+/// milliseconds. The measurement computes sums of products, and reads `memory` in random order (its words are
 /// overwritten). `memory` must be larger than the caches. If `memory` is empty, reading a cache line has no
 /// cost, as on a processor without caches. The best of several measurements is used, because other tasks
-/// interrupted the slower measurements. The result is kAnyWork if the clock does not move. Call this function
-/// before the first tick. Not real-time safe.
+/// interrupted the slower measurements. The function measured_work_budget() returns kAnyWork if the clock
+/// does not move. Call this function before the first tick. Not real-time safe.
 WorkBudget measured_work_budget(Clock& clock, TimeUs tick, std::span<std::uint32_t> memory = {}) noexcept;
 
 /// Number of words of `memory` that exceeds the caches of usual boards: 16 MB.

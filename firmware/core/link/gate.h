@@ -11,8 +11,8 @@ namespace vernier {
 
 using Nonce = std::array<std::uint8_t, sizeof(ChallengeReply::nonce)>;
 using ChallengeBytes = std::array<std::uint8_t, sizeof(ChallengeReply::challenge)>;
-/// Random bytes that a board creates at each start and from which challenges are made. These bytes never
-/// leave the board.
+/// Random bytes that a board creates at each start and from which challenges are made. The random bytes of
+/// the challenges never leave the board.
 using ChallengeSeed = std::array<std::uint8_t, 32>;
 
 /// Sender of a request. `link`: a value that is different for each link of a board. `connection`: a number
@@ -25,9 +25,9 @@ struct Caller {
 
 /// Decides which requests of a link the board executes. A request is checked against the access rights of its
 /// link. If the board has keys, it executes only requests that are signed with one of these keys. A signed
-/// request is accepted only once. It contains the nonce of this start of the board, and a challenge of 128
-/// random bits that the board sent over the same connection in the last seconds. A request that was delayed,
-/// or that is repeated over another connection, is not valid.
+/// request is accepted only once. A signed request contains the nonce of this start of the board, and a
+/// challenge of 128 random bits that the board sent over the same connection in the last seconds. A request
+/// that was delayed, or that is repeated over another connection, is not valid.
 class Gate {
  public:
   /// `identity`, `own_key` must exist longer than this object (own_key null: the board has no key). `nonce`,

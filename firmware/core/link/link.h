@@ -8,8 +8,8 @@
 
 namespace vernier {
 
-/// Answers the requests of tables/link_format.h over any medium. A link runs outside the tick. It checks each
-/// byte of a request before it uses the byte.
+/// Answers the requests of tables/link_format.h over any medium. A link runs outside the tick. A link checks
+/// each byte of a request before it uses the byte.
 class Link {
  public:
   /// All arguments must exist longer than the link. `identity`: identity of the board, which HelloReply

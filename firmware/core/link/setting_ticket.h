@@ -6,9 +6,9 @@
 
 namespace vernier {
 
-/// A ticket for a reply that is sent after a setting of the operator is stored. It contains the values that
-/// the reply repeats, and the tick after which the stored state contains the setting. It is a ticket of
-/// CommandHandler. Any number of clients can wait for such replies.
+/// A ticket for a reply that is sent after a setting of the operator is stored. The ticket contains the
+/// values that the reply repeats, and the tick after which the stored state contains the setting. The ticket
+/// belongs to CommandHandler. Any number of clients can wait for such replies.
 struct SettingTicket {
   std::uint8_t op = 0;        // kCommand, kWeight or kSigned; 0: a Modbus master that uses only registers,
                               // whose reply has no head

@@ -31,8 +31,8 @@ class StoreDesk {
     state_.store(State::kAsked, std::memory_order_release);
     return ticket_;
   }
-  /// Copies the reply and returns its number of bytes. The result is CommandHandler::kLater while the request
-  /// is executed, and 0 if another request replaced it.
+  /// Copies the reply and returns its number of bytes. The result of collect() is CommandHandler::kLater
+  /// while the request is executed, and 0 if another request replaced it.
   std::uint32_t collect(std::uint32_t ticket, std::uint8_t* reply) noexcept {
     if (ticket != ticket_) return 0;
     const State state = state_.load(std::memory_order_acquire);

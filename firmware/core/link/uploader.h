@@ -63,8 +63,9 @@ class Uploader {
   // ---- functions for the store
   /// Starts the board's image: boot() reverts an image that was on trial, checks the confirmed image and
   /// starts the confirmed image. Call boot() once after power-on. If no image runs, the result contains the
-  /// reason. The result is kNone also if no image was ever confirmed, or if damaged() is true. The result is
-  /// kStore if no record of the store can be read, so that the state is unknown. Not real-time safe.
+  /// reason. The function boot() returns kNone also if no image was ever confirmed, or if damaged() is true.
+  /// The function boot() returns kStore if no record of the store can be read, so that the state is unknown.
+  /// Not real-time safe.
   UploadResult boot();
   /// Starts the board like boot(), but runs a correction image that the operator gives at the start. An image
   /// that is given at the start is not signed, and the function does not change the medium. Not real-time
@@ -84,8 +85,8 @@ class Uploader {
   /// Writes the records of the store again after damage. Returns true if they are written. Call repair() when
   /// an operator has activated the running image. Not real-time safe.
   bool repair();
-  /// Reads bytes of the confirmed upload (its header and image) from the medium. The result is kNoReading if
-  /// the offset is beyond the end of the upload. Not real-time safe.
+  /// Reads bytes of the confirmed upload (its header and image) from the medium. The function
+  /// read_confirmed() returns kNoReading if the offset is beyond the end of the upload. Not real-time safe.
   HalFault read_confirmed(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept;
 
   // ---- functions for the links, while the store executes no request of a link
@@ -101,8 +102,8 @@ class Uploader {
   SlotsRecord record() const noexcept;
   /// True if a confirmed image could not be loaded and no other image runs instead.
   bool image_lost() const noexcept { return image_lost_.load(); }
-  /// True if boot() found a damaged or missing record. In this case the running image may be an older image.
-  /// The flag is cleared when the next record is written.
+  /// True if boot() found a damaged or missing record. If the store has a damaged record, the running image
+  /// may be an older image. The flag is cleared when the next record is written.
   bool damaged() const noexcept { return damaged_.load(); }
   /// Returns the remaining time of the trial; 0 if no image is on trial.
   TimeUs trial_left(TimeUs now) const noexcept;
@@ -114,8 +115,8 @@ class Uploader {
   const Slots& slots() const noexcept { return slots_; }
 
  private:
-  /// Origin of an uploaded image. A stored image passed the checks of its history when it was confirmed.
-  /// These checks are not repeated.
+  /// Origin of an uploaded image. A stored image passed the checks of its history when it was confirmed. The
+  /// checks of an image's history, which were made when the image was confirmed, are not repeated.
   enum class Origin : std::uint8_t { kStored, kNew };
   UploadResult load(std::uint8_t slot, LoadedProgram& loaded, Origin origin);
   UploadResult load_v1(std::uint8_t slot, LoadedProgram& loaded);
