@@ -16,8 +16,8 @@ struct CheckedQuantity {
   bool operator==(const CheckedQuantity&) const = default;
 };
 
-/// Stored data of one check. They are the sensitivities of the readings to the tested parameters, in units of
-/// the readings' uncertainty, after projection of the set-ups.
+/// Stored data of one check. The rows are the sensitivities of the readings to the tested parameters, in
+/// units of the readings' uncertainty, after projection of the set-ups.
 struct CheckRecord {
   std::string label;                        // time or name of the check
   std::vector<CheckedQuantity> quantities;  // tested parameters; the free parameters of the machine are

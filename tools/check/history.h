@@ -17,8 +17,8 @@ struct CheckHistory {
 std::string identity_of(const model::Machine& machine);
 
 /// Convert a history to the text of its file, and the text of a file to a history. A file of version 1
-/// contains no usable record. It is read as a history without a machine. Throws InputError with the name of
-/// the file and the error in the file.
+/// contains no usable record. A history file of version 1 is read as a history without a machine. Throws
+/// InputError with the name of the file and the error in the file.
 std::string history_text(const CheckHistory& history);
 CheckHistory parse_history(const std::string& text, const std::string& file);
 

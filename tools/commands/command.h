@@ -9,9 +9,9 @@
 namespace vernier::commands {
 
 /// Adds one subcommand to the program `vernier`. The callback of the subcommand executes the command. If a
-/// command fails, it throws InputError (exit 1) or LimitNotMet (exit 2). Otherwise it returns normally (exit
-/// 0). Any other exception of a callback is an internal error of Vernier (exit 70). Each command has one
-/// function of this type. tools/commands/vernier.cpp lists these functions by topic.
+/// command fails, it throws InputError (exit 1) or LimitNotMet (exit 2). A command that succeeds returns
+/// normally (exit 0). Any other exception of a callback is an internal error of Vernier (exit 70). Each
+/// command has one function of this type. tools/commands/vernier.cpp lists these functions by topic.
 using RegisterCommand = void (*)(CLI::App& vernier);
 
 namespace again_cli {
@@ -150,8 +150,9 @@ inline constexpr const char* kResidualsHelp =
 std::FILE* human_stream(const std::string& json_path);
 
 /// Prints the progress of a command that takes more than two seconds to standard error. On a terminal one
-/// progress line is updated. Otherwise each step is printed on its own line. If the environment variable
-/// VERNIER_PROGRESS is `lines` (for a program that reads the progress), every step is printed immediately.
+/// progress line is updated. If the output is not a terminal, each step is printed on its own line. If the
+/// environment variable VERNIER_PROGRESS is `lines` (for a program that reads the progress), every step is
+/// printed immediately.
 class Progress {
  public:
   explicit Progress(std::string what);

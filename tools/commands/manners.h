@@ -13,8 +13,8 @@ std::vector<std::string> without_help_command(std::vector<std::string> arguments
 /// suggests the most similar name.
 void require_known_commands(const CLI::App& vernier, const std::vector<std::string>& arguments);
 
-/// Returns a suggestion if the parser reports an unknown option: "did you mean --json?". Otherwise the text
-/// is empty.
+/// Returns a suggestion if the parser reports an unknown option: "did you mean --json?". The suggestion is
+/// empty for all other errors of the parser.
 std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error);
 
 /// Throws InputError for a word of several letters after one hyphen ("-out z.xml") that is similar to the
@@ -22,7 +22,8 @@ std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error);
 void require_known_dashes(const CLI::App& vernier, const std::vector<std::string>& arguments);
 
 /// Changes all numeric options: a number must be a finite decimal number, and a count must not be negative.
-/// This change is necessary because the parser accepts "nan", "0x1f" and -1, and no range excludes nan.
+/// The change of the numeric options is necessary because the parser accepts "nan", "0x1f" and -1, and no
+/// range excludes nan.
 void take_plain_numbers(CLI::App& vernier);
 
 /// Throws InputError if a measurement file is given instead of a machine file, or the reverse. The message

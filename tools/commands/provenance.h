@@ -32,8 +32,8 @@ void record_provenance(const std::vector<std::string>& arguments, const std::str
 /// `name` if the provenance in the file is not valid.
 std::optional<Provenance> provenance_of(const std::string& content, const std::string& name);
 
-/// Returns a text that can be in an XML or HTML comment. It contains no two consecutive hyphens, which would
-/// end the comment.
+/// Returns a text that can be in an XML or HTML comment. The returned text contains no two consecutive
+/// hyphens, which would end the comment.
 std::string in_comment(const std::string& text);
 
 /// Returns the SHA-256 hash (FIPS 180-4) of bytes as 64 hexadecimal digits.

@@ -7,8 +7,9 @@ namespace vernier::commands {
 
 /// Executes a function that runs until SIGINT, SIGTERM or SIGHUP. The signal sets `stop`, and then
 /// `on_signal` is called in another thread. If the function has not returned one second after the signal, the
-/// process ends with the exit status `late`. Therefore a wait for a network or a long computation does not
-/// delay the end. This end of the process is like a power failure and loses no stored data.
+/// process ends with the exit status `late`. A wait for a network or a long computation therefore does not
+/// delay the end of the process. The forced end of the process is like a power failure and loses no stored
+/// data.
 void until_told(
     const std::function<void(const std::atomic<bool>& stop)>& run,
     const std::function<void()>& on_signal = [] {}, int late = 0);

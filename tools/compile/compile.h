@@ -18,8 +18,8 @@ namespace vernier::compile {
 CompiledMachine compile_machine(const model::Machine& machine, const std::string& machine_text,
                                 const CompileOptions& options);
 
-/// A compiled machine from a directory (`vernier compile -o DIR`), ready to execute. Its files are
-/// DIR/machine.xml and DIR/machine.vimg.
+/// A compiled machine from a directory (`vernier compile -o DIR`), ready to execute. The files of a compiled
+/// machine are DIR/machine.xml and DIR/machine.vimg.
 struct LoadedImage {
   model::Machine machine;
   std::vector<std::uint64_t> words;  // the image, with the alignment that ImageView requires

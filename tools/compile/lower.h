@@ -10,8 +10,8 @@ namespace vernier::compile {
 /// is too large.
 LoweredProgram lower(const model::Machine& machine, const Derivation& derivation, std::uint32_t tick_us);
 
-/// Returns the program for the shares of derivation.parts. It uses the registers of `tick`, the lowered
-/// program of the same derivation.
+/// Returns the program for the shares of derivation.parts. The share program uses the registers of `tick`,
+/// the lowered program of the same derivation.
 LoweredShares lower_shares(const model::Machine& machine, const Derivation& derivation,
                            const LoweredProgram& tick);
 

@@ -39,10 +39,10 @@ struct AxisDeviation {
 /// directions of the tool point. The columns of J are axes, each divided by its lever.
 struct LeastSquares {
   /// True if there are fewer axes than directions in which they move the tool point, and these directions
-  /// change with the pose (for example a telescope). If `nearest` is true, K is J'. Then x = (J'J)^-1 J'
-  /// deviation brings the tool point nearest to its target, and the component that the axes cannot reach
-  /// remains. If `nearest` is false, K is J. Then x = J' (J J')^-1 deviation is the smallest motion of the
-  /// axes.
+  /// change with the pose (for example a telescope). If `nearest` is true, K is J'. With `nearest`, x =
+  /// (J'J)^-1 J' deviation brings the tool point nearest to its target, and the component that the axes
+  /// cannot reach remains. If `nearest` is false, K is J. Without `nearest`, x = J' (J J')^-1 deviation is
+  /// the smallest motion of the axes.
   bool nearest = false;
   std::vector<std::vector<NodeId>> jacobian, square, adjugate;  // the matrices K, K K', adj(K K')
   std::vector<NodeId> deviation, weights;                       // right side and result of (K K')^-1
@@ -70,8 +70,8 @@ struct EffectPart {
   std::vector<NodeId> outputs;  // contribution to each output, in the order of Derivation::outputs
 };
 
-/// Correction of the tool's direction by rotary axes. Direction vectors have the length 1. Their deviations
-/// are therefore in rad.
+/// Correction of the tool's direction by rotary axes. Direction vectors have the length 1. The deviations of
+/// direction vectors are therefore in rad.
 struct Orientation {
   std::vector<std::size_t> axes;  // one or two axes that tilt the tool
   std::vector<double> lever;      // lever of each axis: upper limit of the change of direction, rad per deg
@@ -205,12 +205,12 @@ struct Contribution {
 };
 
 /// Proved bound of |fixed-point correction - exact inverse solution| for one axis. The bound is valid over
-/// the declared ranges, except at the steps of comparisons. It does not include the limits for magnitude,
-/// ramp and slew. The exact inverse solution is the correction c with p_actual(q + c) = p_nominal(q). For a
-/// rotary axis, the bound is the corresponding motion of the tool point at the longest lever of the axis.
-/// With least squares, the bound is valid for all axes together. For an axis that corrects the tool's
-/// direction, only `deviation_deg` has a value. The linear axes correct the tool point at the corrected
-/// position of the axes for the direction. TiltBound contains the remaining tilt.
+/// the declared ranges, except at the steps of comparisons. The bound does not include the limits for
+/// magnitude, ramp and slew. The exact inverse solution is the correction c with p_actual(q + c) =
+/// p_nominal(q). For a rotary axis, the bound is the corresponding motion of the tool point at the longest
+/// lever of the axis. With least squares, the bound is valid for all axes together. For an axis that corrects
+/// the tool's direction, only `deviation_deg` has a value. The linear axes correct the tool point at the
+/// corrected position of the axes for the direction. TiltBound contains the remaining tilt.
 struct OutputBound {
   std::string axis;
   double total_um = 0;

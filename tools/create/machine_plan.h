@@ -22,8 +22,8 @@ struct PlannedAxis {
   std::size_t along() const { return static_cast<std::size_t>(direction - (rotary() ? 'A' : 'X')); }
 };
 
-/// Content of a new machine file. The lists of axes on both sides begin at the bed. Their last axes carry the
-/// tool and the workpiece.
+/// Content of a new machine file. The lists of axes on both sides begin at the bed. The last axes of both
+/// lists carry the tool and the workpiece.
 struct MachinePlan {
   std::string type, name;
   std::vector<PlannedAxis> axes;                  // in the order of the machine file
@@ -69,8 +69,8 @@ MachinePlan plan_machine(const std::string& type, std::vector<PlannedAxis> axes,
 /// and axes differ.
 MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& rows);
 
-/// Returns positions for the stations of a table. They are round numbers that divide a range into four to
-/// seven parts.
+/// Returns positions for the stations of a table. The station positions are round numbers that divide a range
+/// into four to seven parts.
 std::vector<double> round_stations(double min, double max, bool rotary);
 
 }  // namespace vernier::create

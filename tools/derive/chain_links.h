@@ -14,7 +14,7 @@ class SymbolBook;
 using SymbolicVector = std::array<GiNaC::ex, 3>;
 
 /// A rotation matrix as a product of elementary rotations. Successive rotations about one axis are combined.
-/// Therefore parallel axes give sin(q2+q3) instead of products of sines.
+/// Parallel axes therefore give sin(q2+q3) instead of products of sines.
 class RotationProduct {
  public:
   void turn(int axis, const GiNaC::ex& angle_rad);

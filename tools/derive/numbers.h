@@ -8,8 +8,8 @@ namespace vernier::derive {
 /// numbers for pi, 180/pi and pi/180 with eleven digits or more become the exact constants.
 GiNaC::ex exact_number(double value);
 
-/// to_rad converts an angle from degrees to radians, and to_deg from radians to degrees. Both conversions are
-/// exact.
+/// to_rad converts an angle from degrees to radians, and to_deg from radians to degrees. Both conversions,
+/// to_rad and to_deg, are exact.
 GiNaC::ex to_rad(const GiNaC::ex& angle_deg);
 GiNaC::ex to_deg(const GiNaC::ex& angle_rad);
 

@@ -29,8 +29,9 @@ struct SecondOrderBound {
 SecondOrderBound bound_second_order(const ErrorEquation& equation);
 
 /// Returns the largest remainder in `count` random poses, with each error at plus or minus its magnitude. The
-/// result is a lower limit of the true maximum and not a proof. It shows how close the proved bound is. The
-/// result is nullopt if a linear axis has no range.
+/// result of sample_second_order() is a lower limit of the true maximum and not a proof. The sampled
+/// remainder shows how close the proved bound is. The function sample_second_order() returns nullopt if a
+/// linear axis has no range.
 std::optional<SecondOrder> sample_second_order(const ErrorEquation& equation, std::size_t count,
                                                std::uint64_t seed);
 

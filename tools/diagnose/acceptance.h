@@ -30,7 +30,8 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
 /// Returns the blocks for held-out tests over levels of the feed and of each thermometer. All rows with one
 /// level of feed, or of one temperature, are in one block. A term that was learned on features must be
 /// confirmed on held-out levels of feed and temperature, because features depend on both quantities. The
-/// result has one list of blocks for each quantity (feed, thermometer) with at least two levels.
+/// result of level_blocks() has one list of blocks for each quantity (feed, thermometer) with at least two
+/// levels.
 std::vector<std::vector<int>> level_blocks(const Evidence& evidence);
 
 }  // namespace vernier::diagnose

@@ -14,10 +14,10 @@ struct WithoutCopies {
   std::string sentence;
 };
 
-/// Excludes rows that repeat the readings of the previous row at the same position in every digit. This is
-/// done only if the file repeats nearly all readings of its dwells in this way. Rows with digit-for-digit
-/// equal readings are copies, not independent readings. Returns nullopt for a file with only a few repeated
-/// readings: with a coarse resolution, some readings are equal by chance.
+/// Excludes rows that repeat the readings of the previous row at the same position in every digit. Repeated
+/// readings are excluded only if the file repeats nearly all readings of its dwells in this way. Rows with
+/// digit-for-digit equal readings are copies, not independent readings. Returns nullopt for a file with only
+/// a few repeated readings: with a coarse resolution, some readings are equal by chance.
 std::optional<WithoutCopies> without_copies(const model::Measurement& rows);
 
 }  // namespace vernier::diagnose

@@ -136,8 +136,8 @@ class Finder {
   /// Returns the BIC of the accepted set, including the penalty of the noise model.
   double priced_criterion() const;
   void search_under(const fit::NoiseModel& noise);
-  /// Repeats the search for effects and the noise estimate in turn until both converge. The result is the
-  /// BIC, including the penalty of the noise model.
+  /// Repeats the search for effects and the noise estimate in turn until both converge. The function
+  /// settle_noise_from() returns the BIC, including the penalty of the noise model.
   double settle_noise_from(fit::NoiseModel noise);
   /// Returns the accepted effects whose contribution changes from row to row, faster than an instrument
   /// drifts.

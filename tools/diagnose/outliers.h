@@ -31,9 +31,9 @@ std::optional<OutliersToBlame> outliers_to_blame(const model::Machine& machine,
 struct WithoutOutliers {
   std::vector<std::size_t> kept;
   std::string sentence;
-  /// A sentence that names the line of a step. It is not empty if the excluded rows follow each other in the
-  /// file more often than chance explains. Excluded rows that follow each other are a step of the instrument,
-  /// not outliers.
+  /// A sentence that names the line of a step. The sentence is not empty if the excluded rows follow each
+  /// other in the file more often than chance explains. Excluded rows that follow each other are a step of
+  /// the instrument, not outliers.
   std::string step;
 };
 

@@ -24,8 +24,8 @@ struct DecisionFits {
 /// True if another fit has a smaller residual on the fit rows and also predicts the check rows better. If
 /// both effects are thermal responses with found terms, their numbers of terms are no evidence, because the
 /// search selected the terms. `accepted`, `other`: residuals (measured - model) of all observations with the
-/// two fits; `noise`: correlation of the errors of the readings. The result is false if there are no check
-/// rows.
+/// two fits; `noise`: correlation of the errors of the readings. The function fits_and_predicts_better()
+/// returns false if there are no check rows.
 bool fits_and_predicts_better(const model::Measurement& rows, const Eigen::VectorXd& accepted,
                               const Eigen::VectorXd& other, const fit::NoiseModel& noise);
 
@@ -35,9 +35,10 @@ bool fits_and_predicts_better(const model::Measurement& rows, const Eigen::Vecto
 /// estimate: alternatives beyond `distance_of_fits`, alternatives after the first `most`, and alternatives
 /// whose fit does not converge. A form of an effect with more unknowns is not an alternative if its fit
 /// predicts the same readings as the accepted form. A thermal response of another structure
-/// (`thermal-response`) is fitted at any distance. Its distance is at most 0 if it fits and predicts better
-/// than the accepted response. `accepted`: indices of the accepted effects, not empty. A negative distance
-/// means that the fit prefers the alternative. Computing time: one fit for each alternative.
+/// (`thermal-response`) is fitted at any distance. The distance of a thermal response is at most 0 if it fits
+/// and predicts better than the accepted response. `accepted`: indices of the accepted effects, not empty. A
+/// negative distance means that the fit prefers the alternative. Computing time: one fit for each
+/// alternative.
 Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
                                   std::size_t most, const DecisionFits& fits);
 

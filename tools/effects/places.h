@@ -21,7 +21,8 @@ const char* dof_name(const model::Machine& machine, const DofPlace& place);
 /// True if the degree of freedom is an angle (deg), false if it is a length (mm).
 bool is_angle(const model::Machine& machine, const DofPlace& place);
 /// For each axis, the degree of freedom that the axis moves in the nominal chain. The constructor evaluates
-/// the chain for every degree of freedom. Therefore construct only one AxisPlaces object for a machine.
+/// the chain for every degree of freedom. Construct only one AxisPlaces object for a machine, because the
+/// constructor evaluates the whole chain many times.
 class AxisPlaces {
  public:
   explicit AxisPlaces(const model::Machine& machine);

@@ -41,7 +41,7 @@ std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double len
 /// contribute to their uncertainty. A component that is proportional to the distance is equal for both
 /// approach directions of a target and for all runs. Only the drift contributes to the uncertainty of B and
 /// R: for B between two means of `runs` readings, for R between both ends of a range. The components are
-/// those in public descriptions of ISO/TR 230-9. They are combined by the GUM.
+/// those in public descriptions of ISO/TR 230-9. The components of the uncertainty are combined by the GUM.
 std::map<std::string, double> budget_uncertainty(const PositioningBudget& budget, double length_mm,
                                                  double runs);
 

@@ -44,8 +44,8 @@ PositioningResult evaluate_positioning(const std::vector<TargetReadings>& readin
 /// Readings of one axis from a measurement file, for the evaluation by ISO 230-2. A deviation is the value of
 /// `reading` minus the position of the axis. For a laser tracker or interferometer, the reading is the
 /// coordinate along the axis. A constant difference between reading and position does not affect any result.
-/// The approach direction comes from the column `dirX`. Without this column, it is the direction of the
-/// motion from the previous row. Check rows are evaluated too.
+/// The approach direction comes from the column `dirX`. Without the column `dirX`, the approach direction is
+/// the direction of the motion from the previous row. Check rows are evaluated too.
 struct PositioningFile {
   std::vector<TargetReadings> readings;
   std::string unit;  // unit of all values: mm or deg

@@ -22,8 +22,8 @@ struct PositioningWords {
                                                             // of the axis; uncertainty: U95
 };
 
-/// Returns the characteristic with the given name: A, A+, A-, E, E+, E-, R, R+, R-, B, M, mean B. The result
-/// is nullopt if the characteristic was not measured.
+/// Returns the characteristic with the given name: A, A+, A-, E, E+, E-, R, R+, R-, B, M, mean B. The
+/// function characteristic() returns nullopt if the characteristic was not measured.
 std::optional<double> characteristic(const PositioningResult& result, const std::string& name);
 
 /// Converts an element of `characteristics` to a JudgedValue; nullopt if the element has no tolerance.

@@ -22,11 +22,11 @@ struct DistanceResult {
 
 /// Returns the results for the distance between each pose and the next pose, in the order of their first
 /// visit. (Two poses have one distance.) The first visits of both poses are compared, then their second
-/// visits, and so on: D_j = |P1_j - P2_j|, along an axis |x1_j - x2_j|. Then AD = mean of D_j - D_c and RD =
-/// 3 sqrt(sum of (D_j - mean)^2 / (n - 1)). Throws InputError if there are fewer than two poses or visits, or
-/// if the poses are not visited equally often. The definitions are those of ISO 9283:1998, 7.3.2 and 7.3.3. A
-/// positive AD means that the distance is too long. The interval of RD is valid for normally distributed
-/// distances.
+/// visits, and so on: D_j = |P1_j - P2_j|, along an axis |x1_j - x2_j|. The results are AD = mean of D_j -
+/// D_c and RD = 3 sqrt(sum of (D_j - mean)^2 / (n - 1)). Throws InputError if there are fewer than two poses
+/// or visits, or if the poses are not visited equally often. The definitions are those of ISO 9283:1998,
+/// 7.3.2 and 7.3.3. A positive AD means that the distance is too long. The interval of RD is valid for
+/// normally distributed distances.
 std::vector<DistanceResult> evaluate_distances(const std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate

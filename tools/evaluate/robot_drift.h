@@ -32,8 +32,8 @@ struct DriftResult {
 /// result also identifies the blocks with the largest drifts. Throws InputError if a block has fewer than two
 /// readings of a pose, if a pose occurs in only one block, or if the blocks are not in time order. The
 /// definitions are those of ISO 9283:1998, 7.6. The shift of the barycentre is not defined in the standard.
-/// An instrument error that is equal in both blocks is no drift. Therefore the uncertainties contain only the
-/// scatter. A drift of the instrument cannot be distinguished from a drift of the robot.
+/// An instrument error that is equal in both blocks is no drift. The uncertainties of a drift therefore
+/// contain only the scatter. A drift of the instrument cannot be distinguished from a drift of the robot.
 std::vector<DriftResult> evaluate_drift(const std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate

@@ -14,17 +14,17 @@ struct PathResult {
   std::size_t accuracy_at = 0, repeatability_at = 0;  // index of the station with the largest value
 };
 
-/// Evaluates a path that a robot followed in several cycles (runs). The samples are in time order. They need
-/// not be at the same positions in each cycle. The stations have equal distances along the commanded path of
-/// the first cycle. At a station, a cycle is evaluated where its measured path crosses the plane
-/// perpendicular to the commanded path. Between samples, the path is interpolated linearly. The ends of the
-/// path are not evaluated, because there are no samples beyond them. Throws InputError if there are fewer
+/// Evaluates a path that a robot followed in several cycles (runs). The samples are in time order. The
+/// samples need not be at the same positions in each cycle. The stations have equal distances along the
+/// commanded path of the first cycle. At a station, a cycle is evaluated where its measured path crosses the
+/// plane perpendicular to the commanded path. Between samples, the path is interpolated linearly. The ends of
+/// the path are not evaluated, because there are no samples beyond them. Throws InputError if there are fewer
 /// than two cycles, if the path has no length, or if a cycle does not cross a station.
 PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations);
 
-/// Reads pose readings from a measurement file. Its columns are px py pz (commanded) and x y z (measured),
-/// mm, and optionally run, u, t. Check rows are used too. A row without a reading is ignored. Throws
-/// InputError if the file is not valid.
+/// Reads pose readings from a measurement file. The columns of the file are px py pz (commanded) and x y z
+/// (measured), mm, and optionally run, u, t. Check rows are used too. A row without a reading is ignored.
+/// Throws InputError if the file is not valid.
 std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file);
 
 }  // namespace vernier::evaluate

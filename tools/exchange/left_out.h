@@ -14,14 +14,14 @@ struct LeftOut {
   bool other_axis = false;  // true: the error depends on the position or direction of another axis
 };
 
-/// Limit below which an error is negligible, um. It is a tenth of the finest digit in the tables of
+/// Limit below which an error is negligible, um. The limit is a tenth of the finest digit in the tables of
 /// controllers.
 inline constexpr double kNothing_um = 0.01;
 
 /// Finds the variables, other than the position and direction of `axis`, on which the first-order offset of
-/// `axis` depends. The result has one entry for each significant variable (other axes, inputs, speed, travel
-/// since reversal …). The size is the largest change at random states (fixed seed) within the axis ranges.
-/// `at`: the fixed state (one state).
+/// `axis` depends. The result of beyond_own_axis() has one entry for each significant variable (other axes,
+/// inputs, speed, travel since reversal …). The size is the largest change at random states (fixed seed)
+/// within the axis ranges. `at`: the fixed state (one state).
 std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t axis,
                                      const model::States& at);
 

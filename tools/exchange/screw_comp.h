@@ -42,8 +42,8 @@ struct ScrewTable {
 ScrewTable screw_table(const model::Machine& machine, std::size_t axis, const model::States& at,
                        double tolerance_um);
 
-/// Returns the text of a screw-compensation file. It has only lines of three numbers, because the controller
-/// stops reading at any other line.
+/// Returns the text of a screw-compensation file. The file has only lines of three numbers, because the
+/// controller stops reading at any other line.
 std::string screw_text(const std::vector<ScrewPoint>& points, ScrewType type);
 
 /// Reads a screw-compensation file. Throws InputError with file, line and word for: a line without three

@@ -19,10 +19,10 @@ struct UrdfFile {
 /// Returns the URDF model of an arm with one joint for each axis. Origin and axis of each joint are those
 /// about which (or along which) the fitted chain really moves. The other joints are at zero, or in the middle
 /// of their range if it does not contain zero. The links are base_link, one link for each axis, and tool. In
-/// this position of the joints, each frame is parallel to the base. URDF has ideal joints. Therefore errors
-/// that depend on joints, inputs or direction remain. The member worst_um states their size at 1000 poses
-/// within the ranges (fixed seed). `at` (one state): values of inputs and motion. Throws InputError if an
-/// axis moves the workpiece, or if an axis moves no transform.
+/// this position of the joints, each frame is parallel to the base. URDF has ideal joints. Errors that depend
+/// on joints, inputs or direction therefore remain in a URDF model. The member worst_um states their size at
+/// 1000 poses within the ranges (fixed seed). `at` (one state): values of inputs and motion. Throws
+/// InputError if an axis moves the workpiece, or if an axis moves no transform.
 UrdfFile urdf_arm(const model::Machine& machine, const model::States& at);
 
 }  // namespace vernier::exchange

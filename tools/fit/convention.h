@@ -20,7 +20,7 @@ Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const
 /// a period or a time constant (in a divisor, an exponent or a lag) is the nominal value of the parameter.
 /// The scale of a coefficient with any other unit is the value that moves its degree of freedom by 3 x
 /// misfit. A `scale` in the machine file replaces the computed scale of a parameter. The scales are evaluated
-/// at the nominal machine. Therefore the scales do not depend on the start of the fit.
+/// at the nominal machine. The scales therefore do not depend on the start of the fit.
 Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
                          const model::ParameterSet& parameters);
 

@@ -46,9 +46,9 @@ struct Settled {
 /// reduced to the size of those entries of their kind that the data determine (evidence, MacKay 1992). A
 /// second pass of settle() starts from the result of the first pass (iterated Tikhonov). If the data
 /// determine a value to a fifth of its scale, the second pass moves this value by less than 1 % of its
-/// standard deviation. The result converges to the rounding error. `with_u`: true if the weights of the
-/// readings are 1 / u. `noise`: noise model for the covariance; nullopt: the noise model is estimated from
-/// the residual. The point itself is computed for independent readings.
+/// standard deviation. The fitted result converges to the rounding error. `with_u`: true if the weights of
+/// the readings are 1 / u. `noise`: noise model for the covariance; nullopt: the noise model is estimated
+/// from the residual. The point itself is computed for independent readings.
 Settled settle(FitProblem& problem, const Eigen::VectorXd& point, const Convention& convention,
                const StatedPriors& stated, std::size_t observations, bool with_u,
                const std::optional<NoiseModel>& noise);

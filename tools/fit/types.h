@@ -70,7 +70,8 @@ struct NormalisedError {
   double within_3 = 0;  // share of the readings with a normalised error up to 3
   std::size_t count = 0;
   /// Standard uncertainty of the square of `rms`, from blocks of successive rows. The value square_std
-  /// includes the influence of outliers and correlated errors. It is infinite if there are too few blocks.
+  /// includes the influence of outliers and correlated errors. The value square_std is infinite if there are
+  /// too few blocks.
   double square_std = std::numeric_limits<double>::infinity();
 };
 

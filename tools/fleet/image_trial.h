@@ -29,7 +29,7 @@ struct TrialEnd {
   enum class Kind : std::uint8_t { kKept, kTakenBack, kRefused, kNotInEffect, kAway, kInterrupted } kind;
   std::string why;
 };
-/// Returns the name of a result: "kept", "taken-back", ... It is the state in the registry.
+/// Returns the name of a result: "kept", "taken-back", ... The name of a result is its state in the registry.
 const char* name_of(TrialEnd::Kind kind);
 
 /// Steps of a rollout for one machine: start the trial of the image, check that the board uses the image,
@@ -42,9 +42,9 @@ class ImageTrial {
   /// is another board. All arguments must exist longer than the ImageTrial.
   ImageTrial(const RolloutMachine& machine, const RolloutOptions& options, RolloutBook& book,
              registry::MachineLocks& locks, const std::atomic<bool>& stop);
-  /// Executes the trial of an image. `own_issued`: RolloutState::issued. It distinguishes a trial of this
-  /// rollout from a trial of another caller. Throws LockLost if the lock of the machine was lost. After that,
-  /// the board is not changed.
+  /// Executes the trial of an image. `own_issued`: RolloutState::issued. The time own_issued distinguishes a
+  /// trial of this rollout from a trial of another caller. Throws LockLost if the lock of the machine was
+  /// lost. After that, the board is not changed.
   TrialEnd run(std::uint64_t own_issued);
 
  private:

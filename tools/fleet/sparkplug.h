@@ -9,7 +9,8 @@
 
 namespace vernier::fleet {
 
-/// Value of a metric. Its type determines the datatype of Sparkplug: Double, Int64, UInt64, Boolean, String.
+/// Value of a metric. The C++ type of the metric determines the datatype of Sparkplug: Double, Int64, UInt64,
+/// Boolean, String.
 using MetricValue = std::variant<double, std::int64_t, std::uint64_t, bool, std::string>;
 
 /// A named value of a Sparkplug message.

@@ -10,7 +10,8 @@
 
 namespace vernier::fleet {
 
-/// A sample of a machine that waits to be stored in the registry. Its payload is the result of encode().
+/// A sample of a machine that waits to be stored in the registry. The payload of a record is the result of
+/// encode().
 struct SpoolRecord {
   std::uint64_t number = 0;  // number of the record in this spool: 1, 2, 3 …
   std::string machine;
@@ -18,17 +19,17 @@ struct SpoolRecord {
   std::string payload;
 };
 
-/// A file with the data that a gateway has read and that no registry has confirmed yet. It has a limited
-/// size, survives a power failure, and numbers its records. A record is removed from the spool after the
-/// registry has stored it. If the file is full, a record is also removed, and the removal is counted.
+/// A file with the data that a gateway has read and that no registry has confirmed yet. The spool file has a
+/// limited size, survives a power failure, and numbers its records. A record is removed from the spool after
+/// the registry has stored it. If the file is full, a record is also removed, and the removal is counted.
 class Spool {
  public:
   /// `owner`: name of the gateway. If the file belongs to another gateway (a copied medium), the spool gets a
   /// new id. `most`: largest number of records. Throws InputError if the file cannot be opened or created.
   Spool(const std::string& file, const std::string& owner, std::uint64_t most);
 
-  /// Returns the unique id of this spool. A new file gets a new id. Therefore a record number always has only
-  /// one meaning.
+  /// Returns the unique id of this spool. A new file gets a new id. A record number together with the id of
+  /// the spool therefore always has only one meaning.
   const std::string& id() const { return id_; }
   /// Writes records with their numbers, and removes the records up to stored(), in one transaction. Throws
   /// DatabaseError if the file cannot be written.
@@ -56,7 +57,8 @@ class Spool {
   /// Call begin_anew() if the registry has numbers that this spool never gave. In this case the file is an
   /// older, restored file. After that, the records get new numbers under a new id.
   void begin_anew();
-  /// Returns the number of the next birth. It increases by one at each call (bdSeq of Sparkplug, 0..255).
+  /// Returns the number of the next birth. The number of the birth message increases by one at each call
+  /// (bdSeq of Sparkplug, 0..255).
   std::uint64_t next_birth();
 
  private:

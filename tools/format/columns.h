@@ -164,8 +164,9 @@ std::string reading_column_names();
 /// True if a column contains a reading in a file with this header. A column of the first version of the
 /// format is identified as a reading by its name. A column of a later version is a reading only if the header
 /// has the columns and units that belong to it: `from` with `distance`; the unit of an angle for `ix` and
-/// `iy`; all of `ax ay az` without a unit. `find`: function that finds a column of the header by its name. It
-/// returns nullptr if the header has no such column, or if the machine file uses the name for an input.
+/// `iy`; all of `ax ay az` without a unit. `find`: function that finds a column of the header by its name.
+/// The function `find` returns nullptr if the header has no such column, or if the machine file uses the name
+/// for an input.
 bool is_reading(const CsvColumn& column, const std::function<const CsvColumn*(std::string_view)>& find);
 
 /// True if expressions use a quantity with this name (t, feed, nx …). The name of such a quantity is not

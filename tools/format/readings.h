@@ -206,8 +206,8 @@ const char* report_unit_of(std::string_view name);
 /// error".
 std::string subject_of(ReadingKind kind);
 
-/// A reading with the name that `vernier new --reading` uses. It has one form, or several forms that one
-/// instrument measures together.
+/// A reading with the name that `vernier new --reading` uses. A reading kind has one form, or several forms
+/// that one instrument measures together.
 struct SurveyReading {
   const char* word;
   std::array<ReadingForm, 2> forms;

@@ -10,9 +10,9 @@ class WaitingRoom;
 
 /// An HTTP server that assigns a thread to a connection only after a complete request header has arrived.
 /// Connections without a complete header wait together in one thread. If more than `most_waiting` connections
-/// wait, the server closes the oldest connection of the IP address that has the most connections. Because of
-/// this rule, half-open connections cannot block a new request. Handlers and addresses are set in the same
-/// way as for httplib::Server.
+/// wait, the server closes the oldest connection of the IP address that has the most connections. Half-open
+/// connections cannot block a new request, because the server closes the oldest of too many waiting
+/// connections. Handlers and addresses are set in the same way as for httplib::Server.
 class GatedServer : public httplib::Server {
  public:
   explicit GatedServer(const ServerLimits& limits = {});

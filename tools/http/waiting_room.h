@@ -22,8 +22,8 @@ namespace vernier::http {
 using Answer = std::function<bool(httplib::Stream& stream, bool last)>;
 
 /// The connections of a GatedServer. One thread waits for headers, and several threads answer requests.
-/// WaitingRoom is also the task queue of the HTTP library. It executes a task immediately, because a task
-/// only adds a connection (`enter`).
+/// WaitingRoom is also the task queue of the HTTP library. The task queue executes a task immediately,
+/// because a task only adds a connection (`enter`).
 class WaitingRoom : public httplib::TaskQueue {
  public:
   WaitingRoom(const ServerLimits& limits, Answer answer);

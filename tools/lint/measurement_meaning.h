@@ -7,8 +7,8 @@
 
 namespace vernier::lint {
 
-/// Tests the numbers of a measurement file that can be read. It finds axes that never move or leave their
-/// travel, units that do not match, decreasing time, rows that occur twice, and wrong roles or normals.
+/// Tests the numbers of a measurement file that can be read. The test finds axes that never move or leave
+/// their travel, units that do not match, decreasing time, rows that occur twice, and wrong roles or normals.
 /// `machine` may be null.
 void look_at_meaning(const LintTable& table, const std::string& file, const model::Machine* machine,
                      LintFindings& findings);

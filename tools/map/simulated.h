@@ -27,7 +27,8 @@ constexpr int kLinePositions = 21;  // number of positions on a line, at a dista
 
 /// Simulates the measurement of a line with `positions` points between two nominal points, forward and then
 /// backward. The definitions of E, M, B are those of ISO 230-6 (diagonals) and ISO 230-2 (single axes). In
-/// this simulation each direction has one run. Therefore there is no repeatability.
+/// this simulation each direction has one run. Because each direction has one run, the simulation gives no
+/// repeatability.
 LineResult measure_line(const Bench& bench, const std::string& name, const Eigen::Vector3d& from,
                         const Eigen::Vector3d& to, int positions = kLinePositions);
 
@@ -46,7 +47,8 @@ nlohmann::ordered_json circles_json(const Bench& bench);
 /// 90 deg), side lengths, straightness.
 nlohmann::ordered_json squares_json(const Bench& bench);
 /// Returns the results for a simulated cylinder (five circles along Z) as JSON: range of the radii about its
-/// least-squares axis, and tilt of this axis. The result is null if the axes cannot reach the circles.
+/// least-squares axis, and tilt of this axis. The function cylinder_json() returns null if the axes cannot
+/// reach the circles.
 nlohmann::ordered_json cylinder_json(const Bench& bench);
 /// Returns the results for lines through the points of a CSV file `x[mm],y[mm],z[mm],run` as JSON, one line
 /// for each run: length between the ends of the line, and straightness. Throws InputError if a point is

@@ -15,8 +15,9 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector);
 
 /// Returns the rigid motion that brings the points `from` closest to the points `to`, in the sum of squared
 /// distances. `from`, `to`: corresponding points, 3 x N, N >= 1. If all points are on one line, they do not
-/// determine the rotation about this line. Then the smallest rotation is used. For a single point the
-/// rotation is zero. The method is that of Umeyama, IEEE PAMI 13 (1991) 376, equations 40-43, without scale.
+/// determine the rotation about this line. If the rotation about a line of points is not determined, the
+/// smallest rotation is used. For a single point the rotation is zero. The method is that of Umeyama, IEEE
+/// PAMI 13 (1991) 376, equations 40-43, without scale.
 RigidMotion align(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
 
 /// True if the points (3 x N) determine a rigid motion: three of the points are not on one line (within 1e-9

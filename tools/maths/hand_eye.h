@@ -21,8 +21,8 @@ RigidMotion inverse_of(const RigidMotion& motion);
 /// Returns the mounting in closed form from the relative motions between poses of one group (A X = X B). The
 /// rotation aligns the axes of these motions (Park and Martin, IEEE Trans. Robotics and Automation 10 (1994)
 /// 717), with the vectors 2 sin(angle / 2) of Tsai and Lenz (same journal 5 (1989) 345), which have no
-/// singularity below 180 deg. The translation is a linear least-squares solution. The result is nullopt if
-/// all rotations are about one axis, because they do not determine the mounting.
+/// singularity below 180 deg. The translation is a linear least-squares solution. The function mounting_of()
+/// returns nullopt if all rotations are about one axis, because they do not determine the mounting.
 std::optional<RigidMotion> mounting_of(const std::vector<SeenPose>& poses);
 
 /// Returns the place of one group: the mean of seen * (pose * mounting)^-1 over its poses. `poses`: one or

@@ -12,8 +12,8 @@ double median(std::vector<double> values);
 /// 1.4826 times this value (Hampel 1974).
 double spread_of_median(double median_size);
 
-/// Returns the standard deviation of deviations from 0, computed from their median absolute value. Therefore
-/// outliers do not change the result. For an empty list the result is 0.
+/// Returns the standard deviation of deviations from 0, computed from their median absolute value. Because
+/// the function uses the median, outliers hardly change the result. For an empty list the result is 0.
 double robust_spread(std::vector<double> deviations);
 
 }  // namespace vernier::maths

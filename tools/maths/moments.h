@@ -5,9 +5,9 @@
 
 namespace vernier::maths {
 
-/// A regression problem, reduced to the data for its F tests. It contains inner products of the functions
-/// (regressors) with each other and with the residual, after projection on the complement of earlier fits.
-/// Each function has the length 1 before the projection.
+/// A regression problem, reduced to the data for its F tests. The reduced data are inner products of the
+/// functions (regressors) with each other and with the residual, after projection on the complement of
+/// earlier fits. Each function has the length 1 before the projection.
 struct Moments {
   Eigen::MatrixXd gram;   // functions x functions
   Eigen::VectorXd score;  // functions
@@ -29,8 +29,8 @@ struct Explained {
 
 using FunctionSet = std::vector<Eigen::Index>;
 
-/// Fits the functions `adjust` first, and then the functions `subject`. The result contains only the part
-/// that `subject` explains.
+/// Fits the functions `adjust` first, and then the functions `subject`. The result of explained() contains
+/// only the part that `subject` explains.
 Explained explained(const Moments& moments, const FunctionSet& adjust, const FunctionSet& subject);
 
 /// Returns the logarithm of the p-value of several kinds of readings together, from the explained sum of each

@@ -11,9 +11,9 @@ namespace vernier::maths {
 /// space of the matrix, which is reported and not damped.
 class PivotedCholesky {
  public:
-  /// `matrix`: n x n, with diagonal elements of about 1. Only the lower triangle is read. A column depends on
-  /// earlier columns if its remaining square is below `cutoff` times the largest diagonal element. `held`:
-  /// columns that must not be pivots. If it is empty, all columns may be pivots.
+  /// `matrix`: n x n, with diagonal elements of about 1. Only the lower triangle of the matrix is read. A
+  /// column depends on earlier columns if its remaining square is below `cutoff` times the largest diagonal
+  /// element. `held`: columns that must not be pivots. If `held` is empty, all columns may be pivots.
   PivotedCholesky(Eigen::MatrixXd matrix, double cutoff, const std::vector<char>& held = {});
 
   Eigen::Index rank() const { return rank_; }

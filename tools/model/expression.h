@@ -111,9 +111,9 @@ ExprPtr make_run(std::string label);
 ExprPtr subtract_number(ExprPtr left, double value);
 ExprPtr make_node(Op op, std::vector<ExprPtr> args);
 
-/// Returns true if the expression contains only numbers. In this case `value` is set to the value of the
-/// expression. Returns false if the expression contains a symbol. In this case the content of `value` has no
-/// meaning.
+/// Returns true if the expression contains only numbers. If the expression contains only numbers, `value` is
+/// set to the value of the expression. Returns false if the expression contains a symbol. If the expression
+/// contains a symbol, the content of `value` has no meaning.
 bool is_constant(const Expr& expr, double& value);
 
 /// Returns the name of a function in expressions ("sin"); nullptr if the operation is an operator or a leaf.

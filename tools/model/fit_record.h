@@ -26,9 +26,10 @@ struct FitRecord {
     std::string text;  // one sentence for the report
   };
   std::vector<Finding> findings;
-  /// Discrepancy along x, y, z of workpiece coordinates, mm (Kennedy and O'Hagan 2001). It is the standard
-  /// deviation of the tool point's deviation that the model does not contain, as the readings show it. The
-  /// discrepancy does not include the noise of the readings. A discrepancy of 0 means that none was found.
+  /// Discrepancy along x, y, z of workpiece coordinates, mm (Kennedy and O'Hagan 2001). The discrepancy is
+  /// the standard deviation of the tool point's deviation that the model does not contain, as the readings
+  /// show it. The discrepancy does not include the noise of the readings. A discrepancy of 0 means that none
+  /// was found.
   std::array<double, 3> discrepancy_mm{};
   /// A coefficient whose dependence on a variable the readings do not show. First case: in all rows of the
   /// coefficient, an axis or input on which its effect depends had nearly the same value. Second case: an

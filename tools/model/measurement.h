@@ -45,8 +45,8 @@ inline constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
 /// An object that the tool point touched: an unknown point (`same`), or an artefact of the machine file
 /// (`on`). An artefact of type point without known values is an unknown point too. A touched object has
 /// separate unknown values in each set-up, with one exception. Exception: an artefact with a stated position
-/// and without a stated set-up is one body in several set-ups, each with its own BaseShift. This body has the
-/// same values in all set-ups.
+/// and without a stated set-up is one body in several set-ups, each with its own BaseShift. An artefact that
+/// is one body in several set-ups has the same values in all set-ups.
 struct Thing {
   format::ReadingForm form = format::ReadingForm::kSame;
   std::string label, setup;  // setup: empty if the rows state no set-up
@@ -115,7 +115,8 @@ struct Measurement {
 std::string set_up_of_file(const std::string& path, bool with_folder = false);
 
 /// Returns the standard uncertainty of a reading. For a rotation, the standard uncertainty is ua of its row;
-/// if ua is not given, it is u. The unit is mm or deg. The result is 0 if the row has no uncertainty.
+/// if ua is not given, it is u. The unit is mm or deg. The function uncertainty_of() returns 0 if the row has
+/// no uncertainty.
 double uncertainty_of(const Measurement& measurement, const Observation& observation);
 
 /// True if the set-up of the instrument has no influence on the reading. A touched object without a known

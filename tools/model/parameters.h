@@ -10,7 +10,8 @@ namespace vernier::model {
 
 enum class ParameterKind : std::uint8_t { kStatic, kScaleFactor, kStation, kBaseShift, kToolShift };
 
-/// True for the parameters of an instrument's set-up. Such parameters are not errors of the machine.
+/// True for the parameters of an instrument's set-up. Parameters of an instrument's set-up are not errors of
+/// the machine.
 constexpr bool is_set_up(ParameterKind kind) {
   return kind == ParameterKind::kBaseShift || kind == ParameterKind::kToolShift;
 }

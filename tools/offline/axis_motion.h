@@ -35,8 +35,8 @@ class AxisMotion {
   /// range.
   model::States along(const ProgramMove& move, const std::vector<double>& shares) const;
   /// Returns the shares at which the correction is evaluated in a part of a move, including its first and
-  /// last share. These shares are those of even_looks. The intervals are smaller where an expression of the
-  /// chain changes quickly (model::Detail::Sharp).
+  /// last share. The shares of a part of a move are those of even_looks. The intervals are smaller where an
+  /// expression of the chain changes quickly (model::Detail::Sharp).
   std::vector<double> looks(const ProgramMove& move, double from, double to, double deviation_mm) const;
 
  private:

@@ -54,8 +54,8 @@ class Corrector {
   CorrectionSummary summary_;
 };
 
-/// First words of an output file. They identify a file that was corrected before, and a file that was
-/// converted back before.
+/// First words of an output file. The first words identify a file that was corrected before, and a file that
+/// was converted back before.
 inline constexpr const char* kCorrectedMark = "corrected by vernier";
 inline constexpr const char* kBackMark = "converted back by vernier";
 

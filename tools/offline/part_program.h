@@ -8,7 +8,7 @@
 
 namespace vernier::offline {
 
-/// A part of a cutting move in which no axis reverses. It is empty for a rapid move.
+/// A part of a cutting move in which no axis reverses. The part of a move is empty for a rapid move.
 struct ProgramStretch {
   std::size_t line = 0;
   bool rapid = false;

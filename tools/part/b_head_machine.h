@@ -10,7 +10,8 @@
 namespace vernier::part {
 
 /// A machine file whose nominal chain is that of a five-axis machine with B head and C table. The machine may
-/// have any errors that the file format can represent. Its free statics are the parameters of the part test.
+/// have any errors that the file format can represent. The free statics of the machine are the parameters of
+/// the part test.
 struct BHeadMachine {
   model::Machine machine;
   double pivot_mm = 0;                // distance from the B axis to the tool tip, from the nominal chain

@@ -14,19 +14,19 @@ struct EnvelopePoint {
 
 /// Returns the point of the swept cylinder's envelope on the generatrix at height parameter `v`. The normal
 /// of the envelope is perpendicular to the axis and to the velocity (tangency condition of sweeps, equation 5
-/// of the paper). The velocity of the cutter per unit of u is dTip + h dR. The result is valid only where the
-/// cutter does not move along its own axis.
+/// of the paper). The velocity of the cutter per unit of u is dTip + h dR. The result of envelope_point() is
+/// valid only where the cutter does not move along its own axis.
 EnvelopePoint envelope_point(const FlankPose& pose, const Cutter& cutter, double v);
 
 /// Returns the overcut by the paper's formula R (1 - |sin theta|), theta = atan2(-V.T, V.N), mm (equation 6,
 /// reconstructed from the formula after it). The paper permits several interpretations of this formula; the
-/// function uses one of them. The result is not a distance along the normal, because the paper's vector
-/// T(u,1) is not perpendicular to the tool axis.
+/// function uses one of them. The result of overcut_formula_mm() is not a distance along the normal, because
+/// the paper's vector T(u,1) is not perpendicular to the tool axis.
 double overcut_formula_mm(const FlankPose& pose, const Cutter& cutter, double v);
 
 /// Returns the distance of the envelope point at (u, v) to the true surface, along the outward normal; a
-/// negative value is overcut. The result is 0 if the nearest point of the surface is beyond an end of the
-/// part.
+/// negative value is overcut. The function envelope_distance_mm() returns 0 if the nearest point of the
+/// surface is beyond an end of the part.
 double envelope_distance_mm(const RuledSurface& surface, const Cutter& cutter, double u, double v,
                             NormalReading reading = {});
 

@@ -31,9 +31,10 @@ ToolPose tool_pose(const JointPose& q, double pivot_mm);
 JointPose joints_for(const ToolPose& pose, double pivot_mm, double b_deg, double c_deg);
 
 /// Returns the axis positions along a path of tool poses (inverse kinematics). Where the tool is vertical, C
-/// is not determined. There C changes linearly between its values at both ends of the vertical part. There
-/// are two continuous solutions, which differ by half a turn of C. The solution with the smaller |C| is used.
-/// `poses`: tool poses in the order of the path, so close that C turns less than 90 deg between two poses.
+/// is not determined. Where the tool is vertical, C changes linearly between its values at both ends of the
+/// vertical part. The path has two continuous solutions, which differ by half a turn of C. The solution with
+/// the smaller |C| is used. `poses`: tool poses in the order of the path, so close that C turns less than 90
+/// deg between two poses.
 std::vector<JointPose> back_solution(const std::vector<ToolPose>& poses, double pivot_mm,
                                      RotarySolution solution = RotarySolution::kContinuous);
 

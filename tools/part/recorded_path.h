@@ -37,7 +37,7 @@ struct RecordedDeviations {
 /// Computes for each point how deep the cutter cuts along the normal of the surface. The ray along the normal
 /// is intersected with the cylinder of the cutter. The cylinder is at the recorded poses and at poses on the
 /// straight path of the axes between them; the deepest cut counts. The poses are evaluated with the nominal
-/// machine. Therefore the results are deviations of the recorded positions, not errors of the machine. Throws
+/// machine. The results are therefore deviations of the recorded positions, not errors of the machine. Throws
 /// InputError if no pose is within 1 mm of a point.
 RecordedDeviations recorded_deviations(const BHeadMachine& machine, const RecordedPath& recorded,
                                        const std::vector<PartPoint>& points, const Cutter& cutter);

@@ -20,14 +20,15 @@ struct TouchConditions {
 /// Returns the following error of the axis: speed divided by the gain of the position loop, mm. `feed`: speed
 /// of the approach, mm/min.
 double following_error(const TouchConditions& conditions, double feed);
-/// Returns the length of approach after which the speed is constant within 2 %, mm. It is the following error
-/// times the published ratio 5.1 mm / 1.78 mm.
+/// Returns the length of approach after which the speed is constant within 2 %, mm. The length of approach is
+/// the following error times the published ratio 5.1 mm / 1.78 mm.
 double least_approach(const TouchConditions& conditions, double feed);
-/// Returns the smallest distance from the surface to the programmed end of the approach, mm. It equals the
-/// following error. With this distance, the commanded position is still moving when the contact occurs.
+/// Returns the smallest distance from the surface to the programmed end of the approach, mm. The smallest
+/// distance equals the following error. With this distance, the commanded position is still moving when the
+/// contact occurs.
 double least_overtravel(const TouchConditions& conditions, double feed);
-/// Returns the deflection of the stylus when the machine has stopped after a touch, mm. It is the path during
-/// the delay plus the following error, which the axis still has to travel.
+/// Returns the deflection of the stylus when the machine has stopped after a touch, mm. The deflection is the
+/// path during the delay plus the following error, which the axis still has to travel.
 double stopping_way(const TouchConditions& conditions, double feed);
 
 /// Returns the conditions that an approach at a given feed violates, one sentence for each. The approach

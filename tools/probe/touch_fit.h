@@ -52,9 +52,9 @@ struct TouchFitOptions {
 TouchFit fit_touches(const TouchModel& model, const Eigen::VectorXd& start, const TouchFitOptions& options,
                      const std::vector<std::string>& names);
 
-/// Returns the circle or sphere that best solves |m|^2 = 2 m c + k by normal equations. It is the start of a
-/// fit. `points`: one point per row, with two or three columns, relative to their centroid. The result
-/// contains the centre and then the radius.
+/// Returns the circle or sphere that best solves |m|^2 = 2 m c + k by normal equations. The returned circle
+/// or sphere is the start of a fit. `points`: one point per row, with two or three columns, relative to their
+/// centroid. The result of algebraic_centre() contains the centre and then the radius.
 Eigen::VectorXd algebraic_centre(const Eigen::MatrixXd& points);
 
 }  // namespace vernier::probe

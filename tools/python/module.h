@@ -17,8 +17,8 @@ struct MachineOfPython {
   model::Machine machine;
 };
 
-/// Measurement files in the Python module, given by their names. They are read together with a machine,
-/// because the machine defines the meaning of their columns.
+/// Measurement files in the Python module, given by their names. Measurement files are read together with a
+/// machine, because the machine defines the meaning of their columns.
 struct MeasurementsOfPython {
   std::vector<std::string> paths;
 };
@@ -35,8 +35,8 @@ struct ResultOfPython {
 /// Reads a machine file for Python. Throws InputError under the same conditions as parse_machine.
 std::shared_ptr<const MachineOfPython> machine_of_text(const std::string& path, std::string text);
 
-/// Each function of the Python module has the result of the command with the same name. These functions throw
-/// InputError and LimitNotMet under the same conditions as the command.
+/// Each function of the Python module has the result of the command with the same name. The functions of the
+/// Python module throw InputError and LimitNotMet under the same conditions as the command.
 ResultOfPython fit_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements);
 ResultOfPython compare_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements);
 ResultOfPython diagnose_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements,

@@ -39,13 +39,13 @@ struct Drift {
 };
 
 /// Separates common changes of the machines of a fleet from the change of one machine. The model is: reading
-/// = level of the machine + common curve of time + individual rate x time. It is fitted by least squares,
-/// weighted by the stated uncertainties. Individual rates are added one by one, the clearest first, while an
-/// F test is significant at false_alarms / (2 x machines x quantities). The common curve is accepted by an F
-/// test at false_alarms / (2 x quantities). A change that most machines have is therefore a common change.
-/// Scatter beyond the stated uncertainty increases all uncertainties, and so does the wander of the machines
-/// (wander.h). Therefore a drift is a change that is larger than the wander of the other machines. A rate is
-/// not reported if it is not significant without one of its readings.
+/// = level of the machine + common curve of time + individual rate x time. The model is fitted by least
+/// squares, weighted by the stated uncertainties. Individual rates are added one by one, the clearest first,
+/// while an F test is significant at false_alarms / (2 x machines x quantities). The common curve is accepted
+/// by an F test at false_alarms / (2 x quantities). A change that most machines have is therefore a common
+/// change. Scatter beyond the stated uncertainty increases all uncertainties, and so does the wander of the
+/// machines (wander.h). A drift is therefore a change that is larger than the wander of the other machines. A
+/// rate is not reported if it is not significant without one of its readings.
 std::vector<Drift> drifts(const std::vector<FleetReading>& readings, const AlikeOptions& options);
 
 }  // namespace vernier::registry

@@ -34,13 +34,13 @@ class Database {
   /// for each other.
   virtual const char* skip_locked() const = 0;
   /// Returns the time in microseconds since 1970 by the clock of the database (for a file, of this computer).
-  /// Therefore all callers use the same clock. Throws DatabaseError if the database is not available.
+  /// All callers therefore use the same clock. Throws DatabaseError if the database is not available.
   virtual std::int64_t now_us() = 0;
   /// Returns a name for people: "PostgreSQL 15.8 at ...".
   virtual std::string name() const = 0;
 };
 
-/// A database transaction. It is undone if commit() is not called.
+/// A database transaction. The transaction is undone if commit() is not called.
 class Transaction {
  public:
   explicit Transaction(Database& database) : database_(database) { database_.run(database_.begin()); }

@@ -80,8 +80,8 @@ struct NotEntered {
 /// registry in a file have the same content. All functions of Registry can throw DatabaseError.
 class Registry {
  public:
-  /// Opens a registry. If its tables do not exist, they are created. Throws InputError if a newer program
-  /// created the registry.
+  /// Opens a registry. If the tables of the registry do not exist, they are created. Throws InputError if a
+  /// newer program created the registry.
   explicit Registry(std::unique_ptr<Database> database);
   Database& database() { return *database_; }
 

@@ -28,8 +28,8 @@ struct ReductionGroup {
       kind;                    // readings of only this kind (rotations are only in groups of their own kind)
   std::optional<double> feed;  // readings at only this feed, mm/min
   ErrorFigures before, after;
-  /// The reduction is 1 - rms after / rms before, with its 95 % confidence interval. It has no value if there
-  /// are too few readings or if all readings are 0.
+  /// The reduction is 1 - rms after / rms before, with its 95 % confidence interval. The reduction has no
+  /// value if there are too few readings or if all readings are 0.
   std::optional<double> reduction;
   std::optional<ConfidenceInterval> interval;
 };

@@ -36,7 +36,8 @@ std::vector<RecordedColumn> recorded_columns(const model::Machine& machine,
                                              const model::Measurement& measurement,
                                              const std::vector<std::size_t>& rows);
 
-/// Columns of a Basis that belong together. Their coefficients represent one statement about the residual.
+/// Columns of a Basis that belong together. The coefficients of columns that belong together represent one
+/// statement about the residual.
 struct BasisTerm {
   Shape shape = Shape::kLinear;
   std::size_t column = 0;             // index of the recorded column; kNoColumn for the constant

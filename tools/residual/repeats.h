@@ -26,8 +26,8 @@ struct Repeats {
 Repeats compare_repeats(const std::vector<KindSample>& samples, const model::Measurement& measurement);
 
 /// Returns the scatter of the residual, um, from the nearest pairs of rows in all columns except time and
-/// order. It is an upper limit of the noise. Only lengths are used. The result is nullopt if there are fewer
-/// than 10 pairs.
+/// order. The scatter of the nearest pairs is an upper limit of the noise. Only readings of lengths are used
+/// for the scatter. The function neighbour_error_um() returns nullopt if there are fewer than 10 pairs.
 std::optional<double> neighbour_error_um(const std::vector<KindSample>& samples,
                                          const std::vector<RecordedColumn>& columns);
 

@@ -29,8 +29,8 @@ struct KindSample {
                                        // use the same basis
   maths::Moments moments;              // moments of this kind alone, without projection
   /// The moments after projection on the complement of the fit's Jacobian, which combines all kinds of
-  /// readings. Its sum and degrees of freedom are those of all kinds together, each in units of its standard
-  /// deviation. If there is no Jacobian, `projected` equals `moments`.
+  /// readings. The sum and the degrees of freedom are those of all kinds together, each in units of its
+  /// standard deviation. If there is no Jacobian, `projected` equals `moments`.
   maths::Moments projected;
 
   const char* name() const { return format::name_of(kind); }
@@ -40,7 +40,8 @@ struct KindSample {
 
 /// Limits values to 4 robust standard deviations, and returns the number of values beyond 5 robust standard
 /// deviations. If more than a tenth of the values are beyond 5 robust standard deviations, they are not
-/// outliers. Then no value is limited, and 0 is returned.
+/// outliers. If there are too many values beyond 5 robust standard deviations, no value is limited, and 0 is
+/// returned.
 std::size_t hold_outliers(Eigen::VectorXd& values);
 
 /// Returns one sample for each kind of reading with at least 8 fit rows, if its residual is not zero
@@ -58,9 +59,9 @@ struct Period {
                                                      // residual
 };
 
-/// Tests sines of a column. Their periods are from the range of the column down to the shortest period that
-/// its values permit. The function strongest_period returns nullopt for a column with few different values.
-/// `residual`: weighted residual, one value per row of the sample.
+/// Tests sines of a column. The periods of the sines are from the range of the column down to the shortest
+/// period that its values permit. The function strongest_period returns nullopt for a column with few
+/// different values. `residual`: weighted residual, one value per row of the sample.
 std::optional<Period> strongest_period(const KindSample& sample, const RecordedColumn& column,
                                        const Eigen::VectorXd& residual);
 

@@ -18,8 +18,8 @@ nlohmann::ordered_json field_json(const model::Machine& machine, const map::Erro
 model::States middle_state(const model::Machine& machine, const std::string& words);
 
 /// Returns field_json over the linear axes, with `count` nodes along each axis, starting from middle_state.
-/// The result is nullopt if the machine has no such volume (no linear axis, more than three, or a linear axis
-/// without min and max). In this case `why_not` contains the reason.
+/// The function volume_json() returns nullopt if the machine has no such volume (no linear axis, more than
+/// three, or a linear axis without min and max). If there is no result, `why_not` contains the reason.
 std::optional<nlohmann::ordered_json> volume_json(const model::Machine& machine, std::size_t count,
                                                   std::string& why_not);
 

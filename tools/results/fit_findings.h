@@ -20,8 +20,8 @@ nlohmann::ordered_json findings_json(const model::Machine& machine);
 /// covered.
 void add_findings(text::Assurance& word, const model::Machine& machine);
 
-/// Tests whether a fit describes its readings. It must have converged, its values must be plausible, it must
-/// improve the check rows (if there are any), and no reading may be missing or disturbed.
+/// Tests whether a fit describes its readings. A good fit must have converged, its values must be plausible,
+/// it must improve the check rows (if there are any), and no reading may be missing or disturbed.
 text::Assurance assurance_of(const fit::FitResult& result);
 
 /// Tests whether the correction of the machine may run, by the rules of the safety sheet. Rules of the safety

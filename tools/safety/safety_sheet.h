@@ -10,7 +10,7 @@
 namespace vernier::safety {
 
 /// Rules that a machine file must meet before its correction may run. Correction images contain the numbers
-/// of these rules. Therefore a number never changes.
+/// of these rules. The number of a rule therefore never changes.
 enum class SafetyRule : std::uint8_t {
   kCorrection = 0,     // largest correction of an axis
   kMaxCorrection = 1,  // correction relative to the axis' own limit (maxcorrection), which would truncate it

@@ -11,12 +11,12 @@
 namespace vernier::sheet {
 
 /// Converts a unit in any usual spelling to a unit of the file formats: "µm", "micron", "(°C)", "Grad",
-/// "inch", "mm/Min.", "U/min". Brackets around the word are ignored. The result is nullopt if the word is not
-/// a unit.
+/// "inch", "mm/Min.", "U/min". Brackets around the word are ignored. The function unit_meant() returns
+/// nullopt if the word is not a unit.
 std::optional<std::string> unit_meant(std::string_view word);
 
-/// Returns the number and the unit of a cell that contains both: "0,5 mm", "12.5°". The result is nullopt for
-/// a cell that does not contain a number and a unit.
+/// Returns the number and the unit of a cell that contains both: "0,5 mm", "12.5°". The function
+/// number_and_unit() returns nullopt for a cell that does not contain a number and a unit.
 std::optional<std::pair<std::string, std::string>> number_and_unit(std::string_view cell, bool decimal_comma);
 
 /// A heading of a column, separated into its words and its unit: "X [mm]", "X(mm)", "X / mm", "Temp. in °C".

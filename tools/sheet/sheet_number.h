@@ -7,8 +7,8 @@
 namespace vernier::sheet {
 
 /// Converts the number in a cell to text with a decimal point ("-1234.5"). Separators of thousands
-/// ("1.234,5", "1'234.5", "1 234,5") and the long minus sign are permitted. The result is nullopt if the cell
-/// is not a number with this decimal sign.
+/// ("1.234,5", "1'234.5", "1 234,5") and the long minus sign are permitted. The function plain_number()
+/// returns nullopt if the cell is not a number with this decimal sign.
 std::optional<std::string> plain_number(std::string_view cell, bool decimal_comma);
 
 /// Decimal sign in the number of a cell: a comma, a point, neither, or either. In the cell "1,234", the comma

@@ -5,7 +5,7 @@
 
 namespace vernier::sheet {
 
-/// A sheet of a workbook to be written. Its first row contains headings, which stay visible.
+/// A sheet of a workbook to be written. The first row of a sheet contains headings, which stay visible.
 struct SheetToWrite {
   std::string name;
   std::vector<std::vector<std::string>> rows;  // a cell whose text is a number is written as a number

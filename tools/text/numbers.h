@@ -9,8 +9,9 @@
 namespace vernier::text {
 
 /// Returns the value of `text` if the whole text is one finite decimal number ("1", "-2.5e-3", "+4"). The
-/// result is nullopt for any other text (empty, blanks, hex, inf, nan), and for numbers whose square
-/// overflows (beyond 1e150). The result does not depend on the locale of the operating system.
+/// function parse_number() returns nullopt for any other text (empty, blanks, hex, inf, nan), and for numbers
+/// whose square overflows (beyond 1e150). The result of parse_number() does not depend on the locale of the
+/// operating system.
 std::optional<double> parse_number(std::string_view text);
 
 /// Returns the value of `text` if the whole text is one count ("0", "12"); nullopt for any other text and for

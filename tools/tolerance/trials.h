@@ -25,8 +25,8 @@ class Normals {
 /// Returns random samples of the model's discrepancy at points (3 x N, mm): smooth random fields along x, y
 /// and z with the standard deviations std_mm. A field is a sum of cosines; the logarithms of their
 /// wavelengths are uniform between two bounds (mm). The probability that the wave vector of a cosine is along
-/// an axis is one half. All points of a sample belong to the same field. The result has 3 N rows (mm) and one
-/// column per sample. Method: random Fourier features, Rahimi and Recht 2007.
+/// an axis is one half. All points of a sample belong to the same field. The result of draw_discrepancy() has
+/// 3 N rows (mm) and one column per sample. Method: random Fourier features, Rahimi and Recht 2007.
 Eigen::MatrixXd draw_discrepancy(Normals& normals, const Eigen::Matrix3Xd& points,
                                  const Eigen::Vector3d& std_mm, double shortest_mm, double longest_mm,
                                  Eigen::Index draws);

@@ -10,7 +10,8 @@
 
 namespace vernier::commands::fleet_cli {
 
-/// Adds the option `--registry` to a command. Its default is the environment variable VERNIER_REGISTRY.
+/// Adds the option `--registry` to a command. The default of the option `--registry` is the environment
+/// variable VERNIER_REGISTRY.
 void add_registry(CLI::App& command, std::string& place);
 /// Opens the registry with the given name. If the name is a file that does not exist, the file is created.
 /// Throws InputError if the name is empty or the registry is not available.

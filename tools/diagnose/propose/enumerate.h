@@ -33,16 +33,17 @@ std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
                                                    const std::vector<effects::Effect>& effects);
 
 /// Returns the locations that another location of the same kind outshines: both have the same influence on
-/// all observations, but the first is many times weaker. The result has one flag for each location, in the
-/// order of Evidence::places(). Example of a weak location: a length across the reading direction that is
-/// visible only because the machine is tilted by a few minutes of arc. An effect at the weak location is
-/// attributed to the strong location.
+/// all observations, but the first is many times weaker. The result of outshone_places() has one flag for
+/// each location, in the order of Evidence::places(). Example of a weak location: a length across the reading
+/// direction that is visible only because the machine is tilted by a few minutes of arc. An effect at the
+/// weak location is attributed to the strong location.
 std::vector<char> outshone_places(const Evidence& evidence);
 
 /// Returns the degrees of freedom of the chain that the observations can distinguish. Several degrees of
-/// freedom may have the same influence on all observations (all but 1e-7 of the direction). Only the first of
-/// them is in the result. Degrees of freedom of rows in the machine file have priority over those of an added
-/// row. `angles_apart`: true if an angle and a length with the same influence both stay in the result.
+/// freedom may have the same influence on all observations (all but 1e-7 of the direction). If several
+/// degrees of freedom have the same influence, only the first of them is in the result. Degrees of freedom of
+/// rows in the machine file have priority over those of an added row. `angles_apart`: true if an angle and a
+/// length with the same influence both stay in the result.
 std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
 
 }  // namespace vernier::diagnose

@@ -89,8 +89,8 @@ class Evidence {
   /// noise().
   double log_determinant() const { return log_determinant_; }
   /// Returns an estimate of the noise model (correlation of the readings' errors) from the residual of the
-  /// model with the columns `raw`. `given`: steps of the instrument that are assumed. Their heights are
-  /// estimated together with the model and the columns `raw`.
+  /// model with the columns `raw`. `given`: steps of the instrument that are assumed. The heights of the
+  /// given steps are estimated together with the model and the columns `raw`.
   fit::NoiseModel estimate(const Eigen::MatrixXd& raw, std::vector<fit::NoiseStep> given = {}) const;
   const fit::NoiseLayout& layout() const { return layout_; }
   /// Returns the sum of squares of the weighted residual, before whitening, after a fit of the model and the

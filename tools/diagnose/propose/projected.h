@@ -24,8 +24,8 @@ struct ProjectedWaves {
 };
 
 /// Stores the projected columns of candidates between two scans. A search scans the same candidates beside
-/// each set of accepted effects. Only the projection on the complement of these effects is computed again.
-/// The columns of long records exceed the memory limit and are computed again for each scan.
+/// each set of accepted effects. Only the projection on the complement of the accepted effects is computed
+/// again. The columns of long records exceed the memory limit and are computed again for each scan.
 class ProjectedColumns {
  public:
   /// Deletes all stored columns if the whitening of the evidence has changed. Call renew() before each scan.

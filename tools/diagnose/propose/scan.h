@@ -44,7 +44,7 @@ class Scanner {
 
   /// Returns, for a candidate with one period, the other periods that fit equally well within chance. The
   /// positions of the axis do not distinguish alias periods. The alias periods are sorted, longest first,
-  /// down to 1/1000 of the range. The result is empty for a candidate without a single period.
+  /// down to 1/1000 of the range. The result of aliases() is empty for a candidate without a single period.
   std::vector<double> aliases(const Scored& scored, const Eigen::MatrixXd& beside) const;
 
   /// Returns the independent columns of a scored candidate, after projection on the complement of the model's
@@ -69,9 +69,9 @@ class Scanner {
   /// the candidate at these values.
   double gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
                  const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
-  /// Returns frequencies up to `most` at which a cyclic error may fit as well as at the frequency `own`. They
-  /// come from the spectral window of the positions and, if the computing time permits, from all peaks of the
-  /// exact decrease of chi^2 near `mine`.
+  /// Returns frequencies up to `most` at which a cyclic error may fit as well as at the frequency `own`. The
+  /// alias frequencies come from the spectral window of the positions and, if the computing time permits,
+  /// from all peaks of the exact decrease of chi^2 near `mine`.
   std::vector<double> possible_aliases(const Scored& scored, double own, double most, double mine,
                                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
   /// Sets gain, share and number of unknowns of a candidate at one point of scanned values. Returns false if

@@ -190,7 +190,7 @@ struct FinePeriodThresholds {
   /// highest peak may be an alias of the slower peak. Source of the value 10: "very strong" evidence by Kass
   /// and Raftery 1995.
   double nearly_as_well = 10;
-  /// Difference of chi^2 that distinguishes two periods that are evaluated in full. The value equals the
+  /// Difference of chi^2 that distinguishes two periods that are evaluated in full. This limit equals the
   /// required distance of alternatives.
   double told_apart = 6;
 

@@ -57,8 +57,8 @@ struct ControllerErrors {
   std::size_t positions = 0;
 };
 
-/// Computes the errors with the chain at corrected commands. There are 4096 positions between the points of
-/// the tables (fixed seed), each axis with a random direction.
+/// Computes the errors with the chain at corrected commands. The errors are evaluated at 4096 positions
+/// between the points of the tables (fixed seed), each axis with a random direction.
 ControllerErrors controller_errors(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerTables& tables, const model::States& at);
 

@@ -25,8 +25,8 @@ inline constexpr double kNothing_mm = 5e-5;
 std::vector<model::FitRecord::Alternative> find_alternatives(const ReadingsBesideSetUp& readings);
 
 /// Returns the motion of the tool point by a term of the model minus the motion by its alternative term, at
-/// each state: 3 N elements, mm. The result is zero if the machine does not have the transform of the term.
-/// `machine`: a machine without BaseShifts.
+/// each state: 3 N elements, mm. The result of alternative_column() is zero if the machine does not have the
+/// transform of the term. `machine`: a machine without BaseShifts.
 Eigen::VectorXd alternative_column(const model::Machine& machine,
                                    const model::FitRecord::Alternative& alternative,
                                    const model::States& states);

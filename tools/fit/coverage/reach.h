@@ -13,10 +13,10 @@
 
 namespace vernier::fit {
 
-/// Uncertainty of the tool position after the last fit of a machine. It is available at any measured or
-/// unmeasured pose, with any tool and any input. The uncertainty is computed from the covariance in the
-/// machine file (`<fitted>`). A parameter that the readings do not determine has an uncertainty equal to its
-/// scale.
+/// Uncertainty of the tool position after the last fit of a machine. The uncertainty is available at any
+/// measured or unmeasured pose, with any tool and any input. The uncertainty is computed from the covariance
+/// in the machine file (`<fitted>`). A parameter that the readings do not determine has an uncertainty equal
+/// to its scale.
 class Reach {
  public:
   /// Constructs the Reach (uncertainty of the tool position) of a machine. known() returns false if the
@@ -32,9 +32,9 @@ class Reach {
   /// Returns the covariance (mm^2) of the deviation at each state, in workpiece coordinates, under the
   /// condition that the model is right. The covariance contains the uncertainty of the fit, and the errors
   /// that the readings of the fit could not show (tools/fit/coverage/unmeasured.h). A rigid motion of the
-  /// whole machine is removed from the covariance. This motion is the best fit over the measured ranges with
-  /// the present tool. A rigid motion of the whole machine belongs to the set-up; no correction can remove
-  /// it. Throws InputError if the chain is not finite.
+  /// whole machine is removed from the covariance. The removed rigid motion is the best fit over the measured
+  /// ranges with the present tool. A rigid motion of the whole machine belongs to the set-up; no correction
+  /// can remove it. Throws InputError if the chain is not finite.
   std::vector<Eigen::Matrix3d> covariance(const model::States& states) const;
 
   /// Returns the root of the trace of covariance() at each state, um.
@@ -46,8 +46,8 @@ class Reach {
   Eigen::VectorXd std_of_machine_um(const model::States& states) const;
   /// Returns the part of the standard uncertainty that no reading of the fit determined. It comes from
   /// parameters at their scale, and from properties of the model that no reading confirms. The unit of this
-  /// part is um, along x, y, z at each state. The result is 0 if the machine file does not state which
-  /// parameters are undetermined (open_known).
+  /// part is um, along x, y, z at each state. The function std_unmeasured_um() returns 0 if the machine file
+  /// does not state which parameters are undetermined (open_known).
   Eigen::Matrix3Xd std_unmeasured_um(const model::States& states) const;
   /// Returns the standard deviation of the discrepancy, along x, y, z of workpiece coordinates, mm.
   const Eigen::Vector3d& discrepancy_mm() const { return discrepancy_mm_; }

@@ -32,8 +32,8 @@ struct Observability {
 };
 
 /// Limit for a scaled singular value as a share of the largest. A direction below the limit counts as
-/// unidentified. This limit is far above the rounding error of an exact dependence (1e-8) and below any
-/// direction that real data determine.
+/// unidentified. The limit for unidentified directions is far above the rounding error of an exact dependence
+/// (1e-8) and below any direction that real data determine.
 inline constexpr double kUnseenShare = 1e-5;
 
 /// `normal`: the normal matrix J^T W^2 J, n x n. Above 200 parameters, observe() uses pivoted Cholesky and

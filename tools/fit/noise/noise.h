@@ -57,7 +57,8 @@ Eigen::MatrixXd step_columns(const NoiseLayout& layout, const std::vector<NoiseS
 
 /// Returns steps of the noise model for shifts of the measured object. Each set-up has three steps at its
 /// first row, one for each component of the shift. The height of each step is 0, because set_up_steps does
-/// not estimate the shift. The result is empty if there is only one set-up, or no reading along a normal.
+/// not estimate the shift. The result of set_up_steps() is empty if there is only one set-up, or no reading
+/// along a normal.
 std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout);
 
 /// Whitens the rows of `columns` (weighted readings): the result has independent rows with variance 1. The

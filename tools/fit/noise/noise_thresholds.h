@@ -19,9 +19,9 @@ struct LayoutThresholds {
   /// Limit for a step between rows, as a share of the range of an axis. A smaller step is rounding error.
   double no_step = 1e-9;
 
-  /// Share of the rows that must return to an earlier position. Only then the distances between neighbouring
-  /// positions are divided into small and large distances. The limit is necessary because some random
-  /// positions are near each other by chance.
+  /// Share of the rows that must return to an earlier position. The distances between neighbouring positions
+  /// are divided into small and large distances only if enough rows return to an earlier position. The limit
+  /// is necessary because some random positions are near each other by chance.
   double least_revisits = 0.1;
   /// Factor between the small and the large distances of neighbouring positions. Source: for random
   /// positions, the ratio of successive sorted distances is below 1.5, except for a few distances.

@@ -22,8 +22,8 @@ struct RepeatingStep {
                                               // absolute errors, so that a few large errors have no influence
 };
 
-/// Models of the repeating error with increasing order. They are fitted to the analysed turn of one run and
-/// tested on the rest of the record.
+/// Models of the repeating error with increasing order. The models are fitted to the analysed turn of one run
+/// and tested on the rest of the record.
 struct RepeatingError {
   std::string run;
   std::size_t fit_samples = 0, other_turn_samples = 0, other_direction_samples = 0;

@@ -43,12 +43,13 @@ void add_constant(ColumnMap& map, const std::string& words, const text::Place& p
 
 /// Returns the cell of the measurement file for a constant that the user states. A decimal comma
 /// ("u[um]=0,5") becomes a decimal point ("0.5"). Constants that are words (labels) do not change.
-/// `decimal_comma`: true if the imported file has decimal commas. This flag determines the meaning of
-/// "1,234". Throws InputError if the constant of a numeric column is not a number, or if its comma can be a
-/// separator of thousands.
+/// `decimal_comma`: true if the imported file has decimal commas. The flag `decimal_comma` determines the
+/// meaning of "1,234". Throws InputError if the constant of a numeric column is not a number, or if its comma
+/// can be a separator of thousands.
 std::string constant_cell(const MappedColumn& column, bool decimal_comma);
 
-/// A table that becomes a measurement file. Its columns contain text, with one cell for every row.
+/// A table that becomes a measurement file. The columns of the table contain text, with one cell for every
+/// row.
 struct ImportTable {
   struct Column {
     std::string name, unit;

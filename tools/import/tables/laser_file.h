@@ -18,9 +18,9 @@ struct LaserFile {
   ImportTable table;                                // columns X[mm], dirX, run, x[mm]
 };
 
-/// Reads a file with linear targets and runs (.rtl) of the usual laser software. Its sections are HEADER::,
-/// TARGET DATA:: (targets in mm), USER-TEXT::, RUNS::, DEVIATIONS:: (run, target, deviation in um). `axis`:
-/// name of the axis that replaces the name in the file; empty: the name in the file is used. Throws
+/// Reads a file with linear targets and runs (.rtl) of the usual laser software. The sections of the file are
+/// HEADER::, TARGET DATA:: (targets in mm), USER-TEXT::, RUNS::, DEVIATIONS:: (run, target, deviation in um).
+/// `axis`: name of the axis that replaces the name in the file; empty: the name in the file is used. Throws
 /// InputError with file, line and word for: another kind of file, a rotary axis, counts that do not agree, a
 /// target that occurs twice in a run, approach directions that the file does not define.
 LaserFile read_laser_file(const std::string& text, const std::string& file, const std::string& axis,

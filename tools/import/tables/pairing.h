@@ -23,8 +23,8 @@ std::vector<Dwell> find_dwells(const Eigen::VectorXd& time, const Eigen::MatrixX
 
 struct PairingInput {
   std::vector<Dwell> dwells;
-  /// Tool point of the nominal machine in each dwell, mm (3 x dwells). If it is empty, distances are not
-  /// used.
+  /// Tool point of the nominal machine in each dwell, mm (3 x dwells). If the matrix of tool points is empty,
+  /// distances are not used.
   Eigen::Matrix3Xd stand;
   Eigen::Matrix3Xd point;  // points that the instrument measured, mm, in its frame (3 x points), in the order
                            // of the measurement

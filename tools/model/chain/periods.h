@@ -26,7 +26,7 @@ struct Detail {
 
 /// Returns the Detail of an axis. The chain is evaluated for motion in the positive direction of the axis,
 /// with the statics at their values. `at`: positions of the other axes and values of the inputs (only the
-/// first state is used). The result is in the unit of the axis, mm or deg.
+/// first state is used). The result of detail_along() is in the unit of the axis, mm or deg.
 Detail detail_along(const Machine& machine, std::size_t axis, const States& at);
 
 }  // namespace vernier::model

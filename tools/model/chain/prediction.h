@@ -12,9 +12,9 @@ namespace vernier::model {
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
-/// Returns the predicted value of each observation; mm, or deg for rotations. The result has one entry per
-/// observation. Rotation vectors that differ by 360 deg are equivalent. The predicted rotation vector is the
-/// equivalent vector that is nearest to the measured vector.
+/// Returns the predicted value of each observation; mm, or deg for rotations. The result of predict() has one
+/// entry per observation. Rotation vectors that differ by 360 deg are equivalent. The predicted rotation
+/// vector is the equivalent vector that is nearest to the measured vector.
 Eigen::VectorXd predict(const Machine& machine, const Measurement& measurement);
 
 /// Predicted readings of a measurement. The unknown values of touched objects (`same`, `on`) have their best
@@ -32,7 +32,8 @@ struct Linearisation {
   Eigen::VectorXd predicted;
   SparseRows jacobian;
   /// Known values of touched objects minus their estimates, and the derivatives of the estimates by the
-  /// parameters. Both are multiplied by 1/u. Both members are empty if no known value has an uncertainty.
+  /// parameters. The differences and the derivatives are both multiplied by 1/u. Both members of the struct
+  /// are empty if no known value has an uncertainty.
   Eigen::VectorXd known_residual;
   Eigen::MatrixXd known_jacobian;
 };

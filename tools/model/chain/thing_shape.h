@@ -16,8 +16,8 @@ struct ThingShape {
   double radius = 0;
 };
 
-/// Vector of the unknown values of one object. It has at most six values: three of a position, two of a
-/// direction, one radius.
+/// Vector of the unknown values of one object. The vector of one object has at most six values: three of a
+/// position, two of a direction, one radius.
 using ThingUnknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
 
 /// Returns the number of unknown values of a touched object, 0 to 6. The order of the unknown values is:

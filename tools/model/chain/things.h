@@ -21,9 +21,9 @@ struct UnknownSlope {
 };
 
 /// The touched objects of a measurement (`same`, `on`), and the readings of each object. Touched objects that
-/// a known length connects are estimated together. Such a group is called a cluster. The positions of one
-/// artefact in several set-ups are also one cluster if the radius has an uncertainty, because they have the
-/// same radius. The object Things keeps a reference to the measurement.
+/// a known length connects are estimated together. A group of objects that known lengths connect is called a
+/// cluster. The positions of one artefact in several set-ups are also one cluster if the radius has an
+/// uncertainty, because they have the same radius. The object Things keeps a reference to the measurement.
 class Things {
  public:
   Things(const Machine& machine, const Measurement& measurement);

@@ -7,7 +7,7 @@
 
 namespace vernier::part {
 
-/// A cylindrical cutter. Its tip is `length_mm` below the top curve, along the generatrix.
+/// A cylindrical cutter. The tip of the cutter is `length_mm` below the top curve, along the generatrix.
 struct Cutter {
   double radius_mm = 10;
   double length_mm = 35;

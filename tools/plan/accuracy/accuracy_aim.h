@@ -8,8 +8,8 @@
 
 namespace vernier::plan {
 
-/// The aim of an accuracy plan as rows that are linear in the parameters. Its uncertainty is U95 = 2
-/// sqrt(trace(rows C rows^T)), mm, with the covariance C of the parameters.
+/// The aim of an accuracy plan as rows that are linear in the parameters. The uncertainty of the aim is U95 =
+/// 2 sqrt(trace(rows C rows^T)), mm, with the covariance C of the parameters.
 struct AimRows {
   Eigen::MatrixXd rows;  // columns: the machine's own parameters, in the order of `own`
   /// The rows and the divisor of one group of part characteristics.

@@ -17,9 +17,9 @@ std::optional<UnitPowers> unit_powers(const std::string& unit);
 /// Returns the text of a unit: "mm/degC", "mm"; "1" for a pure number.
 std::string unit_text(const UnitPowers& powers);
 
-/// Returns the unit of an expression in which `unknown` counts as a pure number. The result is nullopt if the
-/// unit is not determined (a static without unit, an exponent that is not a number). `warnings`: receives
-/// messages about units that do not match.
+/// Returns the unit of an expression in which `unknown` counts as a pure number. The function
+/// expression_unit() returns nullopt if the unit is not determined (a static without unit, an exponent that
+/// is not a number). `warnings`: receives messages about units that do not match.
 std::optional<UnitPowers> expression_unit(const model::Machine& machine, const model::Expr& expr,
                                           const std::string& unknown, std::vector<std::string>& warnings);
 

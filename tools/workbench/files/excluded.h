@@ -28,8 +28,8 @@ std::string exclude_rows(const std::string& text, const std::string& file,
 std::string restore_rows(const std::string& text, const std::string& file,
                          const std::vector<std::size_t>& lines);
 
-/// Reads line numbers from a text such as "12,15-20". The result is sorted and contains each line number
-/// (from 1) once. Throws InputError with the wrong word if the text is not valid.
+/// Reads line numbers from a text such as "12,15-20". The result of parse_lines() is sorted and contains each
+/// line number (from 1) once. Throws InputError with the wrong word if the text is not valid.
 std::vector<std::size_t> parse_lines(const std::string& text);
 
 }  // namespace vernier::workbench
