@@ -78,7 +78,7 @@ static_assert(offsetof(Output, axis) == 0 && offsetof(Output, source) == 2 && of
               offsetof(Output, multiplier) == 8 && offsetof(Output, limit) == 12 &&
               offsetof(Output, slew) == 16);
 
-/// The complete correction program of a machine. It does not own its memory.
+/// The complete correction program of a machine. A Program does not own its memory.
 struct Program {
   Equation equation;
   View<Channel> channels;
@@ -120,8 +120,8 @@ struct CycleOutput {
 };
 
 /// Returns the value of an input of the tick, limited to the range of its channel, in the format of the
-/// program. The conversion is monotone. Therefore the limits of the value give the limits of the result.
-/// Real-time safe.
+/// program. The conversion is monotone. The limits of the value give the limits of the result, because the
+/// conversion is monotone. Real-time safe.
 std::int32_t channel_value(const Channel& channel, std::int64_t value) noexcept;
 
 struct ShareProgram;

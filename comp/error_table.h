@@ -7,7 +7,8 @@
 
 namespace vernier {
 
-/// The number 1 in the format of a fraction of a segment (Q30). It corresponds to the far end of the segment.
+/// The number 1 in the format of a fraction of a segment (Q30). In this format (Q30), the number 1 is the far
+/// end of the segment.
 constexpr std::int32_t kFractionOne = std::int32_t{1} << 30;
 
 /// The interval between two neighbouring stations of a table, in counts of the position's register. The ends
@@ -107,17 +108,17 @@ constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position
   return static_cast<std::int64_t>((inside * segment.reciprocal) >> segment.shift);
 }
 
-/// Returns the value between two stations: near + fraction * rise with c = {near, rise}. It is rounded once,
-/// ties up (<= 1/2 LSB of the column). The interpolated value is between the values of both stations; the
-/// product is below 2^62. Real-time safe.
+/// Returns the value between two stations: near + fraction * rise with c = {near, rise}. The interpolated
+/// value is rounded once, ties up (<= 1/2 LSB of the column). The interpolated value is between the values of
+/// both stations; the product is below 2^62. Real-time safe.
 constexpr std::int32_t linear_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   return c[0] + narrow(round_shift(c[1] * fraction, 30));
 }
 
-/// Returns the value of the cubic polynomial c[0] + f (c[1] + f (c[2] + f c[3])). Here f is the fraction
-/// (Q30), and all values have the format of the column. The inner two products are truncated and the last
-/// product is rounded. The error is between -5/2 and +1/2 LSB. Every partial sum of the cubic polynomial is
-/// below 2^31 (proved by the verifier). Real-time safe.
+/// Returns the value of the cubic polynomial c[0] + f (c[1] + f (c[2] + f c[3])). In this polynomial, f is
+/// the fraction (Q30), and all values have the format of the column. The inner two products are truncated and
+/// the last product is rounded. The error is between -5/2 and +1/2 LSB. Every partial sum of the cubic
+/// polynomial is below 2^31 (proved by the verifier). Real-time safe.
 constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   const std::int32_t second = c[2] + narrow((c[3] * fraction) >> 30);
   const std::int32_t first = c[1] + narrow((second * fraction) >> 30);

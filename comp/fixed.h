@@ -27,10 +27,10 @@ constexpr std::int64_t round_shift(std::int64_t value, unsigned shift) noexcept 
   return (value + half) >> shift;
 }
 
-/// Integer type for register values during a computation. It has at least 32 bits and the width with which
-/// the processor multiplies fastest. On every target a Word contains only values that fit int32 (proved by
-/// the verifier). Because each Word contains a value that fits int32, the results do not depend on the width
-/// of Word.
+/// Integer type for register values during a computation. The type Word has at least 32 bits and the width
+/// with which the processor multiplies fastest. On every target a Word contains only values that fit int32
+/// (proved by the verifier). Because each Word contains a value that fits int32, the results do not depend on
+/// the width of Word.
 using Word = std::int_fast32_t;
 
 /// Converts a value that the caller has proved to fit int32 to a Word. If Word has 64 bits, this needs no
@@ -41,8 +41,8 @@ constexpr Word word_of(std::int64_t value) noexcept { return static_cast<Word>(v
 /// safe.
 constexpr std::int32_t narrow(std::int64_t value) noexcept { return static_cast<std::int32_t>(value); }
 
-/// Returns the value if it fits int32. Otherwise returns the nearest limit of int32 and sets `saturated`. The
-/// function saturate() never clears `saturated`. Real-time safe.
+/// Returns the value if it fits int32. If the value does not fit, the function returns the nearest limit of
+/// int32 and sets `saturated`. The function saturate() never clears `saturated`. Real-time safe.
 constexpr std::int32_t saturate(std::int64_t value, bool& saturated) noexcept {
   const std::int64_t limited = clamp<std::int64_t>(value, INT32_MIN, INT32_MAX);
   saturated = saturated || limited != value;

@@ -20,10 +20,11 @@ constexpr void start_lag(LagState& state, std::int32_t u) noexcept {
   state.value = std::int64_t{u} * (std::int64_t{1} << kLagGuardBits);
 }
 
-/// Computes one step of a lag: state += gain * (u - state). It returns the state in the format of u, rounded
-/// (<= 1/2 LSB). The gain is mantissa / 2^shift, with mantissa 0..2^31-1 and shift 31..62, so that 0 <= gain
-/// < 1. The difference u - state is below 2^62 in the format of the state. Its product with the mantissa is
-/// computed in two halves below 2^63. The state stays within the range of all inputs u. Real-time safe.
+/// Computes one step of a lag: state += gain * (u - state). The function returns the state of the lag in the
+/// format of u, rounded (<= 1/2 LSB). The gain is mantissa / 2^shift, with mantissa 0..2^31-1 and shift
+/// 31..62, so that 0 <= gain < 1. The difference u - state is below 2^62 in the format of the state. The
+/// product of (u - state) with the mantissa of the gain is computed in two halves below 2^63. The state stays
+/// within the range of all inputs u. Real-time safe.
 constexpr std::int32_t step_lag(LagState& state, std::int32_t u, std::int32_t mantissa,
                                 unsigned shift) noexcept {
   const std::int64_t difference = std::int64_t{u} * (std::int64_t{1} << kLagGuardBits) - state.value;

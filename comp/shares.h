@@ -37,11 +37,11 @@ struct ShareProgram {
 /// registers; the function adds the ranges of the shares after them. Not real-time safe.
 ProgramFault verify_shares(const ShareProgram& shares, const Program& program, ValueRange* ranges) noexcept;
 
-/// Computes the shares of the correction of one tick, before limits and ramps. There is one value per share,
-/// in the order of the shares. The function run_shares executes the equation of the tick again from the start
-/// values of the tick. For the display of shares, the tick itself does no work. The share program must be
-/// VERIFIED. `state`: state of the same program; `registers`: memory for kMaxRegisters registers. Returns
-/// false if the state belongs to another program. Not real-time safe.
+/// Computes the shares of the correction of one tick, before limits and ramps. The function computes one
+/// value per share, in the order of the shares. The function run_shares executes the equation of the tick
+/// again from the start values of the tick. For the display of shares, the tick itself does no work. The
+/// share program must be VERIFIED. `state`: state of the same program; `registers`: memory for kMaxRegisters
+/// registers. Returns false if the state belongs to another program. Not real-time safe.
 bool run_shares(const ShareProgram& shares, const Program& program, const EquationState& state,
                 std::int32_t* registers, Correction* corrections) noexcept;
 

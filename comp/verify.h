@@ -38,8 +38,8 @@ ProgramFault verify_program(const Program& program, ValueRange* ranges) noexcept
 std::uint64_t work_of(const Equation& equation, std::uint32_t channels) noexcept;
 
 /// Returns the number of cache lines (64 bytes) of the tables that one execution may read if the caches are
-/// empty. They are the steps of a search that are more than a cache line apart, and the record that is found.
-/// Not real-time safe.
+/// empty. The counted cache lines are the steps of a search that are more than a cache line apart, and the
+/// record that is found. Not real-time safe.
 std::uint64_t lines_of(const Equation& equation) noexcept;
 
 /// True if grid_piece finds every segment of the table, from one count after its start to one count before

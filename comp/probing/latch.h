@@ -46,8 +46,8 @@ class LatchRing {
   static constexpr std::uint32_t kSize = 64;
   static constexpr std::int64_t kMostUneven = 8;
 
-  /// Adds a sample. Its time must be later than that of the previous sample; otherwise the ring is emptied
-  /// and starts with this sample. Real-time safe.
+  /// Adds a sample. The time of a sample must be later than that of the previous sample; otherwise the ring
+  /// is emptied and starts with this sample. Real-time safe.
   void add(const LatchSample& sample) noexcept;
 
   /// Selects the time for which position_of() computes positions. Real-time safe.

@@ -33,8 +33,8 @@ struct Factor {
 /// bilinear form: 25 %).
 ///
 /// Drift. The sums of |impulse response| for every e <= 1/8 are (test
-/// Displacement.GainsStayBelowTheirBounds): a sample to v 0.97/e, to x 0.71/e^2; a step to x 0.21/e^2.
-/// Therefore an acceleration bias within +-b moves x by less than 0.71 b/w^2, and a step of the bias by b
+/// Displacement.GainsStayBelowTheirBounds): a sample to v 0.97/e, to x 0.71/e^2; a step to x 0.21/e^2. From
+/// these sums, an acceleration bias within +-b moves x by less than 0.71 b/w^2, and a step of the bias by b
 /// moves x by less than 0.21 b/w^2. The effect of a constant bias decays like exp(-w t / sqrt(2)).
 ///
 /// Widths. |sample| < 2^19, e > 2^-14.4: v, p < 2^34 with 27 guard bits, x and its p < 2^47.4 with 14: below
