@@ -30,8 +30,9 @@ struct PathReading {
 class AxisReader {
  public:
   virtual ~AxisReader() = default;
-  /// Begins a tick of the firmware. Readings that came before this call are the readings of the tick. They do
-  /// not change until the next call. The function begin_tick() never waits. Real-time safe.
+  /// Begins a tick of the firmware. Readings that came before this call are the readings of the tick. The
+  /// readings of a tick do not change until the next call of the function. The function begin_tick() never
+  /// waits. Real-time safe.
   virtual void begin_tick() noexcept {}
   /// Returns the newest reading of an axis. The function read_axis() returns kNoReading if there is no
   /// reading since the last tick. Real-time safe.

@@ -20,8 +20,8 @@ class RoundedRatio {
       : numerator_(static_cast<std::uint64_t>(numerator)),
         denominator_(static_cast<std::uint64_t>(denominator)),
         ratio_(numerator_ / denominator_) {
-    // ratio_ is numerator * 2^shift_ / denominator without the fraction, at least 2^62. Its relative error is
-    // below 2^-62.
+    // ratio_ is numerator * 2^shift_ / denominator without the fraction, at least 2^62. The relative error of
+    // ratio_ is below 2^-62.
     for (std::uint64_t rest = numerator_ % denominator_; ratio_ < std::uint64_t{1} << 62; ++shift_) {
       rest *= 2;
       ratio_ *= 2;

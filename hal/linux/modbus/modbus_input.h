@@ -31,8 +31,8 @@ class ModbusLine {
   enum class Registers { kInput, kHolding };
   /// Reads `count` registers (1 to 125). The function read() returns false if there is no answer in time, if
   /// the answer is an exception, or if it has another unit, transaction, function or length. After a missing
-  /// answer, the line is not used for the time `wait`. Otherwise a late answer could be taken for the answer
-  /// to the next request. Not real-time safe.
+  /// answer, the line is not used for the time `wait`. Without this pause, a late answer could be taken for
+  /// the answer to the next request. Not real-time safe.
   bool read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;
   /// Writes `count` holding registers (1 to 123) in one request. The function write() returns false for the
   /// same reasons as in read(). The peer may nevertheless have received the values. Not real-time safe.

@@ -53,8 +53,8 @@ struct ModbusOutputSettings {
 class ModbusOutput : public OutputDevice {
  public:
   /// Returns the longest time for an answer, which the Modbus line must use. After a missing answer, a serial
-  /// line is not used for the same time again. Both times together are half of the time-out, so that one
-  /// missing answer is not a loss of the controller.
+  /// line is not used for the same time again. The wait and the pause after a missing answer are together
+  /// half of the time-out, so that one missing answer is not a loss of the controller.
   static TimeUs wait_for_answer(TimeUs timeout, bool serial) {
     return TimeUs(timeout.count / (serial ? 4 : 2));
   }
