@@ -124,8 +124,8 @@ class Service : private CommandHandler {
   const Exchange& exchange() const noexcept { return exchange_; }
 
  private:
-  // A percentile needs a pass over a whole histogram. Therefore one of the six percentiles is computed every
-  // kTicksPerPercentile ticks.
+  // A percentile needs a pass over a whole histogram. To spread the computing time, one of the six
+  // percentiles is computed every kTicksPerPercentile ticks.
   static constexpr std::uint32_t kTicksPerPercentile = 64;
   // The start values of the equation are published ten times a second (every kTicksPerEquation ticks), for
   // clients that read the shares of the effects.

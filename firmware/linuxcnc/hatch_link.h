@@ -19,7 +19,8 @@ class HatchLink : public CommandLink {
   Call& call_;
 };
 
-/// The part of a link that is in vernier-hal. This part passes the requests of the link to the component.
+/// The part of a link that is in vernier-hal. The link part in vernier-hal passes the requests of the link to
+/// the component.
 class HatchHandler : public CommandHandler {
  public:
   /// `hatch`, `stop`: must exist longer than the handler. Not real-time safe.

@@ -8,8 +8,8 @@
 
 namespace vernier {
 
-/// The part of the component's store that is in vernier-hal. It executes the requests of the component, one
-/// at a time.
+/// The part of the component's store that is in vernier-hal. The store part in vernier-hal executes the
+/// requests of the component, one at a time.
 class StoreServer {
  public:
   /// `call`, `store`, `given` (the image to start with): must exist longer than this object. Not real-time

@@ -69,8 +69,8 @@ class Cycle {
   /// Replaces the program from the next tick on, without a step of the corrections. The corrections move from
   /// their present values to the values of the new program, within the limits of their axes. The correction
   /// of an axis that the new program does not correct moves to zero. `next`: a program that was bound to the
-  /// wiring of this board (bind). It must exist until the next call of use() returns. use() returns the
-  /// previous program. Real-time safe.
+  /// wiring of this board (bind). The program `next` must exist until the next call of use() returns. use()
+  /// returns the previous program. Real-time safe.
   BoundProgram* use(BoundProgram& next) noexcept;
 
   /// Sets the share (0..1) of the correction that is applied to an axis of the board. The correction changes
