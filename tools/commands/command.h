@@ -135,9 +135,9 @@ void register_image_diff(CLI::App& vernier);
 /// is not finite.
 void write_json(const std::string& path, const nlohmann::ordered_json& result);
 
-/// Values for type_name() of an option that names a file or a folder. They determine which of both the help
-/// prints, and whether the command reads or writes it. The workbench permits only names inside its folder for
-/// such options (description.h).
+/// Values for type_name() of an option that names a file or a folder. The type names of file options
+/// determine what the help prints (file or folder), and whether the command reads or writes it. The workbench
+/// permits only names inside its folder for such options (description.h).
 inline constexpr const char *kReads = "FILE", *kReadsFolder = "FOLDER", *kReadsOrServer = "FILE:or server",
                             *kWrites = "FILE:written", *kWritesFolder = "FOLDER:written";
 

@@ -9,7 +9,8 @@ namespace vernier::compile {
 /// otherwise the rotary axes are used too. `neglect_mm`: a higher-order term that is smaller than this limit
 /// over the declared ranges is omitted and listed in `neglected`. `evaluations`: number of evaluations of the
 /// deviation. Each further evaluation computes the deviation with the correction so far, p(actual, corrected)
-/// - p(nominal). A further evaluation corrects the remaining deviation. It is a step of Newton's iteration
+/// - p(nominal). A further evaluation corrects the remaining deviation. the further evaluation is a step of
+///   Newton's iteration
 /// with the nominal Jacobian. If the machine corrects the orientation, the rotary axes first correct the
 /// direction of the tool. After the correction of the direction, the linear axes correct the tool point,
 /// including the influence of the rotary axes. Throws InputError with one line if the machine cannot be

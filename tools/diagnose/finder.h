@@ -158,7 +158,7 @@ class Finder {
   double gain_at(std::size_t item, const std::vector<double>& scanned) const;
   std::vector<std::size_t> without(std::size_t item) const;
   Selection evaluate(const std::vector<std::size_t>& items) const;
-  /// Excludes products of recorded quantities that could pass the tests by chance. Such products depend on
+  /// Excludes products of recorded quantities that could pass the tests by chance. Chance products depend on
   /// only a few readings, or repeat an effect of the catalogue that failed.
   void ban_hollow_products();
   /// Returns the name of the first acceptance test that an accepted effect fails; empty if the effect passes

@@ -13,8 +13,9 @@ namespace vernier::effects {
 enum class InputClass : std::uint8_t { kTemperature, kLoad, kFeature, kSetpoint, kOther };
 InputClass class_of_input(const model::Input& input);
 
-/// Returns the value at which the terms of an input are 0, if the machine file states no reference. This
-/// reference value is the standard temperature, or for other inputs the mean of the readings to two digits.
+/// Returns the value at which the terms of an input are 0, if the machine file states no reference. The
+/// reference value of an input is the standard temperature, or for other inputs the mean of the readings to
+/// two digits.
 double usual_reference(const model::Input& input, double mean);
 
 /// Returns the temperature at which dimensions are specified (ISO 1), in a unit of temperature: 20

@@ -31,7 +31,7 @@ struct LikelyMistake {
 /// two swapped columns, a wrong unit or a wrong sign. likely_mistake tests each of these mistakes. A mistake
 /// is accepted if its correction reduces the misfit of the nominal machine by a factor of five. `plausible`:
 /// true if a real machine can have a residual of this size. After the correction of a mistake, the nominal
-/// machine must explain the readings. Therefore a unit that only makes a deflection small is not accepted as
+/// machine must explain the readings. A unit that only makes a deflection small is therefore not accepted as
 /// a mistake.
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                              const WorstReading& worst, bool plausible);

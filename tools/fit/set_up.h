@@ -14,8 +14,8 @@ double reach_of(const model::Machine& machine, const model::Measurement& rows);
 
 /// Returns a copy of the machine in which the free BaseShifts and ToolShifts are fitted to the fit rows. The
 /// function set_up changes no other value of the machine. For complete poses with an unknown mounting, the
-/// start values are computed in closed form (tools/maths/hand_eye.h). Therefore no start value near the
-/// mounting is needed.
+/// start values are computed in closed form (tools/maths/hand_eye.h). The closed form needs no start value
+/// near the mounting.
 model::Machine set_up(const model::Machine& machine, const model::Measurement& rows);
 
 /// Fits the BaseShifts of the machine to all rows. The instrument may have any orientation. The start values

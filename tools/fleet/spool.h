@@ -54,8 +54,9 @@ class Spool {
   std::uint64_t dropped() const { return dropped_; }
   /// Returns the number of the last record that the spool no longer contains.
   std::uint64_t gone() const { return gone_; }
-  /// Call begin_anew() if the registry has numbers that this spool never gave. In this case the file is an
-  /// older, restored file. After that, the records get new numbers under a new id.
+  /// Call begin_anew() if the registry has numbers that this spool never gave. If the registry has numbers
+  /// that this spool never gave, the spool file is an older, restored file. After that, the records get new
+  /// numbers under a new id.
   void begin_anew();
   /// Returns the number of the next birth. The number of the birth message increases by one at each call
   /// (bdSeq of Sparkplug, 0..255).

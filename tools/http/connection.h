@@ -19,8 +19,8 @@ struct Connection {
   /// Reads the bytes that have arrived, without waiting for more. Returns false if the client has closed the
   /// connection.
   bool take_bytes();
-  /// True if the header has arrived completely. After the complete header, header_bytes and body_bytes are
-  /// known. In this case request_bytes is the size of the request.
+  /// True if the header has arrived completely. After the header has arrived completely, header_bytes and
+  /// body_bytes are the sizes of the header and the body of the request.
   bool has_header();
   /// True if the header and the body have arrived completely. The function does not wait for a body larger
   /// than `most_body`, or for a body whose length the header does not state.

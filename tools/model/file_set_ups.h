@@ -28,10 +28,10 @@ SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& mach
 
 /// Adds a ToolShift for the unknown mounting of a camera. The set-ups concerned have readings of a board (bx
 /// by bz brx bry brz) and no ToolShift in the machine file. If all readings are of boards, one ToolShift
-/// without `setup` is added. Otherwise one ToolShift is added for each of these set-ups. If the machine file
-/// has no BaseShift, one is added for the position of the board. Throws InputError if other readings belong
-/// to the same set-up, because their tool is not the camera. `text` and `rows` have the same meaning as for
-/// with_set_ups_of_files().
+/// without `setup` is added. If not all readings are of boards, one ToolShift is added for each set-up with
+/// such a camera. If the machine file has no BaseShift, one is added for the position of the board. Throws
+/// InputError if other readings belong to the same set-up, because their tool is not the camera. `text` and
+/// `rows` have the same meaning as for with_set_ups_of_files().
 SetUpsOfFiles with_camera_mountings(const std::string& text, const Machine& machine, const Measurement& rows);
 
 }  // namespace vernier::model

@@ -29,9 +29,9 @@ struct BHeadMachine {
 /// Throws InputError if an axis is missing or if the chain is that of another machine.
 BHeadMachine b_head_machine(model::Machine machine);
 
-/// Returns the text of tables/machines/five_axis_bhead_ctable.xml at the time when the program was built. It
-/// is the machine of the paper with its eight location errors, all 0. Angles are in deg, and L0 is 499.889 mm
-/// (the paper's simulation).
+/// Returns the text of tables/machines/five_axis_bhead_ctable.xml at the time when the program was built. The
+/// text describes the machine of the paper with its eight location errors, all 0. Angles are in deg, and L0
+/// is 499.889 mm (the paper's simulation).
 std::string default_b_head_text();
 
 /// Names of the eight location errors of the machine, in the order of the paper.

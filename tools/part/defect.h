@@ -14,11 +14,11 @@ struct PartPoint {
   double u = 0, v = 0;
 };
 
-/// Method to evaluate the tool displacement at a point of the part. kContact: the cutter is a rigid body. Its
-/// displacement is evaluated at the height of the point, along the surface normal at the point. kTip: the
-/// displacement of the tool tip along N(u,1), as in the paper. kInPlane: like kContact, but only the
-/// horizontal part of the displacement, along the horizontal part of the normal (unit length). A profile at
-/// constant height shows the kInPlane value for a nearly vertical wall.
+/// Method to evaluate the tool displacement at a point of the part. kContact: the cutter is a rigid body. The
+/// displacement of the cutter is evaluated at the height of the point, along the surface normal at the point.
+/// kTip: the displacement of the tool tip along N(u,1), as in the paper. kInPlane: like kContact, but only
+/// the horizontal part of the displacement, along the horizontal part of the normal (unit length). A profile
+/// at constant height shows the kInPlane value for a nearly vertical wall.
 enum class DefectReading : std::uint8_t { kContact, kTip, kInPlane };
 
 struct DefectOptions {

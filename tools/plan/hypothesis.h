@@ -30,7 +30,7 @@ struct FittedHypothesis {
 FittedHypothesis fit_hypothesis(const effects::MachineText& model, const model::Measurement& measurement,
                                 const std::string& name, const std::vector<effects::Effect>& effects);
 
-/// Fits an alternative effect. This form uses evidence of model and rows that the caller has already
+/// Fits an alternative effect. This overload uses the evidence of model and rows that the caller has already
 /// computed.
 FittedHypothesis fit_hypothesis(const effects::MachineText& model, const diagnose::Evidence& evidence,
                                 const model::Measurement& measurement, const std::string& name,

@@ -12,8 +12,8 @@ namespace vernier::plan {
 /// Run label of the planned rows, which have a separate set-up.
 inline constexpr const char* kPlanRun = "plan";
 
-/// Returns the rows of `first`, followed by the rows of `second`. Both measurements must belong to the same
-/// machine and must have the same columns.
+/// Returns the rows of `first`, followed by the rows of `second`. The measurements `first` and `second` must
+/// belong to the same machine and must have the same columns.
 model::Measurement append_rows(const model::Measurement& first, const model::Measurement& second);
 
 /// Returns the existing rows on which the plan is based: at most `most` fit rows with every input of the two

@@ -17,7 +17,7 @@ namespace vernier::plan {
 std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
                                      std::size_t count);
 
-/// Returns a sentence with advice for the next measurement. It is for a cyclic error whose period the
+/// Returns a sentence with advice for the next measurement. The advice is for a cyclic error whose period the
 /// positions of the axis do not distinguish from other periods (CandidateFinding::aliases).
 std::string uneven_sentence(const model::Machine& machine, const model::Measurement& measurement,
                             const diagnose::CandidateFinding& finding);

@@ -50,9 +50,10 @@ struct BasisTerm {
 inline constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);  // no recorded column
 
 /// Smooth functions of the recorded columns, evaluated at some rows. The first function of the basis is the
-/// constant. Then each recorded column has Legendre polynomials. Directions have an odd and an even part;
-/// runs have one indicator less than there are runs; rotary axes also have the first two harmonics. After
-/// these functions, the basis has products of two columns. Every column of the basis matrix has the length 1.
+/// constant. After the constant, each recorded column has Legendre polynomials. Directions have an odd and an
+/// even part; runs have one indicator less than there are runs; rotary axes also have the first two
+/// harmonics. After these functions, the basis has products of two columns. Every column of the basis matrix
+/// has the length 1.
 struct Basis {
   Eigen::MatrixXd matrix;        // rows x functions
   std::vector<BasisTerm> terms;  // terms that are tested, in a fixed order

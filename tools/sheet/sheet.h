@@ -48,7 +48,7 @@ bool is_blank(const std::vector<std::string>& row);
 void remove_row(Sheet& sheet, std::size_t row);
 
 /// True if a line begins with the text that a spreadsheet writes for a failed formula, in English or German.
-/// Such a line is a row of the table and not a comment.
+/// A line with a failed formula is a row of the table and not a comment.
 bool begins_with_error_value(const std::string& line);
 
 /// True if the first bytes are those of a workbook (a zip file with a sheet).

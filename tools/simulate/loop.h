@@ -53,11 +53,12 @@ struct LoopResult {
 };
 
 /// Runs the firmware cycle with a simulated machine, without waiting for real time. The machine is at rest at
-/// the first point of the path until the firmware is in the mode Active. Then the machine follows `states`
-/// tick by tick. `machine`: the machine of these states, which is that of the image. While the machine is at
-/// rest, its motion state is that of the first tick of the path. A path from the middle of a longer motion
-/// therefore starts without a transient. The plausibility limits of readings are off, because the path is a
-/// recorded motion. Throws LimitNotMet if the firmware does not reach the mode Active.
+/// the first point of the path until the firmware is in the mode Active. After the firmware has become
+/// Active, the machine follows `states` tick by tick. `machine`: the machine of these states, which is that
+/// of the image. While the machine is at rest, its motion state is that of the first tick of the path. A path
+/// from the middle of a longer motion therefore starts without a transient. The plausibility limits of
+/// readings are off, because the path is a recorded motion. Throws LimitNotMet if the firmware does not reach
+/// the mode Active.
 LoopResult run_loop(const ImageView& image, const model::Machine& machine, const model::States& states,
                     const LoopOptions& options);
 /// Runs the firmware cycle like the other run_loop(), along a path that is computed during the simulation.

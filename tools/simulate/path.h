@@ -13,8 +13,8 @@
 namespace vernier::simulate {
 
 /// A path file (FORMATS section 3, `simulate`) with the columns `t[s]`, axes, inputs and motion, which are
-/// found by name. A column is converted to numbers when a machine uses it. Therefore machines with different
-/// inputs can use one path. A column that no machine uses is ignored.
+/// found by name. A column is converted to numbers when a machine uses it. Machines with different inputs can
+/// therefore use one path. A column that no machine uses is ignored.
 class Path {
  public:
   /// Throws InputError if there is no column t, if a time is empty or not a number, or if the times do not

@@ -24,8 +24,8 @@ struct ReplayResult {
 /// inputs are linear between rows; a direction keeps its value). The function replay() changes each reading
 /// by the effect of the correction on the nominal machine: reading' = reading + nominal(q + correction) -
 /// nominal(q). The times in column t must increase within each run. If the file has no column t, every row is
-/// a pose at rest. In this case no term of the image may depend on time. Throws InputError if the column t is
-/// missing although a term depends on time.
+/// a pose at rest. If the file has no time column, no term of the image may depend on time. Throws InputError
+/// if the column t is missing although a term depends on time.
 ReplayResult replay(const compile::LoadedImage& image, const model::Measurement& measurement,
                     const LoopOptions& options);
 

@@ -48,7 +48,8 @@ class Assurance {
   void at_most(std::string rule, double value, double limit, std::string text);
   /// Adds a rule that is met if value >= limit. Throws std::logic_error if value or limit is not finite.
   void at_least(std::string rule, double value, double limit, std::string text);
-  /// Adds a rule that is met if `ok` is true. Its value is 0 if it is met and 1 otherwise; its limit is 0.
+  /// Adds a rule that is met if `ok` is true. The value of the rule is 0 if it is met and 1 otherwise; its
+  /// limit is 0.
   void require(std::string rule, bool ok, std::string text);
   /// Adds a sentence about a question that the result does not cover.
   void not_covered(std::string text);

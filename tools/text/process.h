@@ -25,9 +25,10 @@ struct RunningProcess {
 };
 
 /// Runs `program` with `arguments` in the folder `directory`, and waits for its end. The program has no
-/// standard input and its own process group. It ends together with this program. `on_line`: function that is
-/// called with each line of the program's standard error. If the output exceeds `most_bytes`, the program is
-/// ended with exit status 70. Throws InputError if the program cannot be started.
+/// standard input and its own process group. The started program ends together with this program. `on_line`:
+/// function that is called with each line of the program's standard error. If the output exceeds
+/// `most_bytes`, the program is ended with exit status 70. Throws InputError if the program cannot be
+/// started.
 ProcessResult run_process(const std::string& program, const std::vector<std::string>& arguments,
                           const std::string& directory, std::size_t most_bytes,
                           const std::function<void(std::string_view)>& on_line, RunningProcess& running);

@@ -31,7 +31,8 @@ void replace_all(std::string& text, std::string_view what, std::string_view with
 std::string printable(std::string_view text);
 
 /// Returns a text without characters that have no width: zero width spaces and joiners, soft hyphens, byte
-/// order marks. Such characters are often in tables that are copied from web pages and text programs.
+/// order marks. Characters without a width are often in tables that are copied from web pages and text
+/// programs.
 std::string without_invisible(std::string_view text);
 
 /// Returns a text in which ordinary blanks replace typographic blanks (no-break, thin). A typographic blank

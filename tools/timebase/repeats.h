@@ -56,7 +56,8 @@ struct RepeatLevel {
 };
 
 /// Returns the levels in the order of their rows. The probability of a level combines the probabilities of
-/// its blocks (Stouffer). It is multiplied by the number of possible lags and blocks.
+/// its blocks (Stouffer). The combined probability of a level is multiplied by the number of possible lags
+/// and blocks.
 std::vector<RepeatLevel> repeat_levels(const std::vector<RepeatBlock>& blocks,
                                        const RepeatOptions& options = {});
 
@@ -68,8 +69,8 @@ struct LagJump {
   double before = 0, after = 0;  // lags before and after the jump
   double uncertainty = 0;        // standard uncertainty of after - before, rows
 
-  /// Returns the number of missing rows. They are missing in the later pass if the lag decreases, and in the
-  /// earlier pass if it increases.
+  /// Returns the number of missing rows. The rows are missing in the later pass if the lag decreases, and in
+  /// the earlier pass if it increases.
   double missing() const { return after < before ? before - after : after - before; }
   bool in_later_pass() const { return after < before; }
   /// Returns the row of the series before which the rows are missing.

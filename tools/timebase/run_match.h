@@ -15,8 +15,8 @@ struct RunMatch {
   double correlation = 0;          // correlation of the smoothed residuals with the best relation
   double implied_correlation = 0;  // correlation of the smoothed residuals with the relation by the positions
   /// Probability that residuals with this spectrum agree so well at any tested offset. The value p_value is
-  /// also 1 if the shift is too small to detect, or if the best correlation is below `least_correlation`. It
-  /// is also 1 if implied_correlation is above half of the best correlation.
+  /// also 1 if the shift is too small to detect, or if the best correlation is below `least_correlation`. The
+  /// value p_value is also 1 if implied_correlation is above half of the best correlation.
   double p_value = 1;
   double shift = 0;  // in rows: largest difference between both relations over the first run
 };

@@ -10,12 +10,13 @@ namespace vernier::timebase {
 /// Returns nullopt if the rows exceed the series or if a cell is NaN.
 std::optional<Eigen::MatrixXd> stretch(const Eigen::MatrixXd& series, Eigen::Index first, Eigen::Index rows);
 
-/// Returns the concordance correlation of two blocks of equal size, from -1 to 1. It is 1 only if the blocks
-/// are equal. The definition is that of Lin, Biometrics 45 (1989).
+/// Returns the concordance correlation of two blocks of equal size, from -1 to 1. The concordance correlation
+/// is 1 only if the blocks are equal. The definition is that of Lin, Biometrics 45 (1989).
 double concordance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// Returns the effective number of independent rows if the rows of `a` and `b` are correlated (Bartlett). The
-/// number is conservative, because absolute products are used. Therefore an oscillation does not increase it.
+/// number is conservative, because absolute products are used. An oscillation of the samples therefore does
+/// not increase the number.
 double effective_rows(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// Returns the probability that two unrelated blocks with `rows` independent rows have this correlation or a

@@ -24,8 +24,8 @@ struct TimeBlock {
   double p_value = 1;
 };
 
-/// A gap: samples that are missing in the record. They may also be additional samples in the longer pass,
-/// because a repetition cannot distinguish both cases.
+/// A gap: samples that are missing in the record. The missing samples of a gap may also be additional samples
+/// in the longer pass, because a repetition cannot distinguish both cases.
 struct TimeGap {
   std::size_t run = 0, row = 0;         // the gap is before this row of the measurement
   double row_uncertainty = 0;           // in rows

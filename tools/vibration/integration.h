@@ -33,9 +33,9 @@ std::vector<double> line_powers(std::span<const double> x);
 
 /// Computes the displacement from the spectral lines of an acceleration above `cutoff`: each line is divided
 /// by -(2 pi f)^2. The trapezoidal rule of integrate_twice with Constants::kCentred approximates
-/// integrate_lines. Its displacement is too small near half of the sample rate (25 % at 200 Hz for a rate of
-/// 1 kHz). Both integrations assume that the record is periodic. x is in unit/s^2, the result in the same
-/// unit without /s^2.
+/// integrate_lines. The trapezoidal rule gives a displacement that is too small near half of the sample rate
+/// (25 % at 200 Hz for a rate of 1 kHz). integrate_twice and integrate_lines assume that the record is
+/// periodic. x is in unit/s^2, the result in the same unit without /s^2.
 std::vector<double> integrate_lines(std::span<const double> x, double rate_Hz, double cutoff,
                                     SpectralCut* cut = nullptr);
 
@@ -49,8 +49,8 @@ std::vector<double> cuts_between_lines(std::vector<double> powers, std::size_t s
 /// spectral lines contain a signal.
 double noise_floor_cutoff(std::span<const double> x, double records = 20);
 
-/// One pass of a ball bar test with an accelerometer at the tool. It has accelerations in mm/s^2, the angle
-/// of the commanded position at each sample in rad, and the mean deviation of the ball bar in um.
+/// One pass of a ball bar test with an accelerometer at the tool. A pass has accelerations in mm/s^2, the
+/// angle of the commanded position at each sample in rad, and the mean deviation of the ball bar in um.
 struct AcceleratedPass {
   std::vector<double> ax, ay, angle_rad;
   double rate_Hz = 0;

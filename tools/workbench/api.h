@@ -12,8 +12,9 @@
 namespace vernier::workbench {
 
 /// Answers the requests of the workbench page (files, commands, rows, predictions, terms, history, a board).
-/// It does not contain the network server. A request that needs the content of a file is answered by a
-/// separate process (FileReader) or by a command. Several threads may call the functions of Api.
+/// The code that answers the requests does not contain the network server. A request that needs the content
+/// of a file is answered by a separate process (FileReader) or by a command. Several threads may call the
+/// functions of Api.
 class Api {
  public:
   /// `directory`: folder of the project. `program`: path of the `vernier` program that runs commands.

@@ -10,8 +10,8 @@
 namespace vernier::workbench {
 
 /// Monitors one board at a time, like the command `vernier watch`. A thread reads the state of the board
-/// kLiveRateHz times per second and stores the last states. It disconnects if the page sends no request for
-/// kLetGoS seconds.
+/// kLiveRateHz times per second and stores the last states. The thread disconnects if the page sends no
+/// request for kLetGoS seconds.
 class LiveBoard {
  public:
   static constexpr double kLiveRateHz = 20, kLetGoS = 5;

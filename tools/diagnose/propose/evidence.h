@@ -126,8 +126,8 @@ class Evidence {
   int sense_of(std::size_t axis, std::size_t row) const;
   /// Returns the change of a term if the positions on the touched objects are replaced by the recorded
   /// positions, divided by the residual of the given model. `k`: values of the linear unknowns of the term.
-  /// Recorded positions contain the error of the touch. Therefore a term with a large slope repeats this
-  /// error. share_of_touch_error() returns 0 if no row is a touch.
+  /// Recorded positions contain the error of the touch. A term with a large slope repeats the touch error.
+  /// share_of_touch_error() returns 0 if no row is a touch.
   double share_of_touch_error(const effects::Candidate& candidate, const std::vector<double>& scanned,
                               const Eigen::VectorXd& k) const;
   /// Returns the extent of the points that were read, mm; 0 if no lengths were read.

@@ -190,8 +190,8 @@ struct FinePeriodThresholds {
   /// highest peak may be an alias of the slower peak. Source of the value 10: "very strong" evidence by Kass
   /// and Raftery 1995.
   double nearly_as_well = 10;
-  /// Difference of chi^2 that distinguishes two periods that are evaluated in full. This limit equals the
-  /// required distance of alternatives.
+  /// Difference of chi^2 that distinguishes two periods that are evaluated in full. The threshold for periods
+  /// equals the required distance of alternatives.
   double told_apart = 6;
 
   template <class Visit>
@@ -316,7 +316,8 @@ struct AcceptanceThresholds {
   /// and the sag of a long arm. Joints of humanoid robots deflect by one degree in fifty degrees of travel.
   double size_share = 0.02;
   /// For touch rows: largest change of a term that the touch error in its positions causes, divided by the
-  /// touch error. This ratio is the slope of the term. Error terms of real machines have slopes below 0.01.
+  /// touch error. The ratio of a term's change to the touch error is the slope of the term. Error terms of
+  /// real machines have slopes below 0.01.
   double share_of_touch_error = 0.2;
   /// A product of recorded quantities is rejected if fewer readings than `witnesses` support it, or if the
   /// share `copy_of_failed` of its squares is in the span of failed effects.

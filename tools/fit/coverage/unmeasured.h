@@ -36,10 +36,10 @@ std::vector<model::FitRecord::Unvaried> unvaried_dependences(const ReadingsBesid
 /// Returns the possible motions of the tool point by those properties of the model that no reading confirms,
 /// at each state: 3 N x e elements, mm. Each column is one standard uncertainty. The function considers two
 /// kinds of unconfirmed properties of the model. First kind: a dependence on a variable that did not vary.
-/// This dependence may be as in the model, or absent. Second kind: an alternative term may be the true term
-/// instead of the model's term (tools/fit/coverage/alternatives.h). The number e of properties depends only
-/// on `bare` and `record`. `bare`: the fitted machine without its BaseShifts; `parameters`: the parameters of
-/// `bare`.
+/// The dependence on a variable that did not vary may be as in the model, or absent. Second kind: an
+/// alternative term may be the true term instead of the model's term (tools/fit/coverage/alternatives.h). The
+/// number e of properties depends only on `bare` and `record`. `bare`: the fitted machine without its
+/// BaseShifts; `parameters`: the parameters of `bare`.
 Eigen::MatrixXd unmeasured_columns(const model::Machine& bare, const model::ParameterSet& parameters,
                                    const model::FitRecord& record, const model::States& states);
 

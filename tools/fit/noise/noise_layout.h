@@ -30,8 +30,8 @@ struct NoiseLayout {
   bool has_runs = false;   // true: there is more than one run
   bool has_poses = false;  // true: at least one pose was read more than once in succession
   double step = 1,
-         span = 1;      // step: median interval between rows. span: duration of the longest run. Both times
-                        // are in the unit of time.
+         span = 1;      // step: median interval between rows. span: duration of the longest run. The step and
+                        // the span are in the unit of time.
   double row_span = 1;  // number of rows in the longest run
 };
 

@@ -26,8 +26,8 @@ struct BallbarSimulation {
   std::vector<double> reading_mm;  // computed readings in time order
 };
 
-/// Time and angle of each sample of a run. It is used if the speed between START and END is not constant
-/// (repair_time_base).
+/// Time and angle of each sample of a run. The time and angle of each sample are used if the speed between
+/// START and END is not constant (repair_time_base).
 struct RunClock {
   std::vector<double> turned_deg;  // angle of each sample from angle 0 in the direction of motion; it exceeds
                                    // 360 deg after a turn

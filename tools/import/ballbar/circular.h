@@ -48,8 +48,8 @@ struct AboutMean {
 struct CircularResult {
   double nominal_radius_mm = 0;
   std::vector<CircularPassResult> passes;
-  /// The following values combine the first pass in each direction. The values that combine both directions
-  /// are missing if one direction is missing.
+  /// The values below combine the first pass in the clockwise and the counter-clockwise direction. The values
+  /// that combine both directions are missing if one direction is missing.
   std::optional<double> bidirectional_um;
   std::optional<double> mean_centre_a_mm, mean_centre_b_mm, mean_radius_mm;
   std::optional<AboutMean> about_mean;

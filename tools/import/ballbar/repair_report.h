@@ -17,8 +17,8 @@ struct RepairReport {
               // angles
 };
 
-/// Repairs the time base of a file. Then it fits the repeating error of each repaired run, on the same
-/// samples before and after the repair.
+/// Repairs the time base of a file. After the repair, the function fits the repeating error of each repaired
+/// run, on the same samples before and after the repair.
 RepairReport repair_and_judge(const BallbarFile& file);
 
 /// Writes the changes by a repair and the reduction of the error: repair_json for programs, print_repair for

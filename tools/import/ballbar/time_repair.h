@@ -51,14 +51,15 @@ struct TimeRepair {
   std::vector<RunRepair> runs;
 };
 
-/// Estimates the number of samples per turn and the missing samples from the record of a run. Then it
-/// computes the angle and the time of each sample. The method uses that the second pass over the circle
-/// repeats the first pass. If the lag between two passes jumps, samples of one pass are missing, or the other
-/// pass had a pause. The function assumes missing samples. The reference run is the run whose number of
-/// samples per turn agrees best with the file. In the reference run the sample START (index from the file)
-/// keeps its angle. The angles of each other run are shifted until its repeating error agrees with the
-/// repeating error of the reference run. A run is not changed if it has less than one and a half turns or
-/// does not repeat. The RunRepair of such a run contains the reason.
+/// Estimates the number of samples per turn and the missing samples from the record of a run. From the number
+/// of samples per turn and the missing samples, the function computes the angle and the time of each sample.
+/// The method uses that the second pass over the circle repeats the first pass. If the lag between two passes
+/// jumps, samples of one pass are missing, or the other pass had a pause. The function assumes missing
+/// samples. The reference run is the run whose number of samples per turn agrees best with the file. In the
+/// reference run the sample START (index from the file) keeps its angle. The angles of each other run are
+/// shifted until its repeating error agrees with the repeating error of the reference run. A run is not
+/// changed if it has less than one and a half turns or does not repeat. The RunRepair of such a run contains
+/// the reason.
 TimeRepair repair_time_base(const BallbarFile& file);
 
 }  // namespace vernier::importer

@@ -6,8 +6,8 @@
 
 namespace vernier::importer {
 
-/// Approach directions of the runs. They are necessary if the order of the lines in the file does not give
-/// the directions.
+/// Approach directions of the runs. The approach directions are necessary if the order of the lines in the
+/// file does not give the directions.
 enum class RunSenses { kAsListed, kAlternate, kForward };
 
 /// Content of a file with linear laser interferometer runs.

@@ -24,9 +24,10 @@ void finish_camera(ImportTable& table, bool on_tool);
 /// Converts a table of touches of a probe to a measurement. A column d is imported as d. Without a column d,
 /// the reading is d = n * (m - p) with the recorded point mx my mz; then the normal nx ny nz (scaled to
 /// length 1, within 1e-3) and the nominal point px py pz are required. All points of the touches are in
-/// workpiece coordinates. `radius_mm`: radius of the stylus ball. It is not zero if the recorded point is the
-/// centre of the ball and the nominal point is on the surface. The nominal point is then moved along the
-/// normal by this radius, out of the surface. Throws InputError if a required column is missing or not valid.
+/// workpiece coordinates. `radius_mm`: radius of the stylus ball. The radius is not zero if the recorded
+/// point is the centre of the ball and the nominal point is on the surface. The nominal point is then moved
+/// along the normal by this radius, out of the surface. Throws InputError if a required column is missing or
+/// not valid.
 void finish_probe(ImportTable& table, double radius_mm);
 
 /// Assigns the role check to each row whose number is a multiple of `every`, and the role fit to the other

@@ -28,7 +28,7 @@ constexpr double touch_of(ToolPath path) {
 }
 
 /// Definition of the normal N of the path, for which the paper permits several interpretations. The paper
-/// prints N = +-(R x T). This vector does not have unit length, because the angle between T(u,1) and R
+/// prints N = +-(R x T). The vector R x T does not have unit length, because the angle between T(u,1) and R
 /// differs from 90 deg by up to 16 deg. The paper does not state to which side of the surface N points.
 struct NormalReading {
   bool unit = true;

@@ -8,10 +8,10 @@
 
 namespace vernier::workbench {
 
-/// Data format for the page: JSON followed by arrays of numbers. It has a 4-byte length, the JSON padded with
-/// blanks to a multiple of 4 bytes, and then the arrays (little-endian), each at a multiple of 4 bytes. In
-/// the JSON an array is written as {"f32": [offset, count]}, {"u32": ...} or {"u8": ...}. The offset is
-/// counted from the first byte after the JSON.
+/// Data format for the page: JSON followed by arrays of numbers. The data have a 4-byte length, the JSON
+/// padded with blanks to a multiple of 4 bytes, and then the arrays (little-endian), each at a multiple of 4
+/// bytes. In the JSON an array is written as {"f32": [offset, count]}, {"u32": ...} or {"u8": ...}. The
+/// offset is counted from the first byte after the JSON.
 class Blob {
  public:
   /// Adds an array of numbers and returns its JSON placeholder. Numbers that are not finite are not changed.

@@ -8,8 +8,8 @@
 
 namespace vernier::workbench {
 
-/// Contains all functions of the workbench that read a machine, a measurement or a term. These functions run
-/// in a separate process. A harmful file therefore ends only this process and not the server.
+/// Contains all functions of the workbench that read a machine, a measurement or a term. The functions that
+/// read files run in a separate process. A harmful file therefore ends only this process and not the server.
 class FileDesk {
  public:
   explicit FileDesk(const Project& project) : project_(project), cache_(project) {}

@@ -57,8 +57,8 @@ std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, 
 std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 
 /// Returns the free parameters as JSON: {name, value, unit, nominal, std, from}. The entries std and from
-/// (data, convention, prior) come from the fit that wrote the file. They are null if there was no fit, or if
-/// the value was changed after the fit.
+/// (data, convention, prior) come from the fit that wrote the file. The entries std and from are null if
+/// there was no fit, or if the value was changed after the fit.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
 }  // namespace vernier::workbench

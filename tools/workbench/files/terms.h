@@ -14,9 +14,9 @@ nlohmann::ordered_json expression_names(const model::Machine& machine);
 
 /// Tests whether `text` is a valid term for a degree of freedom with the unit `unit` (mm or deg). In the
 /// term, the name of the unknown coefficient is `k`. If `text` is not a valid expression of this machine,
-/// returns {"ok", "message", "offset", "word"}. Otherwise returns {"ok": true, "unit" of the expression
-/// without k, "k_unit": required unit of k, "warnings": units that do not match}. Units do not scale a value
-/// (FORMATS section 1); units that do not match only cause warnings.
+/// returns {"ok", "message", "offset", "word"}. If `text` is a valid expression, returns {"ok": true, "unit"
+/// of the expression without k, "k_unit": required unit of k, "warnings": units that do not match}. Units do
+/// not scale a value (FORMATS section 1); units that do not match only cause warnings.
 nlohmann::ordered_json check_term(const model::Machine& machine, const std::string& text,
                                   const std::string& unit);
 

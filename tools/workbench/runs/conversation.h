@@ -17,8 +17,8 @@ bool read_message(int stream, double patience_s, Message& message);
 /// `patience_s`.
 bool write_message(int stream, double patience_s, const Message& message);
 
-/// A running program that answers messages one by one. Its standard input and output are one stream. The
-/// program has its own process group and ends when the Conversation object is destroyed.
+/// A running program that answers messages one by one. Standard input and output of the program are one
+/// stream. The program has its own process group and ends when the Conversation object is destroyed.
 class Conversation {
  public:
   /// Throws InputError if the program could not be started.
