@@ -58,7 +58,7 @@ enum class SectionType : std::uint32_t {
                       // gaps
   kWraps = 9,         // Wrap
   kOutputs = 10,      // Output
-  // The following sections contain the equation for the shares of the effects (comp/shares.h).
+  // The sections from here on contain the equation for the shares of the effects (comp/shares.h).
   kShareConstants = 11,     // int32
   kShareSources = 12,       // uint16: registers of the tick
   kShareInstructions = 13,  // Instruction

@@ -41,7 +41,7 @@ constexpr std::uint32_t kSignedHeaderBytes = 88;  // number of bytes of the head
 constexpr std::uint64_t kLatestIssued = 7'258'118'400'000'000;
 
 /// Upload header of version 1, which contains no board name. An image that was confirmed with a header of
-/// version 1 still runs. A new upload with such a header is refused.
+/// version 1 still runs. A new upload with a header of version 1 is refused.
 struct UploadHeaderV1 {
   std::uint8_t magic[8];       // kUploadMagicV1
   std::uint32_t header_bytes;  // 128
@@ -58,8 +58,8 @@ static_assert(offsetof(UploadHeaderV1, magic) == 0 && offsetof(UploadHeaderV1, h
 constexpr std::uint8_t kUploadMagicV1[8] = {'V', 'E', 'R', 'N', 'U', 'P', 'L', '\n'};
 constexpr std::uint32_t kSignedHeaderBytesV1 = 64;
 
-/// First part of a signed request. The signature (Ed25519ph) covers this part, the op and the payload of the
-/// request.
+/// First part of a signed request. The signature (Ed25519ph) covers the first part, the operation code and
+/// the payload of the request.
 struct SignedRequestHead {
   std::uint8_t magic[8];       // kRequestMagic
   std::uint8_t nonce[16];      // nonce of the board, which is new for each start
