@@ -7,7 +7,7 @@ namespace vernier {
 
 constexpr InstantNs instant_ns(TimeUs time) { return InstantNs(time.count * 1000); }
 
-/// A clock whose time never decreases. The zero of this time has no meaning.
+/// A clock whose time never decreases. The zero of the clock's time has no meaning.
 class Clock {
  public:
   virtual ~Clock() = default;

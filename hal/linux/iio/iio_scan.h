@@ -13,8 +13,8 @@ struct IioElement {
   std::uint32_t bits = 0, storage_bits = 0, shift = 0;
   std::uint32_t repeat = 1;  // number of successive elements, of which the first is used
 
-  /// Returns the number of bytes of all values of a channel. The offset of the channel in a scan is a
-  /// multiple of this number.
+  /// Returns the number of bytes of all values of a channel. The offset of a channel in a scan is a multiple
+  /// of the number of bytes of its values.
   std::uint32_t bytes() const noexcept { return storage_bits / 8 * repeat; }
 };
 
