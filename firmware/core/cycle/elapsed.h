@@ -15,8 +15,8 @@ struct TicksQ8 {
   std::int32_t count = 256;
 };
 constexpr TicksQ8 kOneTick{256};
-/// Largest elapsed time that the firmware uses. An elapsed time above this limit is a fault, for example a
-/// clock that steps by a second. With this limit, sums of elapsed times fit 32 bits.
+/// Largest elapsed time that the firmware uses. A longer elapsed time is a fault, for example a clock that
+/// steps by a second. With the limit of the elapsed time, sums of elapsed times fit 32 bits.
 constexpr TicksQ8 kMostElapsed{1 << 20};
 
 /// Converts times to ticks without a division in the tick.

@@ -11,7 +11,7 @@ namespace vernier {
 /// Number of ticks without a fault after which the mode changes from Checking to Ready.
 constexpr std::uint32_t kCheckTicks = 100;
 /// Number of ticks in which the weight of the correction increases from zero to full. The slew limits may
-/// make this time longer.
+/// make the increase of the weight longer.
 constexpr std::int32_t kRampTicks = 256;
 static_assert(kFullWeight.count % kRampTicks == 0);
 

@@ -22,8 +22,8 @@ class Link {
   /// that the uploader uses. Not real-time safe.
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
 
-  /// True if the board must access the medium (storage) to execute the request. The store then answers such a
-  /// request, and may wait for the medium. Not real-time safe.
+  /// True if the board must access the medium (storage) to execute the request. For a request that needs the
+  /// medium, the store answers and may wait. Not real-time safe.
   static bool needs_store(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// True if the request is for the store or is a step of an upload, or if a signed request may contain such
   /// a request. While the store works on a request, may_need_store() returns false. Not real-time safe.

@@ -8,7 +8,7 @@ namespace vernier {
 
 /// A ticket for a reply that is sent after a setting of the operator is stored. The ticket contains the
 /// values that the reply repeats, and the tick after which the stored state contains the setting. The ticket
-/// belongs to CommandHandler. Any number of clients can wait for such replies.
+/// belongs to CommandHandler. Any number of clients can wait for delayed replies.
 struct SettingTicket {
   std::uint8_t op = 0;        // kCommand, kWeight or kSigned; 0: a Modbus master that uses only registers,
                               // whose reply has no head

@@ -12,7 +12,7 @@ using PublicKey = std::array<std::uint8_t, kPublicKeyBytes>;
 
 /// Verifies a signature (64 bytes) of the bytes `head` followed by `rest` with a public key. The signature
 /// algorithm is Ed25519ph, RFC 8032. A port with a cryptographic library defines this function itself. A port
-/// without such a library uses firmware/core/link/signature.cpp. Not real-time safe.
+/// without a cryptographic library uses firmware/core/link/signature.cpp. Not real-time safe.
 bool signature_fits(std::span<const std::uint8_t> head, std::span<const std::uint8_t> rest,
                     const std::uint8_t* signature, const PublicKey& key);
 

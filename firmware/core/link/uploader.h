@@ -92,8 +92,8 @@ class Uploader {
   // ---- functions for the links, while the store executes no request of a link
   /// Begins a new upload of `bytes` bytes. An unfinished upload is removed. Not real-time safe.
   UploadResult begin(std::uint32_t bytes);
-  /// Adds the next part of an upload. `offset`: number of bytes before this part. If the last part is sent
-  /// again, it is accepted. Not real-time safe.
+  /// Adds the next part of an upload. `offset`: number of bytes of the upload before the part that is added.
+  /// If the last part of an upload is sent again, it is accepted. Not real-time safe.
   UploadResult add(std::uint32_t offset, const std::uint8_t* bytes, std::uint32_t size);
 
   // ---- functions for all threads
