@@ -32,14 +32,14 @@ struct CheckRecord {
 };
 
 /// True if no reading of the fit determined this parameter (origin prior). A check cannot distinguish a
-/// change of such a parameter from its unknown value.
+/// change of a parameter that no reading determined from its unknown value.
 bool is_unmeasured(const model::Machine& machine, const CheckedQuantity& quantity);
 
 /// Compares a measurement with a fitted machine. Fit rows and check rows are used in the same way. The set-up
 /// of the instrument is fitted again, with any rotation. The sensitivities are computed at the new set-up.
-/// All free parameters of the machine are tested. The following are also tested if the chain has no such free
-/// parameters: reversal and scale of every axis, a tilt and an offset of every transform, and a drift of the
-/// instrument along each direction that it reads. Throws InputError if the machine was never fitted.
+/// All free parameters of the machine are tested. The check also tests reversal and scale of every axis, a
+/// tilt and an offset of every transform, and a drift of the instrument along each direction that it reads,
+/// if the chain has no free parameters for them. Throws InputError if the machine was never fitted.
 CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
                       std::string label);
 

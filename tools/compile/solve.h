@@ -12,8 +12,8 @@ namespace vernier::compile {
 /// less than a tenth.
 inline constexpr Eigen::Index kSamples = 512;
 inline constexpr std::size_t kBoxes = 4096;  // number of boxes for a bound
-/// Limit for a determinant, as a share of its largest sampled value. Below this limit the correction
-/// decreases to 0.
+/// Limit for a determinant, as a share of its largest sampled value. If the determinant is below the limit,
+/// the correction decreases to 0.
 inline constexpr double kFloorShare = 1.0 / 256;
 
 /// The space that the motions of some axes span over the declared ranges, from samples.

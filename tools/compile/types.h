@@ -239,8 +239,8 @@ struct CompileOptions {
   std::uint32_t tick_us = 1000;      // cycle time for which lags and slew limits are computed
   std::optional<double> budget_um;   // largest permitted error bound of an axis
   std::uint32_t accepted_rules = 0;  // accepted rules of the safety sheet, which the image contains
-  /// Limit for the error after one step of the correction. Above this limit the deviation is evaluated again
-  /// at the corrected position.
+  /// Limit for the error after one step of the correction. If the error after one step exceeds the limit, the
+  /// deviation is evaluated again at the corrected position.
   double most_second_order_um = 0.1;
   double most_second_order_deg = 2e-4;  // the same limit for the direction of the tool: a tenth of the usual
                                         // requirement

@@ -15,7 +15,7 @@ const format::SurveyReading& reading_of(const std::string& word);
 /// for this machine, and positions that show the errors of the machine. In the first rows, each axis moves
 /// alone, forward and backward. After the rows in which one axis moves alone, the rows are poses over the
 /// whole travel; every fourth of these poses is a check row. The cells for the measured values are empty.
-/// Throws InputError if a fit of the machine would refuse such readings.
+/// Throws InputError if a fit of the machine would refuse the kind of reading.
 std::string survey_template(const model::Machine& machine, const format::SurveyReading& reading);
 
 /// Returns a survey as a workbook (.xlsx). The first sheet contains the rows, and the second sheet contains

@@ -15,7 +15,7 @@ GiNaC::ex to_deg(const GiNaC::ex& angle_rad);
 
 /// sine() returns the sine of an angle, simplified for quarter turns; cosine() does the same for the cosine.
 /// The first symbol of the angle gets a positive sign: sin(-C) becomes -sin(C), and cos(B - pi/2) becomes
-/// sin(B). The library GiNaC does not simplify sine and cosine in this way.
+/// sin(B). The library GiNaC does not simplify sine and cosine of quarter turns.
 GiNaC::ex sine(const GiNaC::ex& angle_rad);
 GiNaC::ex cosine(const GiNaC::ex& angle_rad);
 

@@ -25,7 +25,7 @@ std::vector<std::size_t> add_unknowns(model::Machine& machine, const Candidate& 
 Candidate make_candidate(const model::Machine& machine, const AxisPlaces& axes, const Choice& choice);
 Candidate make_candidate(const model::Machine& machine, const Choice& choice);
 
-/// Returns the axis that drives the effect of a choice. If there is no such axis, returns the axis of the
+/// Returns the axis that drives the effect of a choice. If no axis drives the effect, returns the axis of the
 /// transform on which the effect acts.
 std::optional<std::size_t> axis_of(const AxisPlaces& axes, const Choice& choice);
 

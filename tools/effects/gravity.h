@@ -32,12 +32,12 @@ class Wave {
   Wave cleaned(double scale) const;
   /// True if the sum has the same value at all positions of all axes.
   bool is_constant() const;
-  /// Returns the different sums of axis positions in the sines and cosines of this sum. If there are two or
-  /// more such sums of positions, no single axis drives the value.
+  /// Returns the different sums of axis positions in the sines and cosines of the value. If the sines and
+  /// cosines contain two or more different sums of positions, no single axis drives the value.
   std::set<std::vector<double>> phases() const;
   std::size_t terms() const { return terms_.size(); }
-  /// Returns this sum as an expression with the names of the machine's axes. Numbers in the expression have
-  /// six digits.
+  /// Returns the trigonometric sum as an expression with the names of the machine's axes. Numbers in the
+  /// expression have six digits.
   model::ExprPtr expression(const model::Machine& machine) const;
 
  private:
@@ -62,8 +62,8 @@ class GravityChain {
   /// True if gravity can have a moment about the axis of the angle. False if gravity is parallel to the axis
   /// of the angle at every pose.
   bool may_turn(const DofPlace& angle) const;
-  /// True if the transform contains no rotation by an axis and no constant rotation. The three angles of such
-  /// a transform have one common frame.
+  /// True if the transform contains no rotation by an axis and no constant rotation. The three angles of a
+  /// transform without rotations have one common frame.
   bool is_rigid(const DofPlace& transform) const;
   /// Returns the component of gravity along the direction of a length.
   std::optional<Wave> along(const DofPlace& length) const;

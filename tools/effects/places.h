@@ -55,7 +55,7 @@ model::Machine with_base_row(model::Machine machine);
 /// transform.
 bool is_stand_in(const model::Machine& machine, const DofPlace& place);
 /// Returns the degrees of freedom of the transforms that carry the whole machine: the first transform of the
-/// tool branch and, if the chain has a workpiece branch, its last transform. If with_base_row added such a
+/// tool branch and, if the chain has a workpiece branch, its last transform. If with_base_row added a
 /// transform, the neighbouring transform is used.
 std::vector<DofPlace> carrier_places(const model::Machine& machine);
 /// Returns all degrees of freedom of the chain, those of the tool branch first.

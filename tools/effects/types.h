@@ -70,7 +70,7 @@ inline std::vector<CandidateUnknown> linear_unknowns(const Candidate& candidate)
   return unknowns;
 }
 /// Returns the unknowns of a candidate that are not linear: periods, time constants, decay lengths. Other
-/// functions use the order of this list for the values of these unknowns.
+/// functions use the order of the returned list for the values of the unknowns.
 inline std::vector<CandidateUnknown> scanned_unknowns(const Candidate& candidate) {
   std::vector<CandidateUnknown> unknowns;
   for (const CandidateUnknown& unknown : candidate.unknowns)

@@ -9,12 +9,13 @@
 
 namespace vernier::fit {
 
-/// Limit for the residual divided by the reach of the machine. Above this limit the readings do not belong to
-/// the machine. Typical values of this ratio: 1e-5 for machine tools, 1e-2 for robots made by hand.
+/// Limit for the residual divided by the reach of the machine. If residual divided by reach exceeds the
+/// limit, the readings do not belong to the machine. Typical values of residual divided by reach are 1e-5 for
+/// machine tools and 1e-2 for robots made by hand.
 inline constexpr double kAbsurdResidual = 0.02;
 
-/// Limit for the misfit divided by the reach. Above this limit, known mistakes (for example a wrong unit) are
-/// tested on the nominal machine.
+/// Limit for the misfit divided by the reach. If misfit divided by reach exceeds the limit, known mistakes
+/// (for example a wrong unit) are tested on the nominal machine.
 inline constexpr double kFarOff = 0.05;
 
 /// Returns the reading with the largest residual. `check`: true selects the check rows; false selects the fit

@@ -26,14 +26,14 @@ struct RolloutEnd {
 /// the board of the machine (RolloutMachine::claim). If the registry has no key for a board that has a key,
 /// this key is entered in the registry (trust on first use) and reported. All machines are locked in the
 /// registry during the whole call. Machines in the state `kept` are checked at the beginning of the call,
-/// before each stage and at the end. If the board of such a machine does not answer, is another board, or
-/// does not use the image, the rollout stops and the machine loses the state `kept`. At the first machine
-/// that is worse, or whose evaluation gives no result, the image of this machine is reverted. After a
-/// reverted image, the rollout stops until a user allows it to continue. The registry contains the completed
-/// steps. An interrupted rollout therefore continues where it stopped. A board whose trial is not confirmed
-/// returns to its previous image without a command. `kept`: function that is called for each machine whose
-/// image was confirmed. Throws LimitNotMet if another caller has locked one of the machines. If one of the
-/// machines is locked, no step of the rollout is done.
+/// before each stage and at the end. If the board of a machine in the state `kept` does not answer, is
+/// another board, or does not use the image, the rollout stops and the machine loses the state `kept`. At the
+/// first machine that is worse, or whose evaluation gives no result, the image of this machine is reverted.
+/// After a reverted image, the rollout stops until a user allows it to continue. The registry contains the
+/// completed steps. An interrupted rollout therefore continues where it stopped. A board whose trial is not
+/// confirmed returns to its previous image without a command. `kept`: function that is called for each
+/// machine whose image was confirmed. Throws LimitNotMet if another caller has locked one of the machines. If
+/// one of the machines is locked, no step of the rollout is done.
 RolloutEnd roll_out(registry::Registry& registry, std::vector<RolloutMachine> machines,
                     const RolloutOptions& options, const std::atomic<bool>& stop, const Say& say,
                     const std::function<void(const RolloutMachine&)>& kept);

@@ -42,7 +42,7 @@ class SampleWriter {
   /// Returns the number of samples that were written.
   std::uint64_t written() const { return written_; }
   /// Returns the machines that are not in the registry and for which write() received samples, each name
-  /// once. The call of take_not_entered() empties this list.
+  /// once. The call of take_not_entered() empties the list of machines that are not in the registry.
   std::vector<std::string> take_not_entered();
 
  private:

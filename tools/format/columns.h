@@ -169,8 +169,8 @@ std::string reading_column_names();
 /// for an input.
 bool is_reading(const CsvColumn& column, const std::function<const CsvColumn*(std::string_view)>& find);
 
-/// True if expressions use a quantity with this name (t, feed, nx …). The name of such a quantity is not
-/// permitted for an axis or input.
+/// True if expressions use a quantity with this name (t, feed, nx …). The name of a quantity that expressions
+/// use is not permitted for an axis or input.
 bool is_name_of_terms(std::string_view name);
 
 /// Returns the name of the reading for the angle of a rotary axis: rx, ry, rz for A, B, C (ISO 841); nullopt

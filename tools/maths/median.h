@@ -9,7 +9,7 @@ namespace vernier::maths {
 double median(std::vector<double> values);
 
 /// Returns the standard deviation of a normal distribution whose median absolute value is `median_size`:
-/// 1.4826 times this value (Hampel 1974).
+/// 1.4826 times `median_size` (Hampel 1974).
 double spread_of_median(double median_size);
 
 /// Returns the standard deviation of deviations from 0, computed from their median absolute value. Because

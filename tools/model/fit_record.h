@@ -130,8 +130,8 @@ bool read_open_numbers(std::string_view text, std::size_t n, FitRecord& record);
 /// the text of the covariance element has another format.
 bool read_fit_numbers(std::string_view text, std::size_t n, FitRecord& record);
 
-/// Returns the machine text with the element `<fitted>` replaced. If the text has no such element, it is
-/// inserted before the end of the root element.
+/// Returns the machine text with the element `<fitted>` replaced. If the text has no element `<fitted>`, it
+/// is inserted before the end of the root element.
 std::string with_fit_record(const std::string& text, const FitRecord& record);
 
 }  // namespace vernier::model

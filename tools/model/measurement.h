@@ -27,7 +27,8 @@ struct Observation {
 };
 
 /// A column of a measurement file that the machine file does not declare as an input. A physical effect that
-/// is missing in the model may depend on such a column. The value is NaN if the cell is empty.
+/// is missing in the model may depend on a column that is not declared as an input. The value is NaN if the
+/// cell is empty.
 struct CandidateInput {
   std::string name, unit;
   Column value;
@@ -68,7 +69,8 @@ struct Thing {
 inline constexpr std::size_t kNoThing = static_cast<std::size_t>(-1);
 
 /// The rows of one or several measurement files, read for a machine (FORMATS section 2). A row with an empty
-/// cell in an input column is not included. The member `excluded` is the number of such rows.
+/// cell in an input column is not included. The member `excluded` is the number of rows that are not included
+/// because an input cell is empty.
 struct Measurement {
   std::vector<std::string> files;
   States states;

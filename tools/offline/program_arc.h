@@ -38,8 +38,8 @@ struct ProgramArc {
 std::array<char, 2> plane_letters(int plane);
 
 /// Returns the arc of a block from the word R, or from the words I J K. If both ends of the arc are equal,
-/// the arc is a whole turn. Throws InputError if there is no such arc, if the centre has different distances
-/// from both ends, or if the arc has several turns (P).
+/// the arc is a whole turn. Throws InputError if no arc with these words exists, if the centre has different
+/// distances from both ends, or if the arc has several turns (P).
 ProgramArc arc_of(const std::vector<Word>& words, const ArcReading& reading, const Eigen::VectorXd& from,
                   const Eigen::VectorXd& to, const text::Place& place);
 

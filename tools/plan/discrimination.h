@@ -23,8 +23,8 @@ class Discrimination {
   /// one matrix factorisation.
   void assume(const std::vector<std::size_t>& chosen);
   double non_centrality() const { return lambda_; }
-  /// Returns the increase of the non-centrality by each offered row: r' (I + J_row (J'J)^-1 J_row')^-1 r.
-  /// Here r is the difference of the predictions of this row after the refit.
+  /// Returns the increase of the non-centrality by each offered row: r' (I + J_row (J'J)^-1 J_row')^-1 r. In
+  /// this formula, r is the difference of the predictions of the offered row after the refit.
   Eigen::VectorXd gains() const;
 
  private:
@@ -42,8 +42,8 @@ class Discrimination {
 
 /// Returns the required non-centrality: with it, the chi^2 difference of two fits has the right sign with the
 /// probability `confidence`. The chi^2 difference of the two fits has the distribution lambda + 2
-/// sqrt(lambda) z, with z standard normal, and must exceed `lead`. From this condition follows sqrt(lambda) =
-/// z + sqrt(z^2 + lead). `confidence`: between 0.5 and 1, without the limits.
+/// sqrt(lambda) z, with z standard normal, and must exceed `lead`. The required probability gives
+/// sqrt(lambda) = z + sqrt(z^2 + lead). `confidence`: between 0.5 and 1, without the limits.
 double needed_non_centrality(double confidence, double lead);
 
 /// Returns the quantile of the standard normal distribution (by bisection of erfc). `p`: between 0 and 1,

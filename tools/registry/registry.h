@@ -70,7 +70,7 @@ const char* name_of(LiveAge::State state);
 inline constexpr double kStaleAfter_s = 30;
 
 /// A machine that sent samples but is not in the registry, so that its samples were not stored. The name ""
-/// represents all such machines after the first hundred.
+/// represents all further machines that are not in the registry, after the first hundred.
 struct NotEntered {
   std::string machine, gateway;  // gateway that sent the last sample
   std::int64_t samples = 0, at_us = 0;

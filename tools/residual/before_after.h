@@ -50,8 +50,8 @@ struct BeforeAfter {
 
 struct BeforeAfterOptions {
   std::uint64_t seed = 1;        // seed of the random numbers for resampling
-  std::size_t resamples = 2000;  // with this number, the error of the interval ends is a few per cent of the
-                                 // interval's length
+  std::size_t resamples = 2000;  // with this number of resamples, the error of the interval ends is a few per
+                                 // cent of the interval's length
 };
 
 /// Tests whether the correction reduced the errors of the machine. The error of a reading is the reading

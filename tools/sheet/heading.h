@@ -44,7 +44,7 @@ struct SheetTable {
 bool is_row_of_data(const Sheet& sheet, std::size_t row);
 
 /// Finds the parts of a sheet. The first row with mostly numbers is the first row of data. Throws InputError
-/// if there is no such row.
+/// if no row has mostly numbers.
 SheetTable parts_of_sheet(const Sheet& sheet);
 
 /// Converts words to a name that the file formats permit: "X ist" becomes "X_ist". Umlauts and signs are

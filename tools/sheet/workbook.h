@@ -22,10 +22,10 @@ struct WorkbookSheet {
 };
 
 /// Reads the sheet with this name or number (from 1) from a workbook. If `sheet` is empty, the first visible
-/// sheet with two rows of two numbers is read, which is not a cover page. If there is no such sheet, the
-/// first visible sheet with cells is read. If cells are merged over several rows of data, each of these rows
-/// has the value. Throws InputError if the data are not a workbook, if the sheet does not exist (the message
-/// lists the sheets), or if a part has more than 256 MB.
+/// sheet with two rows of two numbers is read, which is not a cover page. If no visible sheet has two rows of
+/// two numbers, the first visible sheet with cells is read. If cells are merged over several rows of data,
+/// each of these rows has the value. Throws InputError if the data are not a workbook, if the sheet does not
+/// exist (the message lists the sheets), or if a part has more than 256 MB.
 WorkbookSheet read_workbook(const std::string& bytes, const std::string& file, const std::string& sheet);
 
 }  // namespace vernier::sheet

@@ -15,7 +15,7 @@ struct FieldRules {
 };
 
 /// Returns the fields of one line, without leading and trailing blanks. A field may be in double quotes. Two
-/// quotes in such a field mean one quote. Throws InputError if a quote is not closed.
+/// quotes in a field with quotes mean one quote. Throws InputError if a quote is not closed.
 std::vector<std::string> fields_of(const std::string& line, const FieldRules& rules, const Place& place);
 
 /// Returns a text as a CSV field. If the text contains a character with a meaning in CSV, the field is in

@@ -39,7 +39,7 @@ struct RepeatOptions {
 std::vector<RepeatBlock> compare_repeats(const Eigen::MatrixXd& series, const Eigen::VectorXd& implied_lag,
                                          const RepeatOptions& options = {});
 
-/// Returns the blocks with a reliable lag, shifted or not. The lag of such a block agrees with that of a
+/// Returns the blocks with a reliable lag, shifted or not. The lag of a reliable block agrees with that of a
 /// neighbouring block within the tolerance, because the lag of an isolated block may be due to chance.
 std::vector<std::size_t> trusted_blocks(const std::vector<RepeatBlock>& blocks,
                                         const RepeatOptions& options = {});

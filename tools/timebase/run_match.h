@@ -32,10 +32,10 @@ struct RunMatchOptions {
 /// relation `implied`. The probability is computed with surrogate series: the second series with its own
 /// spectrum and random phases, which are equal for all channels. A Gumbel distribution gives the
 /// probabilities that are smaller than the number of surrogates permits. For two runs in opposite directions,
-/// a shift is a finding only if the implied rate differs from one row per row. For two such runs with a rate
-/// of one row per row, an error that depends on the direction could look like a constant shift. Returns
-/// nullopt if a run has fewer than 150 rows or no residual. The surrogate data are those of Theiler et al.,
-/// Physica D 58 (1992).
+/// a shift is a finding only if the implied rate differs from one row per row. For runs in opposite
+/// directions with a rate of one row per row, an error that depends on the direction could look like a
+/// constant shift. Returns nullopt if a run has fewer than 150 rows or no residual. The surrogate data are
+/// those of Theiler et al., Physica D 58 (1992).
 std::optional<RunMatch> match_runs(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second,
                                    const PathMap& implied, const RunMatchOptions& options = {});
 

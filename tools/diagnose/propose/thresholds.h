@@ -15,9 +15,9 @@ namespace vernier::diagnose {
 /// Thresholds for assumptions about the data, which apply before any candidate is tested.
 struct EvidenceThresholds {
   /// Limit for the singular values of the scaled Jacobian, as a share of the largest singular value. A fit
-  /// does not change the parameters along a direction below this limit. Directions of the parameters below
-  /// this limit are visible only through products of errors. Source: experiment with chains with station
-  /// tables, whose singular values have a gap at this limit.
+  /// does not change the parameters along a direction whose singular value is below the limit. Parameter
+  /// directions with a singular value below the limit are visible only through products of errors. Source:
+  /// experiment with chains with station tables, whose singular values have a gap at the limit.
   double absorb_cutoff = 1e-4;
   /// Largest number of elements of the Jacobian (240 MB). In a long survey with more elements, only every
   /// k-th row is used.
@@ -34,9 +34,9 @@ struct EvidenceThresholds {
   /// accuracy relative to the step of a measurement.
   double even_step = 0.05;
   /// Smallest response of the readings to a motion at a location in the chain (axis and degree of freedom),
-  /// as a share of the largest response to motions of the same kind. A response of the readings below this
-  /// share is only rounding error. Example of such a response: a rotation about an axis through the measured
-  /// point.
+  /// as a share of the largest response to motions of the same kind. A smaller response of the readings is
+  /// only rounding error. Example of a response that is only rounding error: a rotation about an axis through
+  /// the measured point.
   double rounding = 1e-9;
 
   template <class Visit>
@@ -63,9 +63,10 @@ struct CandidateThresholds {
   /// of the control computes all products. The gravity function of a seven-joint arm on a tilted base has 30
   /// products.
   std::size_t most_terms_of_gravity = 40;
-  /// Limit for the cosine between the moments of two masses over the rows. Above this limit the two masses
-  /// count as one mass. At this cosine, a hundredth of the squares differs between the two moments, which is
-  /// below the resolution of any survey.
+  /// Limit for the cosine between the moments of two masses over the rows. If the cosine between the moments
+  /// of two masses is above the limit, the two masses count as one mass. At the limit of the cosine, a
+  /// hundredth of the squares differs between the moments of two masses, which is below the resolution of any
+  /// survey.
   double same_moment = 0.995;
   /// If the measured range is more than this share of the declared range of an axis, terms name the declared
   /// range: "200" and not "199.3".
@@ -80,7 +81,7 @@ struct CandidateThresholds {
   double readings_per_hat = 4;
   /// Range of the searched time constants. The shortest time constant is `time_least_steps` intervals between
   /// rows, or the duration of the rows divided by `time_least_part` if that is longer. The longest is
-  /// `time_most` durations. Outside this range of time constants, a first-order lag looks like a step or a
+  /// `time_most` durations. A first-order lag with a shorter or longer time constant looks like a step or a
   /// straight line.
   double time_least_steps = 3, time_least_part = 200, time_most = 3;
   /// Number of time constants in the searched range, on a logarithmic scale: a factor of 1.5 apart. The best
@@ -112,15 +113,16 @@ struct CandidateThresholds {
   /// Share of one revolution that a rotary axis must travel to show a cyclic error with one period per
   /// revolution, the most frequent period.
   double least_of_a_turn = 0.5;
-  /// An approach direction of an axis has its own grid of positions above two limits: this number of
-  /// positions, and this share of the rows.
+  /// An approach direction of an axis has its own grid of positions above two limits: a number of positions,
+  /// and a share of the rows.
   std::size_t comb_positions = 6;
   double comb_share = 0.25;
   /// Number of steps in the shortest period: two by the sampling theorem, plus a twentieth for steps that are
   /// not quite even.
   double steps_per_period = 2.1;
-  /// Limit for 1 - cosine of the influences of two locations on all readings. Below this limit both
-  /// influences are equal. The value is sqrt of the rounding error, with three digits of margin.
+  /// Limit for 1 - cosine of the influences of two locations on all readings. If 1 - cosine is below the
+  /// limit, the influences of both locations are equal. The value is sqrt of the rounding error, with three
+  /// digits of margin.
   double same_place = 1e-7;
   /// A location is excluded if another location has the same influence on the readings, but is stronger by
   /// this factor (a tilt of 6 degrees).
@@ -181,8 +183,9 @@ struct FinePeriodThresholds {
   /// are aliases of each other above the limit. `alias_near` is the limit for a possible alias. `alias_same`
   /// is the limit for the decision.
   double alias_near = 0.8, alias_same = 0.9999;
-  /// Limit for the power of the spectral window of the positions, as a share of its largest power. Above this
-  /// limit two periods are compared in full, to test whether the readings distinguish them.
+  /// Limit for the power of the spectral window of the positions, as a share of its largest power. If the
+  /// power of the spectral window exceeds the limit, two periods are compared in full, to test whether the
+  /// readings distinguish them.
   double alias_partly = 0.9;
   /// Smallest number of tested frequencies for which the search for short periods is done.
   double fewest = 4;
@@ -237,8 +240,8 @@ struct PoolThresholds {
   /// Share of chi^2 per degree of freedom that counts as noise when candidates are ranked. The other half of
   /// chi^2 is attributed to an effect.
   double noise_share = 0.5;
-  /// Two periods at one location are different candidates if they differ by more than 1 part in this number
-  /// (here one eighth).
+  /// Two periods at one location are different candidates if they differ by more than one part in
+  /// `periods_per_e` (here one eighth).
   double periods_per_e = 8;
   /// `held_share`: a candidate is contained in a set of columns even if this share of its squares is outside
   /// the span of the set. `same_share`: two candidates are equal if at most this share of their squares
@@ -275,8 +278,9 @@ struct AcceptanceThresholds {
   /// BIC is strong evidence. The distance 6 is 2 ln 20: a cause that is more than 20 times less likely than
   /// the best cause is rejected.
   double evidence = 6, distance = 6;
-  /// Limit of an alternative's distance in the BIC by the linear estimate. An alternative below this limit is
-  /// fitted in full. The full fit decides whether the distance of an alternative is below `distance`.
+  /// Limit of an alternative's distance in the BIC by the linear estimate. An alternative whose linear
+  /// estimate of the distance is below the limit is fitted in full. The full fit decides whether the distance
+  /// of an alternative is below `distance`.
   double distance_of_fits = 12;
   /// Required advantage in the BIC of a named cause over an error of the instrument alone. Kass and Raftery
   /// 1995: a difference of 10 in the BIC is very strong evidence.
@@ -293,8 +297,8 @@ struct AcceptanceThresholds {
   /// `stable_runs`: share of the held-out runs in which the contribution of an effect must keep its
   /// direction. `stable_cosine`: the required cosine (60 degrees).
   double stable_runs = 0.75, stable_cosine = 0.5;
-  /// Limit for the share of an effect that is in one block. Above this limit the other blocks cannot confirm
-  /// the effect.
+  /// Limit for the share of an effect that is in one block. If more than the limit of an effect is in one
+  /// block, the other blocks cannot confirm the effect.
   double in_one_block = 0.8;
   /// `blocks_of_one_run`: number of blocks into which a single run is divided. `large_run`: a run with this
   /// share of the rows is divided too. `parts_of_run`: an effect of runs is tested on this many parts of each
@@ -360,18 +364,19 @@ struct ProofThresholds {
   /// Natural logarithm of 20. Of absent steps, at most one in twenty reaches an e-value of 20, independent of
   /// all earlier tests (Ville's inequality).
   double evidence = 2.996;
-  /// Limit for the expected evidence of a step. Below this limit the held-out rows give no information about
-  /// the step. With an expected evidence of only 2, a true step is rejected by chance one time in six.
+  /// Limit for the expected evidence of a step. If the expected evidence is below the limit, the held-out
+  /// rows give no information about the step. With an expected evidence of only 2, a true step is rejected by
+  /// chance one time in six.
   double least_expected = 2;
   /// Evidence against a step with small expected evidence at which the step counts as wrong. Then chi^2 of
   /// the check rows increases by 1, and their standard deviation by the factor 1/(2 n) for n rows.
   double worse = 0.5;
-  /// Number of standard deviations below the mean of the evidence; one true step in a hundred has evidence
-  /// below this limit.
+  /// Number of standard deviations below the mean of the evidence; one true step in a hundred has still less
+  /// evidence.
   double chance_sigmas = 2.33;
   /// Limit for the mean square of the check rows divided by its expected value (uncertainty of reading and
-  /// model). The result is not confirmed on held-out rows if this ratio exceeds 1 by more than this number of
-  /// its standard deviations.
+  /// model). A result is not confirmed on held-out rows if the mean square ratio exceeds 1 by more than the
+  /// given number of its standard deviations.
   double carries_sigmas = 4;
 
   template <class Visit>
@@ -408,7 +413,8 @@ struct VerdictThresholds {
   /// for a named cause.
   double mostly_explained = 0.5;
   /// For rows without a standard uncertainty u: factor by which chi^2 must increase if the named effect is
-  /// removed. With this factor, the named effect is larger than the remaining residual.
+  /// removed. With an increase of chi^2 by the factor, the named effect is larger than the remaining
+  /// residual.
   double larger_than_rest = 2;
   /// For rows without a standard uncertainty u: share of the mean square of the check rows that confirmed
   /// steps must remove. The limit applies to a named cause whose remaining residual is not noise. The
@@ -424,8 +430,8 @@ struct VerdictThresholds {
   /// The instrument is unstable if two limits are met: the correlated part of the errors relative to the
   /// independent noise (`drift_share`), and the decrease of -2 log likelihood by this part (`drift_support`).
   double drift_share = 0.7, drift_support = 20;
-  /// Number of standard deviations beyond which a reading is an outlier. A normal distribution exceeds this
-  /// limit once in 5e8 readings.
+  /// Number of standard deviations beyond which a reading is an outlier. A normal distribution exceeds the
+  /// outlier limit once in 5e8 readings.
   double outlier_spreads = 6;
   /// Number of standard deviations beyond which a reading is an outlier if the rows have no u. The limit is
   /// larger because an effect that was not found has long tails.
@@ -484,7 +490,8 @@ struct ShapeThresholds {
   /// reading; effects beside a curve.
   std::size_t most_of_one_axis = 2, most_of_one_reading = 3, most_beside_a_curve = 2;
   /// `periods_of_a_wave`: number of periods in the range above which a cyclic error is a separate cause (a
-  /// worm or its gear) and not a piece of a function. `most_waves`: largest number of such cyclic errors.
+  /// worm or its gear) and not a piece of a function. `most_waves`: largest number of cyclic errors that are
+  /// separate causes.
   double periods_of_a_wave = 2;
   std::size_t most_waves = 3;
   /// Tolerance for harmonics: difference of a ratio of two periods from an integer, as a share of the longer

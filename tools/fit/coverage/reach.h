@@ -46,9 +46,9 @@ class Reach {
   Eigen::VectorXd std_of_machine_um(const model::States& states) const;
   /// Returns the part of the standard uncertainty that no reading of the fit determined. The undetermined
   /// part of the uncertainty comes from parameters at their scale, and from properties of the model that no
-  /// reading confirms. The unit of this part is um, along x, y, z at each state. The function
-  /// std_unmeasured_um() returns 0 if the machine file does not state which parameters are undetermined
-  /// (open_known).
+  /// reading confirms. The unit of the undetermined uncertainty is um, along x, y, z at each state. The
+  /// function std_unmeasured_um() returns 0 if the machine file does not state which parameters are
+  /// undetermined (open_known).
   Eigen::Matrix3Xd std_unmeasured_um(const model::States& states) const;
   /// Returns the standard deviation of the discrepancy, along x, y, z of workpiece coordinates, mm.
   const Eigen::Vector3d& discrepancy_mm() const { return discrepancy_mm_; }

@@ -21,16 +21,17 @@ std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters);
 
 /// Returns the coefficients whose effect depends on an axis or input that did not vary, within the noise of
 /// the readings, while the effect was visible. Example: the effect of heat was measured at only one position
-/// of an axis. In such poses, a rotation about a far point has the same effect on the readings as a shift.
-/// For each coefficient and each variable, unvaried_dependences replaces the effect by the effect with the
-/// variable at its mean (weighted by the square of the effect). The variable counts as unvaried if this
-/// replacement explains the fit rows as well, with a free set-up. The limit is three standard deviations in
-/// all. If a variable changed only together with a second variable, the replacement uses the regression line
-/// between both variables. Example of two variables that change together: the effect of heat was measured on
-/// a diagonal of X and Y. Three cases are excluded from the test for unvaried variables. First excluded case:
-/// rows with readings of rotations, because such readings distinguish a rotation from a shift. Second
-/// excluded case: a station table is not tested against its own axis. Third excluded case: a single axis that
-/// never moved, because the rule `measured-range` of the safety sheet reports it.
+/// of an axis. With poses at only one position of an axis, a rotation about a far point has the same effect
+/// on the readings as a shift. For each coefficient and each variable, unvaried_dependences replaces the
+/// effect by the effect with the variable at its mean (weighted by the square of the effect). The variable
+/// counts as unvaried if this replacement explains the fit rows as well, with a free set-up. The limit is
+/// three standard deviations in all. If a variable changed only together with a second variable, the
+/// replacement uses the regression line between both variables. Example of two variables that change
+/// together: the effect of heat was measured on a diagonal of X and Y. Three cases are excluded from the test
+/// for unvaried variables. First excluded case: rows with readings of rotations, because such readings
+/// distinguish a rotation from a shift. Second excluded case: a station table is not tested against its own
+/// axis. Third excluded case: a single axis that never moved, because the rule `measured-range` of the safety
+/// sheet reports it.
 std::vector<model::FitRecord::Unvaried> unvaried_dependences(const ReadingsBesideSetUp& readings);
 
 /// Returns the possible motions of the tool point by those properties of the model that no reading confirms,

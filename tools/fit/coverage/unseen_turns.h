@@ -11,9 +11,9 @@
 namespace vernier::fit {
 
 /// Returns one flag for each parameter: true if the parameter is a rotation of a BaseShift that affects the
-/// readings only in second order. The first-order effect of such a rotation on the readings is zero, or
+/// readings only in second order. The first-order effect of an unseen rotation on the readings is zero, or
 /// equals the effect of the lengths of the shift. Example: an instrument that measures one coordinate along
-/// one line (a laser interferometer, a dial gauge). The cosine error of such a rotation cannot be
+/// one line (a laser interferometer, a dial gauge). The cosine error of an unseen rotation cannot be
 /// distinguished from the scale of the axis, and a fit of both does not converge. `reach_mm`: size of the
 /// machine (convention.cpp).
 std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measurement& rows,

@@ -25,12 +25,12 @@ struct Slope {
 struct LevenbergOptions {
   int max_iterations = 100;
   /// Limit for the scaled eigenvalue (of the normal matrix with unit diagonal) of a direction in the
-  /// parameters. A direction below this limit counts as not determined by the data, both at the start and
-  /// when a step is computed. A step of the solver has no component along a direction that the data do not
-  /// determine. The value of this limit is the square of the cutoff in observability.h.
+  /// parameters. A direction whose eigenvalue is below the limit counts as not determined by the data, both
+  /// at the start and when a step is computed. A step of the solver has no component along a direction that
+  /// the data do not determine. The limit of the eigenvalue is the square of the cutoff in observability.h.
   double unseen = 1e-10;
   /// Returns the largest decrease of the cost that counts as negligible. The fit sets this function to the
-  /// variance of an observation times a small factor. If the cost decreases by less than this limit, no
+  /// variance of an observation times a small factor. If the cost decreases by less than the given amount, no
   /// parameter changes by more than a few percent of its standard uncertainty.
   std::function<double(double)> negligible = [](double cost) { return 1e-14 * cost; };
   /// Returns J^T W^2 p'' at a point for a step. The vector p'' is the second derivative of the predictions

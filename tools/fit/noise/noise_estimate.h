@@ -7,7 +7,7 @@
 
 namespace vernier::fit {
 
-/// Limit for the number of readings times the square of the number of fitted columns. Above this limit, an
+/// Limit for the number of readings times the square of the number of fitted columns. Above the limit, an
 /// evaluation of the likelihood uses only the number of fitted columns, not their values.
 inline constexpr double kMostNoiseProducts = 6e7;
 

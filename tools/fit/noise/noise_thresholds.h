@@ -62,12 +62,12 @@ struct NoiseThresholds {
   /// Smallest share of a step's effect on the readings that must remain after projection on the orthogonal
   /// complement of the free parameters.
   double own_of_step = 0.02;
-  /// Limit for a reading, in robust standard deviations. Larger readings are reduced to this limit before the
+  /// Limit for a reading, in robust standard deviations. Larger readings are reduced to the limit before the
   /// noise is estimated. The limit exists because a single outlier is not a property of the noise.
   double held = 4;
   /// Limit for the scatter of the readings as a share of u. Readings with less scatter are much better than
-  /// the stated u. For readings with less scatter than this limit, u is used as the standard deviation of the
-  /// independent noise.
+  /// the stated u. If the scatter of the readings is much smaller than u, u is used as the standard deviation
+  /// of the independent noise.
   double near_u = 0.7;
   /// Limit for the scatter of the readings as a share of u. Readings with less scatter have negligible noise,
   /// because they come from a simulation.

@@ -53,9 +53,9 @@ struct CircularResult {
   std::optional<double> bidirectional_um;
   std::optional<double> mean_centre_a_mm, mean_centre_b_mm, mean_radius_mm;
   std::optional<AboutMean> about_mean;
-  /// Mean of the radii of both directions minus the nominal radius (ISO 230-4:2005). For this value, each
-  /// radius is that of the least-squares circle with exact distances. The other values use a linearised
-  /// circle, which omits the term eccentricity squared over four radii.
+  /// Mean of the radii of both directions minus the nominal radius (ISO 230-4:2005). For the mean
+  /// bidirectional radial deviation, each radius is that of the least-squares circle with exact distances.
+  /// The other values use a linearised circle, which omits the term eccentricity squared over four radii.
   std::optional<double> mean_bidirectional_radial_um;
   std::optional<Hysteresis> hysteresis;  // compares sample i of one direction with sample i from the end of
                                          // the other direction

@@ -58,8 +58,8 @@ struct TimeRepair {
 /// samples. The reference run is the run whose number of samples per turn agrees best with the file. In the
 /// reference run the sample START (index from the file) keeps its angle. The angles of each other run are
 /// shifted until its repeating error agrees with the repeating error of the reference run. A run is not
-/// changed if it has less than one and a half turns or does not repeat. The RunRepair of such a run contains
-/// the reason.
+/// changed if it has less than one and a half turns or does not repeat. The RunRepair of a run that is not
+/// changed contains the reason.
 TimeRepair repair_time_base(const BallbarFile& file);
 
 }  // namespace vernier::importer

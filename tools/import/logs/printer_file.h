@@ -38,10 +38,10 @@ struct PrinterFile {
 ///   or of Marlin ("Bed X: X Y: Y Z: Z"),
 /// - a height map of RepRapFirmware (heightmap.csv, version 2).
 /// Meshes, height maps, Marlin's G30 and Klipper's newer line ("probe: at X,Y bed will contact at z=Z") state
-/// the point that the probe touched. The position of the axes is this point minus the probe offset. Touches
-/// during levelling, and repeated touches at one position (PROBE_ACCURACY), are excluded. If a log has
-/// several surveys of the bed, the option `series` is necessary. If the file is not valid, throws InputError
-/// with file, line and word.
+/// the point that the probe touched. The position of the axes is the probed point minus the probe offset.
+/// Touches during levelling, and repeated touches at one position (PROBE_ACCURACY), are excluded. If a log
+/// has several surveys of the bed, the option `series` is necessary. If the file is not valid, throws
+/// InputError with file, line and word.
 PrinterFile read_printer_file(const std::string& text, const std::string& file,
                               const PrinterOptions& options);
 

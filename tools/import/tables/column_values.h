@@ -17,7 +17,7 @@ void settle_by_values(const sheet::Sheet& sheet, const sheet::SheetTable& table,
 
 /// Throws InputError if the sheet may contain two tables side by side. Two tables side by side have two
 /// blocks of columns, each with target and readings of its own axis, and both targets change from row to row.
-/// In such a sheet, a row is perhaps not a pose of the machine.
+/// In a sheet with two tables side by side, a row is perhaps not a pose of the machine.
 void refuse_tables_side_by_side(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                 const std::vector<SheetColumn>& columns);
 

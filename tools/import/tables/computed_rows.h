@@ -18,7 +18,7 @@ bool says_computed_row(const std::string& cell);
 void leave_computed_rows(sheet::Sheet& sheet, const sheet::SheetTable& table);
 
 /// Writes a note for each row of data that has fewer cells than there are headings. If blanks separate the
-/// columns, throws InputError for such a row, because any of its cells can be missing.
+/// columns, throws InputError for a row with fewer cells, because any of its cells can be missing.
 void note_short_rows(sheet::Sheet& sheet, const sheet::SheetTable& table);
 
 }  // namespace vernier::importer

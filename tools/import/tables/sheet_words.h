@@ -22,8 +22,8 @@ bool says_statistic(const std::string& word);
 bool says_deviation(const std::string& word);
 /// True for a correction, the opposite of a deviation: "Korrektur", "Korrekturtabelle".
 bool says_correction(const std::string& word);
-/// True for a word of "after the correction" or "without compensation". A column with such a heading does not
-/// contain a correction.
+/// True for a word of "after the correction" or "without compensation". A column with a heading of this kind
+/// ("after the correction") does not contain a correction.
 bool says_state_of_correction(const std::string& word);
 /// True for a column with a number or a name of each row: "Nr".
 bool says_counting(const std::string& word);

@@ -9,7 +9,7 @@
 namespace vernier::model {
 
 /// Shortest length along an axis over which the errors of this axis can change. An evaluation of the errors
-/// needs positions at distances smaller than this length.
+/// needs positions at smaller distances than the shortest length over which errors change.
 struct Detail {
   double period = 0;   // shortest period of a sine, cosine or tangent over the axis; infinite if there is no
                        // such term

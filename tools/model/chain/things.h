@@ -47,7 +47,7 @@ class Things {
   /// no fit row touched the object.
   double weight(std::size_t observation) const { return weight_[static_cast<Eigen::Index>(observation)]; }
   /// Returns the number of unknown values that the fit rows determine. The degrees of freedom of a fit
-  /// decrease by this number.
+  /// decrease by the number of unknown values of touched objects.
   std::size_t eliminated() const;
   const Measurement& measurement() const { return measurement_; }
 

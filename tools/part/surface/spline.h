@@ -22,7 +22,7 @@ class Spline {
   /// points.
   explicit Spline(std::vector<Eigen::Vector3d> control);
 
-  /// `u`: 0..1. Outside this range, the polynomial of the end span is used. The second derivative of the
+  /// `u`: 0..1. For u outside 0..1, the polynomial of the end span is used. The second derivative of the
   /// spline is continuous; the third derivative jumps at knots.
   CurvePoint at(double u) const;
   const std::vector<Eigen::Vector3d>& control() const { return control_; }

@@ -11,8 +11,8 @@ namespace vernier::plan {
 
 /// Returns the knowledge of a machine from existing measurements: the covariance and the noise of the fit.
 /// The next readings belong to the set-up of the BaseShift without `run` and `setup`, if the fit has such a
-/// BaseShift as a free parameter. If there is no such BaseShift, the next readings belong to a new set-up.
-/// Throws InputError if the measurement has no reading x, y or z.
+/// BaseShift as a free parameter. If the fit has no BaseShift without `run` and `setup`, the next readings
+/// belong to a new set-up. Throws InputError if the measurement has no reading x, y or z.
 Knowledge knowledge_of(const fit::FitResult& fitted, const model::Measurement& measurement);
 /// Returns the knowledge of a machine from the machine file alone, with a new set-up for the next readings.
 /// Throws InputError if the machine was never fitted.
