@@ -9,7 +9,8 @@
 
 namespace vernier {
 
-/// Limits of a program: these constants fix the memory of the cycle and bound its time.
+/// Limits of a program. The limits of a program determine the memory of the cycle and limit its computing
+/// time.
 constexpr std::uint32_t kMaxAxes = 8;
 constexpr std::uint32_t kMaxInputs = 24;
 constexpr std::uint32_t kMaxRegisters = 1024;
@@ -19,29 +20,29 @@ constexpr std::uint32_t kMaxTables = 64;
 constexpr std::int32_t kMaxFactor = std::int32_t{1} << 30;
 constexpr unsigned kMaxShift = 61;
 
-/// Operation of an instruction on its operands a, b, c (registers, or an index where stated) and immediates
-/// k, l. All registers are int32 in a binary format that the compiler chose; the code here does not use the
-/// format.
+/// Operation of an instruction. The operands a, b, c are registers (or an index where stated); k and l are
+/// constants in the instruction. All registers are int32 in a binary format that the compiler selected. The
+/// program code does not depend on this format.
 enum class OpCode : std::uint8_t {
-  kLinear = 0,    // (a*k + b*l) >> shift, rounded
-  kMultiply = 1,  // (a*b) >> shift, rounded
-  kDot = 2,       // (k << c, + the first a terms from term l on, - the b terms after them) >> shift, rounded
-  kAbs = 3,       // |a|
-  kMin = 4,       // lower of a, b
-  kMax = 5,       // higher of a, b
-  kSign = 6,      // -1, 0, +1
-  kEqual = 7,     // a == b ? 1 : 0
-  kLess = 8,      // a < b ? 1 : 0
-  kWrap = 9,      // a brought into the period of wrap b
-  kLookUp = 10,   // all columns of table b at position a: one result a column
-  kSineCosine = 11,  // of the angle (a*k) >> shift, 2^-32 turn: two results, 30 fraction bits
-  kLag = 12,         // state b += k/2^shift * (a - state b); the state
+  kLinear = 0,       // (a*k + b*l) >> shift, rounded
+  kMultiply = 1,     // (a*b) >> shift, rounded
+  kDot = 2,          // (k << c, + the first a terms from term l on, - the next b terms) >> shift, rounded
+  kAbs = 3,          // |a|
+  kMin = 4,          // lower of a and b
+  kMax = 5,          // higher of a and b
+  kSign = 6,         // sign of a: -1, 0, +1
+  kEqual = 7,        // a == b ? 1 : 0
+  kLess = 8,         // a < b ? 1 : 0
+  kWrap = 9,         // a, changed by whole periods into the period of wrap b
+  kLookUp = 10,      // values of all columns of table b at position a: one result per column
+  kSineCosine = 11,  // sine and cosine of the angle (a*k) >> shift, 2^-32 turn: two results, 30 fraction bits
+  kLag = 12,         // state b += k/2^shift * (a - state b); the result is the state
 };
 constexpr std::uint8_t kOpCodeCount = static_cast<std::uint8_t>(OpCode::kLag) + 1;
 
-/// One product of a sum of products: (register a * register b) >> shift, truncated. A factor may be one of
-/// the constants. The compiler gives the sum of products enough guard bits: the truncation has no visible
-/// effect.
+/// One product in a sum of products: (register a * register b) >> shift, truncated. A factor of the product
+/// may be one of the constants. The compiler gives the sum of products enough guard bits, so that the
+/// truncation has no visible effect.
 struct ProductTerm {
   std::uint16_t a, b;
   std::uint16_t shift;  // 0..62
@@ -51,8 +52,8 @@ static_assert(offsetof(ProductTerm, a) == 0 && offsetof(ProductTerm, b) == 2 &&
               offsetof(ProductTerm, shift) == 4);
 constexpr std::uint32_t kMaxTerms = 4096;
 
-/// One step of the straight-line program; the results of the step go to the next registers. 16 bytes, as in
-/// the image.
+/// One instruction of a program without branches. The results of the instruction are written to the next
+/// registers. An Instruction has 16 bytes, as in the correction image.
 struct Instruction {
   OpCode op;
   std::uint8_t shift;
@@ -65,8 +66,8 @@ static_assert(offsetof(Instruction, op) == 0 && offsetof(Instruction, shift) == 
               offsetof(Instruction, c) == 6 && offsetof(Instruction, k) == 8 &&
               offsetof(Instruction, l) == 12);
 
-/// The error equation of a machine. Order of the registers: constants, channels, results. An instruction
-/// reads only earlier registers (static single assignment). Non-owning.
+/// The error equation of a machine. The registers are in the order constants, channels, results. An
+/// instruction reads only earlier registers (static single assignment). The Equation does not own its memory.
 struct Equation {
   View<std::int32_t> constants;
   std::uint32_t channel_count = 0;
@@ -75,7 +76,7 @@ struct Equation {
   View<ErrorTable> tables;
   View<Wrap> wraps;
   std::uint32_t lag_count = 0;
-  std::uint32_t result_count = 0;  // of all instructions together
+  std::uint32_t result_count = 0;  // number of results of all instructions together
 
   constexpr std::uint32_t first_channel() const { return constants.size; }
   constexpr std::uint32_t first_result() const { return constants.size + channel_count; }
@@ -89,10 +90,11 @@ constexpr std::uint32_t results_of(const Instruction& step, View<ErrorTable> tab
   return step.b < tables.size ? tables[step.b].columns : 0;
 }
 
-/// Executes a VERIFIED equation (comp/verify.h). `registers` contains the constants and channels;
-/// run_equation adds the results. registers: register_count() long; lags: lag_count states; `starting` sets
-/// every lag to its input. Time of run_equation: one pass over the instructions. The verifier proves that
-/// run_equation has no overflow and no access outside the memory. Real-time safe.
+/// Executes a VERIFIED equation (comp/verify.h). Before the call, `registers` contains the constants and the
+/// channels. The function run_equation adds the results. `registers`: register_count() values; `lags`:
+/// lag_count states; `starting`: true sets every lag to its input. run_equation makes one pass over the
+/// instructions. The verifier proves that run_equation has no overflow and no access outside the memory.
+/// Real-time safe.
 void run_equation(const Equation& equation, std::int32_t* registers, LagState* lags, bool starting) noexcept;
 
 }  // namespace vernier

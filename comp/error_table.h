@@ -7,17 +7,18 @@
 
 namespace vernier {
 
-/// The number 1 as a fraction of a segment (Q30): the far end of the segment.
+/// The number 1 in the format of a fraction of a segment (Q30). In this format (Q30), the number 1 is the far
+/// end of the segment.
 constexpr std::int32_t kFractionOne = std::int32_t{1} << 30;
 
-/// The stretch between two neighbouring stations of a table, in counts of the position's register. The ends
-/// of a segment are stations: station i is the start of segment i, the last station is the end of the last
-/// segment.
+/// The interval between two neighbouring stations of a table, in counts of the position's register. The ends
+/// of a segment are stations. Station i is the start of segment i, and the last station is the end of the
+/// last segment.
 struct Segment {
   std::int32_t start;    // position of the station at the near end
-  std::uint32_t length;  // to the next station, > 0
+  std::uint32_t length;  // distance to the next station, > 0
   std::uint32_t
-      reciprocal;       // ceil(2^(30 + shift) / length): turns a distance into a fraction without division
+      reciprocal;       // ceil(2^(30 + shift) / length): converts a distance to a fraction without a division
   std::uint32_t shift;  // 0..33
 };
 
@@ -26,7 +27,8 @@ static_assert(offsetof(Segment, start) == 0 && offsetof(Segment, length) == 4 &&
               offsetof(Segment, reciprocal) == 8 && offsetof(Segment, shift) == 12);
 constexpr std::uint32_t kSegmentWords = 4;
 
-/// A periodic axis: positions are brought into [first, first + period) before the interpolation.
+/// Period of a periodic axis. Before the interpolation, a position is changed by whole periods into [first,
+/// first + period).
 struct Wrap {
   std::int32_t first;
   std::int32_t period;      // > 0
@@ -37,21 +39,23 @@ static_assert(sizeof(Wrap) == 16);
 static_assert(offsetof(Wrap, first) == 0 && offsetof(Wrap, period) == 4 && offsetof(Wrap, reciprocal) == 8 &&
               offsetof(Wrap, shift) == 12);
 
-/// Errors of one axis as functions of its position: polynomial pieces between stations. All columns of a
-/// piece are neighbours in memory: an interpolation reads one or two cache lines. Non-owning.
+/// Errors of one axis as functions of its position. The functions are polynomials between the stations. The
+/// coefficients of all columns of a segment are adjacent in memory, so that an interpolation reads one or two
+/// cache lines. The ErrorTable does not own its memory.
 ///
-/// Record of a piece: the four words of its Segment, then the coefficients of each column in the column's
-/// format, in powers of the fraction. Degree 1: two coefficients (value at the near station, rise to the far
-/// station); degree 3: four. Node rule: station i is the start of piece i, the last station the end of the
-/// last piece. Edge rule: before the first station the table gives the value of the first station, after the
-/// last station the value of the last station.
+/// A record of a segment contains the four words of its Segment, and then the coefficients of each column in
+/// the format of the column, for increasing powers of the fraction. With degree 1 a column has two
+/// coefficients (value at the near station, change to the far station); with degree 3 it has four. Station i
+/// is the start of segment i, and the last station is the end of the last segment. Before the first station,
+/// the table gives the value of the first station. After the last station, it gives the value of the last
+/// station.
 struct ErrorTable {
   const std::int32_t* records = nullptr;
   std::uint32_t pieces = 0;   // > 0
   std::uint16_t columns = 0;  // > 0
   std::uint16_t degree = 1;   // 1 or 3
-  // For evenly spaced stations: piece = distance * grid_multiplier >> grid_shift. 0: the stations are not
-  // evenly spaced, and the piece is found by bisection.
+  // If the stations are evenly spaced, the index of the segment is distance * grid_multiplier >> grid_shift.
+  // If grid_multiplier is 0, the stations are not evenly spaced, and the segment is found by bisection.
   std::uint32_t grid_multiplier = 0;
   std::uint32_t grid_shift = 0;  // 0..63
 
@@ -61,16 +65,16 @@ struct ErrorTable {
   }
 };
 
-/// Head of a record. Real-time safe.
+/// Returns the Segment at the beginning of a record. Real-time safe.
 constexpr Segment segment_at(const std::int32_t* record) noexcept {
   return {record[0], static_cast<std::uint32_t>(record[1]), static_cast<std::uint32_t>(record[2]),
           static_cast<std::uint32_t>(record[3])};
 }
 
-/// Piece of an evenly spaced table. grid_piece is exact within one count beyond a station, where both pieces
-/// have the same value. A piece that starts beyond the position is never returned. Beyond the last station
-/// grid_piece returns the last piece. position: at or after the first station. grid_piece needs one
-/// multiplication. Real-time safe.
+/// Returns the index of the segment of an evenly spaced table. The index may be wrong within one count beyond
+/// a station, where both segments have the same value. A segment that starts beyond the position is never
+/// returned. Beyond the last station, grid_piece returns the last segment. `position`: at or after the first
+/// station. The function grid_piece needs one multiplication. Real-time safe.
 constexpr std::uint32_t grid_piece(const ErrorTable& table, std::int32_t position) noexcept {
   const std::uint64_t inside =
       static_cast<std::uint32_t>(position) - static_cast<std::uint32_t>(table.records[0]);
@@ -78,9 +82,9 @@ constexpr std::uint32_t grid_piece(const ErrorTable& table, std::int32_t positio
   return static_cast<std::uint32_t>(lower<std::uint64_t>(piece, table.pieces - 1));
 }
 
-/// Returns the number of the piece that contains `position`; beyond the last station the last piece.
-/// position: at or after the first station. The work of piece_of depends only on the table, not on the
-/// position: one multiplication for evenly spaced stations, else a bisection without branches.
+/// Returns the index of the segment that contains `position`; beyond the last station, the last segment.
+/// `position`: at or after the first station. The computing time of piece_of depends only on the table, not
+/// on the position: one multiplication for evenly spaced stations, otherwise a bisection without branches.
 /// Real-time safe.
 constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position) noexcept {
   if (table.grid_multiplier != 0) return grid_piece(table, position);
@@ -93,10 +97,10 @@ constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position)
   return base;
 }
 
-/// Returns the position within the segment as a fraction 0..kFractionOne (Q30); limited to 1 beyond the end.
-/// position: at or after the start of the segment. fraction_in truncates: error < 2^-30 + 2^-31 of the
-/// segment, exact at both ends (the verifier rejects a reciprocal that misses 1 at the far end).
-/// Real-time safe.
+/// Returns the position within the segment as a fraction 0..kFractionOne (Q30). Beyond the end of the
+/// segment, the fraction is limited to 1. `position`: at or after the start of the segment. fraction_in
+/// truncates: the error is below 2^-30 + 2^-31 of the segment, and zero at both ends. (The verifier rejects a
+/// reciprocal that does not give 1 at the far end.) Real-time safe.
 constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position) noexcept {
   const std::uint32_t distance =
       static_cast<std::uint32_t>(position) - static_cast<std::uint32_t>(segment.start);
@@ -104,15 +108,17 @@ constexpr std::int64_t fraction_in(const Segment& segment, std::int32_t position
   return static_cast<std::int64_t>((inside * segment.reciprocal) >> segment.shift);
 }
 
-/// Returns the value between two stations: near + fraction * rise, c = {near, rise}, rounded once, ties up
-/// (<= 1/2 LSB of the column). Stays within the two; product < 2^62. Real-time safe.
+/// Returns the value between two stations: near + fraction * rise with c = {near, rise}. The interpolated
+/// value is rounded once, ties up (<= 1/2 LSB of the column). The interpolated value is between the values of
+/// both stations; the product is below 2^62. Real-time safe.
 constexpr std::int32_t linear_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   return c[0] + narrow(round_shift(c[1] * fraction, 30));
 }
 
-/// Returns the value of the cubic c[0] + f (c[1] + f (c[2] + f c[3])), f the fraction (Q30), all in the
-/// column's format. The inner two products are truncated, the last is rounded: together within -5/2 and +1/2
-/// LSB. Every partial sum of the cubic is below 2^31 (proved by the verifier). Real-time safe.
+/// Returns the value of the cubic polynomial c[0] + f (c[1] + f (c[2] + f c[3])). In this polynomial, f is
+/// the fraction (Q30), and all values have the format of the column. The inner two products are truncated and
+/// the last product is rounded. The error is between -5/2 and +1/2 LSB. Every partial sum of the cubic
+/// polynomial is below 2^31 (proved by the verifier). Real-time safe.
 constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fraction) noexcept {
   const std::int32_t second = c[2] + narrow((c[3] * fraction) >> 30);
   const std::int32_t first = c[1] + narrow((second * fraction) >> 30);
@@ -128,9 +134,10 @@ constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::i
   if constexpr (kColumns > 1) piece_values<kDegree, kColumns - 1>(c + kDegree + 1, fraction, out + 1);
 }
 
-/// Interpolates all columns of a table at `position`. The table has kDegree and kColumns. out: kColumns
-/// values, each in the format of its column. Error: <= 1/2 LSB of the column (linear) or 5/2 LSB (cubic), and
-/// the fraction's 2^-29 of the rise. Real-time safe.
+/// Interpolates all columns of a table at `position`. The table must have the degree kDegree and kColumns
+/// columns. `out`: kColumns values, each in the format of its column. The error is at most 1/2 LSB of the
+/// column (linear) or 5/2 LSB (cubic), plus 2^-29 of the change in the segment because of the fraction.
+/// Real-time safe.
 template <unsigned kDegree, unsigned kColumns>
 inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
@@ -140,7 +147,7 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
 }
 
 /// Interpolates like look_up<kDegree, kColumns>, with the degree and number of columns read from the table at
-/// run time. The values are identical. Real-time safe.
+/// run time. The values are identical to those of the other form. Real-time safe.
 inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
   const std::int32_t* const record = table.record(piece_of(table, held));
@@ -154,9 +161,9 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
   }
 }
 
-/// position brought into [first, first + period) by whole periods. wrapped() is exact if the verifier
-/// accepted the wrap for the range of the position: then the estimated number of periods has an error of at
-/// most 1. Real-time safe.
+/// Returns the position changed by whole periods into [first, first + period). wrapped() is exact if the
+/// verifier accepted the wrap for the range of the position. Then the estimated number of periods has an
+/// error of at most 1. Real-time safe.
 inline std::int32_t wrapped(const Wrap& wrap, std::int32_t position) noexcept {
   const std::int64_t distance = std::int64_t{position} - wrap.first;
   const std::int64_t periods = (distance * wrap.reciprocal) >> wrap.shift;

@@ -6,23 +6,25 @@
 
 namespace vernier {
 
-/// State of a first-order lag, 30 fraction bits below the input's LSB: a time constant of hours at 1 kHz
-/// still moves.
+/// State of a first-order lag, with 30 fraction bits below the LSB of the input. With these bits, a lag with
+/// a time constant of hours still changes at 1 kHz.
 struct LagState {
   std::int64_t value = 0;
 };
 
 constexpr unsigned kLagGuardBits = 30;
 
-/// Sets the state to u, as FORMATS defines the start of a lag. Real-time safe.
+/// Sets the state of a lag to its input u, which is the start of a lag by the rules of FORMATS. Real-time
+/// safe.
 constexpr void start_lag(LagState& state, std::int32_t u) noexcept {
   state.value = std::int64_t{u} * (std::int64_t{1} << kLagGuardBits);
 }
 
-/// state += gain * (u - state); returns the state in u's format, rounded (<= 1/2 LSB).
-/// gain = mantissa / 2^shift, mantissa 0..2^31-1, shift 31..62, so 0 <= gain < 1. u - state < 2^62 in guard
-/// format; its product with the mantissa is taken in two halves below 2^63. Stays within the range of all u.
-/// Real-time safe.
+/// Computes one step of a lag: state += gain * (u - state). The function returns the state of the lag in the
+/// format of u, rounded (<= 1/2 LSB). The gain is mantissa / 2^shift, with mantissa 0..2^31-1 and shift
+/// 31..62, so that 0 <= gain < 1. The difference u - state is below 2^62 in the format of the state. The
+/// product of (u - state) with the mantissa of the gain is computed in two halves below 2^63. The state stays
+/// within the range of all inputs u. Real-time safe.
 constexpr std::int32_t step_lag(LagState& state, std::int32_t u, std::int32_t mantissa,
                                 unsigned shift) noexcept {
   const std::int64_t difference = std::int64_t{u} * (std::int64_t{1} << kLagGuardBits) - state.value;

@@ -5,9 +5,9 @@
 
 namespace vernier {
 
-/// One integer with its unit in the type. Conversion to or from a bare integer is always explicit; sums and
-/// differences keep the unit. The operators of Quantity do not saturate and do not check for overflow: the
-/// caller must respect the ranges. Real-time safe.
+/// An integer with a unit. The unit is part of the type. Conversion from or to an integer is always explicit.
+/// Sums and differences have the same unit. The operators of Quantity do not saturate and do not check for
+/// overflow: the caller must respect the ranges. Real-time safe.
 template <class Unit, class Integer>
 struct Quantity {
   using Count = Integer;
@@ -44,44 +44,48 @@ struct Visit;
 struct WeightQ16;
 }  // namespace unit
 
-/// A length, ±2.1 m at 1 nm.
+/// A length, ±2.1 m with a resolution of 1 nm.
 using LengthNm = Quantity<unit::Nanometre, std::int32_t>;
-/// An angle, ±2.1 rad at 1 nrad.
+/// An angle, ±2.1 rad with a resolution of 1 nrad.
 using AngleNrad = Quantity<unit::Nanoradian, std::int32_t>;
-/// Position of a linear axis; 64 bit because 20 m at 1 nm do not fit 32.
+/// Position of a linear axis. A position has 64 bits, because 20 m with a resolution of 1 nm do not fit 32
+/// bits.
 using PositionNm = Quantity<unit::NanometrePosition, std::int64_t>;
-/// Position of a rotary axis in 2^-32 turn. Whole turns are above bit 32, so that a mask removes them.
+/// Position of a rotary axis in 2^-32 turn. Whole turns are in the bits above bit 31, so that a mask removes
+/// them.
 using TurnsQ32 = Quantity<unit::TurnFraction, std::int64_t>;
-/// A temperature, 1 mK above absolute zero or as a difference.
+/// A temperature above absolute zero, or a temperature difference, in mK.
 using TempMilliK = Quantity<unit::Millikelvin, std::int32_t>;
-/// A time or a duration.
+/// A time or a duration in us.
 using TimeUs = Quantity<unit::Microsecond, std::int64_t>;
-/// A moment of a monotonic clock, or a duration. Finer than TimeUs, because a tick computes for about one
-/// microsecond and a probe's edge has a time in nanoseconds.
+/// A time of a monotonic clock, or a duration, in ns. InstantNs has a finer resolution than TimeUs, because a
+/// tick computes for about one microsecond and the edge of a probe has a time in nanoseconds.
 using InstantNs = Quantity<unit::InstantNanosecond, std::int64_t>;
 
-/// Motion of an axis, in the axis' own count: 1 nm (linear) or 2^-32 turn (rotary); per s, per s^2.
+/// Motion of an axis in counts of the axis: 1 nm (linear) or 2^-32 turn (rotary); speeds per s, accelerations
+/// per s^2.
 using AxisPosition = Quantity<unit::AxisPositionCount, std::int64_t>;
 using AxisTravel = Quantity<unit::AxisTravelCount, std::int64_t>;
 using AxisSpeed = Quantity<unit::AxisSpeedCount, std::int64_t>;
 using AxisAcceleration = Quantity<unit::AxisAccelerationCount, std::int64_t>;
 
-/// Path feed, 1 nm/min.
+/// Feed along the path, 1 nm/min.
 using FeedNmPerMin = Quantity<unit::FeedNanometrePerMinute, std::int64_t>;
-/// Path curvature, 1e-9 per mm.
+/// Curvature of the path, 1e-9 per mm.
 using CurvatureNanoPerMm = Quantity<unit::CurvatureNanoPerMillimetre, std::int64_t>;
 /// A measured input in 1e-6 of the unit that the machine file declares for the input (degC, V, N ...).
 using InputMicro = Quantity<unit::InputMicro, std::int64_t>;
-/// Rows (stops) since the start of the run.
+/// Number of rows (stops) since the start of the run.
 using VisitCount = Quantity<unit::Visit, std::int64_t>;
-/// A weight 0..1 as 0..65536.
+/// A weight from 0 to 1, stored as 0 to 65536.
 using WeightQ16 = Quantity<unit::WeightQ16, std::int32_t>;
 
 constexpr WeightQ16 kFullWeight{65536};
 /// Number of counts in one turn of a rotary axis.
 constexpr std::int64_t kTurnCounts = std::int64_t{1} << 32;
 
-/// A reading of a thermometer for an input declared in degC. absolute: mK above absolute zero.
+/// Converts a temperature reading to the value of an input that is declared in degC. `absolute`: temperature
+/// above absolute zero, mK.
 constexpr InputMicro input_degC(TempMilliK absolute) {
   return InputMicro((std::int64_t{absolute.count} - 273150) * 1000);
 }

@@ -4,7 +4,8 @@
 
 namespace vernier {
 
-/// Non-owning view of `size` values; unchecked, for ranges that were validated at setup. Real-time safe.
+/// Access to `size` values that another object owns. The access is not checked, because the ranges are
+/// validated before the first tick. Real-time safe.
 template <class T>
 struct View {
   const T* data = nullptr;

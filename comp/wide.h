@@ -4,9 +4,9 @@
 
 namespace vernier {
 
-/// A two's complement integer of 128 bits in two words, for exact sums beyond 64 bits. Every operation of
-/// Wide is modulo 2^128: a result that fits is exact even if intermediate values overflow. Results of Wide
-/// have the same bits on every target.
+/// A 128-bit integer in two's complement, stored in two words, for exact sums beyond 64 bits. Every operation
+/// of Wide is modulo 2^128. A result that fits 128 bits is exact, even if intermediate values overflow.
+/// Results of Wide have the same bits on every target.
 struct Wide {
   std::uint64_t high = 0, low = 0;
   constexpr bool operator==(const Wide&) const = default;
@@ -17,7 +17,7 @@ constexpr Wide wide(std::int64_t value) noexcept {
 }
 constexpr bool is_negative(Wide a) noexcept { return (a.high >> 63) != 0; }
 
-/// Sum, difference and opposite modulo 2^128. Real-time safe.
+/// Returns the sum, the difference or the negative value modulo 2^128. Real-time safe.
 constexpr Wide operator+(Wide a, Wide b) noexcept {
   const std::uint64_t low = a.low + b.low;
   return {a.high + b.high + (low < a.low ? 1 : 0), low};
@@ -27,7 +27,8 @@ constexpr Wide operator-(Wide a, Wide b) noexcept {
 }
 constexpr Wide operator-(Wide a) noexcept { return Wide{} - a; }
 
-/// Returns the exact product of two unsigned words, as four products of halves. Real-time safe.
+/// Returns the exact product of two unsigned 64-bit words, computed as four products of halves. Real-time
+/// safe.
 constexpr Wide long_product(std::uint64_t a, std::uint64_t b) noexcept {
   constexpr std::uint64_t kHalf = 0xffffffff;
   const std::uint64_t low = (a & kHalf) * (b & kHalf);
@@ -43,7 +44,7 @@ constexpr Wide operator*(Wide a, Wide b) noexcept {
   return result;
 }
 
-/// |a|, as an unsigned number of 128 bits. Real-time safe.
+/// Returns |a| as an unsigned 128-bit number. Real-time safe.
 constexpr Wide magnitude(Wide a) noexcept { return is_negative(a) ? -a : a; }
 
 }  // namespace vernier

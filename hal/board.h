@@ -11,7 +11,7 @@
 
 namespace vernier {
 
-/// All devices of a board; the pointers do not own the devices. A null pointer means that the board does not
+/// All devices of a board. The pointers do not own the devices. A null pointer means that the board does not
 /// have the device.
 struct Board {
   Clock& clock;
@@ -19,11 +19,11 @@ struct Board {
   InputReader& inputs;
   CorrectionWriter& corrections;
   ProbeLine* probe = nullptr;
-  AxisReader* actual = nullptr;      // actual positions, for touches, if `axes` gives commanded positions
-  TickSync* sync = nullptr;          // starts the ticks; null: the clock does
-  DigitalInput* enable = nullptr;    // off: no correction is let in
-  DigitalOutput* healthy = nullptr;  // on: devices answer and no fault is latched
-  IdentityKey* identity = nullptr;   // proves the identity of the board; null: the board has no key
+  AxisReader* actual = nullptr;      // actual positions for touches, used if `axes` gives commanded positions
+  TickSync* sync = nullptr;          // signal that starts the ticks; null: the clock starts them
+  DigitalInput* enable = nullptr;    // enable signal; off: no correction is applied
+  DigitalOutput* healthy = nullptr;  // output that is on if all devices answer and no fault is latched
+  IdentityKey* identity = nullptr;   // key that proves the identity of the board; null: the board has no key
 };
 
 }  // namespace vernier

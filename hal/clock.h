@@ -7,13 +7,14 @@ namespace vernier {
 
 constexpr InstantNs instant_ns(TimeUs time) { return InstantNs(time.count * 1000); }
 
-/// A time that never decreases; the zero of the time has no meaning.
+/// A clock whose time never decreases. The zero of the clock's time has no meaning.
 class Clock {
  public:
   virtual ~Clock() = default;
-  /// Returns the time of now. Real-time safe.
+  /// Returns the present time. Real-time safe.
   virtual InstantNs now() noexcept = 0;
-  /// Returns when now() >= due, immediately if that is past. kRefused: the timer failed. Real-time safe.
+  /// Waits until the time `due`. If `due` is in the past, the function returns immediately. The function
+  /// sleep_until() returns kRefused if the timer failed. Real-time safe.
   virtual HalFault sleep_until(InstantNs due) noexcept = 0;
 };
 

@@ -4,19 +4,20 @@
 
 namespace vernier {
 
-/// A line that the machine controller sets on or off; the polarity is already applied.
+/// A digital input that the machine controller sets. The polarity is already applied.
 class DigitalInput {
  public:
   virtual ~DigitalInput() = default;
-  /// kRefused: the line cannot be read; `on` is not changed. Real-time safe.
+  /// The function read_line() returns kRefused if the line cannot be read; `on` is not changed in this case.
+  /// Real-time safe.
   virtual HalFault read_line(bool& on) noexcept = 0;
 };
 
-/// A line that the board switches, read by the machine controller.
+/// A digital output that the board sets and the machine controller reads.
 class DigitalOutput {
  public:
   virtual ~DigitalOutput() = default;
-  /// kRefused: the line may have its old state. Real-time safe.
+  /// If the result is kRefused, the line may have its old state. Real-time safe.
   virtual HalFault write_line(bool on) noexcept = 0;
 };
 

@@ -4,12 +4,12 @@
 
 namespace vernier {
 
-/// Reason why a device could not execute a call. A failed read does not change its result argument.
+/// Reason why a device could not execute a call. If a read fails, its result argument is not changed.
 enum class HalFault : std::uint8_t {
   kNone,
-  kNoReading,  // no answer of the device in time, or no reading yet
-  kNoDevice,   // no such axis, input or output on this board
-  kRefused,    // the device or the operating system refused
+  kNoReading,  // the device did not answer in time, or there is no reading yet
+  kNoDevice,   // the board has no axis, input or output with this index
+  kRefused,    // the device or the operating system refused the call
 };
 
 }  // namespace vernier

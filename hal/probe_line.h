@@ -5,22 +5,22 @@
 
 namespace vernier {
 
-/// An edge of a probe's line, polarity already undone.
+/// An edge in the signal of a touch probe. The polarity is already applied.
 struct ProbeEdge {
-  InstantNs at;       // by the board's clock, as near to the edge as the device can stamp it
-  bool made = false;  // the probe touched; false: it let go
+  InstantNs at;       // time of the edge by the clock of the board, as accurate as the device can record it
+  bool made = false;  // true: the contact was made; false: the contact was released
 };
 
-/// The line on which a touch probe reports a touch.
+/// The digital line on which a touch probe signals a touch.
 class ProbeLine {
  public:
   virtual ~ProbeLine() = default;
-  /// Reads the oldest edge that has not been read yet. kNoReading: no edge is waiting. kRefused: edges were
-  /// lost since the last call; the next call continues with the remaining edges. read_edge() never waits.
-  /// Real-time safe.
+  /// Reads the oldest edge that was not yet read. The function read_edge() returns kNoReading if no edge is
+  /// waiting. The function read_edge() returns kRefused if edges were lost since the last call. The next call
+  /// continues with the remaining edges. The function read_edge() never waits. Real-time safe.
   virtual HalFault read_edge(ProbeEdge& edge) noexcept = 0;
-  /// Returns the largest time between `at` and the edge; 0 if the device does not know this time.
-  /// Not real-time safe.
+  /// Returns the largest time between the recorded time `at` and the edge; 0 if the device does not know this
+  /// time. Not real-time safe.
   virtual InstantNs resolution() const noexcept = 0;
 };
 

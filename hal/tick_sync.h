@@ -5,12 +5,13 @@
 
 namespace vernier {
 
-/// The controller's signal that its cycle begins; each signal starts a tick.
+/// The signal of the controller at the beginning of its cycle. Each signal starts a tick.
 class TickSync {
  public:
   virtual ~TickSync() = default;
-  /// Waits for the next sync signal. kNoReading: no signal came until `latest`; kRefused: the device is
-  /// broken, returned immediately. Several signals since the last call count as one signal. Real-time safe.
+  /// Waits for the next sync signal. The function wait_for_sync() returns kNoReading if no signal came until
+  /// `latest`. If the device is defective, the result is kRefused and is returned immediately. If several
+  /// signals came since the last call, they count as one signal. Real-time safe.
   virtual HalFault wait_for_sync(InstantNs latest) noexcept = 0;
 };
 

@@ -6,11 +6,11 @@
 
 #include "comp/shares.h"
 
-/// The only definition of the machine image (`machine.vimg`), shared by compiler, uploader and firmware.
-/// Little-endian. Order: header (64 bytes), `section_count` section entries, sections. Each section starts on
-/// a multiple of 8 bytes from the start of the image; gaps are zero. Every section type occurs exactly once;
-/// the sections are in the order of SectionType. The checksum covers all bytes of the image after the
-/// checksum field.
+/// Definition of the correction image (`machine.vimg`). The compiler, the uploader and the firmware all use
+/// only this definition. All numbers of the image are little-endian. The parts of the image are, in order:
+/// header (64 bytes), `section_count` section entries, sections. Each section begins at a multiple of 8 bytes
+/// from the start of the image. Gaps contain zeros. Every section type occurs exactly once. The sections are
+/// in the order of SectionType. The checksum covers all bytes of the image after the checksum field.
 namespace vernier {
 
 static_assert(std::endian::native == std::endian::little, "images are read in place");
@@ -23,16 +23,17 @@ constexpr std::uint32_t kImageNameBytes = 24;
 
 struct ImageHeader {
   std::uint8_t magic[8];
-  std::uint32_t header_bytes;  // 64: the section entries follow
-  std::uint32_t checksum;      // CRC-32C of everything after this field
+  std::uint32_t header_bytes;  // 64; the section entries follow after these bytes
+  std::uint32_t checksum;      // CRC-32C of all bytes after this field
   std::uint32_t format_version;
-  std::uint32_t image_bytes;  // the whole image
+  std::uint32_t image_bytes;  // number of bytes in the whole image
   std::uint32_t section_count;
-  std::uint32_t tick_us;      // the tick for which lags and slew limits were computed
-  std::uint64_t fingerprint;  // of the equation: FNV-1a over the sections from kConstants on
-  std::uint64_t source_hash;  // FNV-1a of the machine file that it was compiled from
+  std::uint32_t tick_us;      // cycle time for which lags and slew limits were computed
+  std::uint64_t fingerprint;  // fingerprint of the equation: FNV-1a over the sections from kConstants on
+  std::uint64_t source_hash;  // FNV-1a of the machine file from which the image was compiled
   std::uint32_t lag_count;
-  std::uint32_t accepted_rules;  // bit n: rule n of "safe to run?" was overridden by the user (tools/safety)
+  std::uint32_t accepted_rules;  // bit n: the user accepted rule n of "safe to run?" although it is not met
+                                 // (tools/safety)
   std::uint32_t reserved[2];     // 0
 };
 static_assert(sizeof(ImageHeader) == 64);
@@ -42,7 +43,7 @@ static_assert(offsetof(ImageHeader, magic) == 0 && offsetof(ImageHeader, header_
               offsetof(ImageHeader, tick_us) == 28 && offsetof(ImageHeader, fingerprint) == 32 &&
               offsetof(ImageHeader, source_hash) == 40 && offsetof(ImageHeader, lag_count) == 48 &&
               offsetof(ImageHeader, accepted_rules) == 52 && offsetof(ImageHeader, reserved) == 56);
-constexpr std::uint32_t kChecksumStart = 16;  // first byte under the checksum
+constexpr std::uint32_t kChecksumStart = 16;  // first byte that the checksum covers
 
 enum class SectionType : std::uint32_t {
   kName = 0,          // char: name of the machine
@@ -53,10 +54,11 @@ enum class SectionType : std::uint32_t {
   kInstructions = 5,  // Instruction (comp/equation.h)
   kTerms = 6,         // ProductTerm, for the instructions that sum products
   kTables = 7,        // TableRecord
-  kRecords = 8,       // int32: the records of all tables one after the other (comp/error_table.h), no gaps
+  kRecords = 8,       // int32: the records of all tables one after the other (comp/error_table.h), without
+                      // gaps
   kWraps = 9,         // Wrap
   kOutputs = 10,      // Output
-  // The shares of the effects (comp/shares.h): a separate equation.
+  // The sections from here on contain the equation for the shares of the effects (comp/shares.h).
   kShareConstants = 11,     // int32
   kShareSources = 12,       // uint16: registers of the tick
   kShareInstructions = 13,  // Instruction
@@ -68,22 +70,23 @@ constexpr std::uint32_t kSectionCount = static_cast<std::uint32_t>(SectionType::
 
 struct SectionEntry {
   SectionType type;
-  std::uint32_t offset;  // from the start of the image
-  std::uint32_t count;   // records
+  std::uint32_t offset;  // offset from the start of the image
+  std::uint32_t count;   // number of records
   std::uint32_t record_bytes;
 };
 static_assert(sizeof(SectionEntry) == 16);
 static_assert(offsetof(SectionEntry, type) == 0 && offsetof(SectionEntry, offset) == 4 &&
               offsetof(SectionEntry, count) == 8 && offsetof(SectionEntry, record_bytes) == 12);
 
-/// Shape of a table. Its records are pieces * (4 + columns * (degree + 1)) words of kRecords. Each piece has
-/// its Segment (start, length, reciprocal, shift), then the coefficients of one column after another. Six
-/// linear columns make records of 64 bytes: an interpolation reads two cache lines at most.
+/// Form of a station table in the image. The records of a table are pieces * (4 + columns * (degree + 1))
+/// words in the section kRecords. For each segment there is its Segment (start, length, reciprocal, shift),
+/// and then the coefficients of one column after another. With six linear columns a record has 64 bytes. With
+/// records of 64 bytes, an interpolation reads at most two cache lines.
 struct TableRecord {
   std::uint32_t pieces;
   std::uint16_t columns;
-  std::uint16_t degree;           // 1 linear, 3 cubic
-  std::uint32_t grid_multiplier;  // evenly spaced stations, else 0 (ErrorTable)
+  std::uint16_t degree;           // 1: linear; 3: cubic
+  std::uint32_t grid_multiplier;  // for evenly spaced stations; otherwise 0 (ErrorTable)
   std::uint32_t grid_shift;
 };
 static_assert(sizeof(TableRecord) == 16);
@@ -93,12 +96,12 @@ static_assert(offsetof(TableRecord, pieces) == 0 && offsetof(TableRecord, column
 
 enum AxisFlag : std::uint32_t { kRotary = 1u << 0, kRollover = 1u << 1 };
 
-/// Names end with a zero byte and are padded with zeros.
+/// A name in the image ends with a zero byte and is filled with zeros.
 struct AxisRecord {
   char name[kImageNameBytes];
   std::uint32_t flags;     // AxisFlag
   std::uint32_t reserved;  // 0
-  std::int64_t low, high;  // axis counts: declared range
+  std::int64_t low, high;  // declared range, axis counts
 };
 static_assert(sizeof(AxisRecord) == 48);
 static_assert(offsetof(AxisRecord, name) == 0 && offsetof(AxisRecord, flags) == 24 &&
@@ -108,15 +111,15 @@ static_assert(offsetof(AxisRecord, name) == 0 && offsetof(AxisRecord, flags) == 
 struct InputRecord {
   char name[kImageNameBytes];
   char unit[16];
-  std::int64_t reference;  // 1e-6 of the unit: value for a missing sensor
-  std::int64_t low, high;  // 1e-6 of the unit: range that the error bound covers
+  std::int64_t reference;  // value that replaces a missing sensor, 1e-6 of the unit
+  std::int64_t low, high;  // range for which the error bound is valid, 1e-6 of the unit
 };
 static_assert(sizeof(InputRecord) == 64);
 static_assert(offsetof(InputRecord, name) == 0 && offsetof(InputRecord, unit) == 24 &&
               offsetof(InputRecord, reference) == 40 && offsetof(InputRecord, low) == 48 &&
               offsetof(InputRecord, high) == 56);
 
-/// Name of a share in a live display: "X of transform 2 (tool): BX*dirX"; a longer name is cut.
+/// Name of a share in a live display: "X of transform 2 (tool): BX*dirX". A longer name is truncated.
 struct ShareName {
   char text[64];
 };

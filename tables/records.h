@@ -5,10 +5,12 @@
 
 #include "comp/shares.h"
 
-/// Records that the tick gives to the rest of the board, and the board to its tools (tables/link_format.h).
+/// Records that the tick gives to the other threads of the board, and that the board gives to its tools
+/// (tables/link_format.h).
 namespace vernier {
 
-/// Data of one tick for other threads. Axes and inputs are in the order of the board, values in their counts.
+/// Data of one tick for other threads. The axes and inputs are in the order of the board. The values are in
+/// counts.
 struct TickRecord {
   std::int64_t time_us = 0;
   std::int64_t position[kMaxAxes] = {};
@@ -20,27 +22,28 @@ struct TickRecord {
 };
 static_assert(sizeof(TickRecord) % 8 == 0);
 
-/// Corrections that reach the drives and their limits, as other threads read them. Axes are in the order of
-/// the board, values in their counts.
+/// The corrections at the drives and their limits, for other threads. The axes are in the order of the board.
+/// The values are in counts.
 struct StateRecord {
-  std::int64_t since_us = 0;  // the machine file's t when the program was taken over
+  std::int64_t since_us = 0;  // time t of the machine file when the tick started the program
   std::uint32_t programs = 0, weight = 0;
   std::int32_t wanted[kMaxAxes] = {}, achieved[kMaxAxes] = {}, axis_weight[kMaxAxes] = {};
   std::uint8_t limits[kMaxAxes] = {};
 };
 static_assert(sizeof(StateRecord) % 8 == 0);
 
-/// Counters and measured values of the firmware, as other threads read them.
+/// Counters and measured values of the firmware for other threads.
 struct HealthRecord {
   std::uint64_t ticks = 0, active_ticks = 0, overruns = 0, skipped = 0;
   std::uint64_t missing_readings = 0, missing_inputs = 0, frozen_readings = 0, jumps = 0;
   std::uint64_t unreferenced = 0, implausible = 0, failed_writes = 0;
   std::uint64_t saturated = 0, slewing = 0, beyond_range = 0;
   std::uint64_t faults = 0, refused_commands = 0, programs = 0;
-  // p50, p99, p99.9, maximum of the wake-up latency and of a tick's execution, ns
+  // 50 %, 99 % and 99.9 % percentiles and maximum: of the wake-up latency, and of the execution time of a
+  // tick, ns
   std::int64_t latency_ns[4] = {}, execution_ns[4] = {};
 };
-// Counter n of LinkOp::kHealth is word n.
+// Counter n of LinkOp::kHealth is the 64-bit word n of this record.
 static_assert(sizeof(HealthRecord) == 200);
 static_assert(offsetof(HealthRecord, ticks) == 0 && offsetof(HealthRecord, active_ticks) == 8 &&
               offsetof(HealthRecord, overruns) == 16 && offsetof(HealthRecord, skipped) == 24 &&
@@ -53,24 +56,25 @@ static_assert(offsetof(HealthRecord, ticks) == 0 && offsetof(HealthRecord, activ
               offsetof(HealthRecord, refused_commands) == 120 && offsetof(HealthRecord, programs) == 128 &&
               offsetof(HealthRecord, latency_ns) == 136 && offsetof(HealthRecord, execution_ns) == 168);
 
-/// Data of a touch.
+/// Flags for the data of a touch.
 enum TouchFlag : std::uint8_t {
-  kTouchUncompensated = 1u << 0,  // no program ran: `compensated` is `position`
-  kTouchWhileFaulted = 1u << 1,   // a fault was latched
-  kTouchInWorkpiece = 1u << 2,    // the board has axes X, Y, Z: `workpiece_nm` is there
+  kTouchUncompensated = 1u << 0,  // no program ran, so that `compensated` equals `position`
+  kTouchWhileFaulted = 1u << 1,   // a fault was latched during the touch
+  kTouchInWorkpiece = 1u << 2,    // the board has axes X, Y, Z, so that `workpiece_nm` has values
 };
 
-/// Data of one touch of the probe for other threads. Axes are in the order of the board, values in their
-/// counts. The counters give the losses up to this touch: a reader detects whether touches without a number
-/// are missing.
+/// Data of one touch of the probe for other threads. The axes are in the order of the board. The values are
+/// in counts. The counters state the losses up to this touch. With them a reader detects whether touches are
+/// missing.
 struct TouchRecord {
-  std::int64_t time_ns = 0;              // of the contact, the machine file's t
-  std::int64_t position[kMaxAxes] = {};  // as the controller counts
+  std::int64_t time_ns = 0;              // time of the contact, as t of the machine file
+  std::int64_t position[kMaxAxes] = {};  // position in the counts of the controller
   std::int64_t compensated[kMaxAxes] =
-      {};  // position of the axis with its whole correction applied: the tool
+      {};  // position of the axis with its whole correction applied, which is the position of the tool
   std::int64_t uncertainty[kMaxAxes] =
-      {};                             // standard uncertainty from the instant and from the interpolation
-  std::int64_t workpiece_nm[3] = {};  // X, Y, Z
+      /// Standard uncertainty from the time of the contact and from the interpolation
+      {};
+  std::int64_t workpiece_nm[3] = {};  // coordinates X, Y, Z in the workpiece frame
   std::uint32_t lost_edges = 0, lost_touches = 0, spikes = 0, missing = 0;
   std::uint8_t kind = 0, fault = 0, flags = 0, bounces = 0;  // TouchKind, LatchFault, TouchFlag
   std::uint8_t reserved[4] = {};

@@ -7,26 +7,30 @@
 
 namespace vernier {
 
-/// The value "no slot": no confirmed image yet, or no trial.
+/// Value for "no slot": there is no confirmed image, or no image on trial.
 constexpr std::uint8_t kNoSlot = 0xff;
 constexpr std::uint32_t kSlotCount = 2;
-/// The store contains the record twice; a change overwrites the older copy, then the other one.
+/// Number of copies of the record in the store. A change overwrites the older copy first, and then the other
+/// copy.
 constexpr std::uint32_t kSlotRecordCount = 2;
 
-/// Record of the slots of a board for correction images: the confirmed slot, and the slot on trial.
-/// Little-endian, 48 bytes, as stored.
+/// Record of the two image slots of a board: the confirmed slot and the slot on trial. The record is
+/// little-endian and has 48 bytes.
 struct SlotRecord {
   std::uint32_t magic;     // kSlotMagic
-  std::uint32_t sequence;  // of the change that wrote it, from 1; the higher of two valid records counts
-  std::uint64_t issued;    // when the confirmed image was signed (upload_format.h); 0: no confirmed image
+  std::uint32_t sequence;  // number of the change that wrote the record, from 1; the valid record with the
+                           // higher number is used
+  std::uint64_t issued;    // signing time of the confirmed image (upload_format.h); 0: there is no confirmed
+                           // image
   std::uint64_t trial_issued;
-  std::uint64_t newest_issued;  // of all images ever tried: an image that is not newer is refused
-  std::uint32_t security;       // highest that was ever tried
-  std::uint8_t confirmed;       // slot, or kNoSlot
-  std::uint8_t trial;           // slot that is on trial, or kNoSlot
+  std::uint64_t newest_issued;  // latest signing time of all images that were ever on trial; an image that is
+                                // not newer is refused
+  std::uint32_t security;       // highest security number of all images that were ever on trial
+  std::uint8_t confirmed;       // index of the confirmed slot, or kNoSlot
+  std::uint8_t trial;           // index of the slot on trial, or kNoSlot
   std::uint16_t reserved;       // 0
   std::uint32_t reserved2;      // 0
-  std::uint32_t checksum;       // CRC-32C of the bytes before it
+  std::uint32_t checksum;       // CRC-32C of all previous bytes
 };
 static_assert(sizeof(SlotRecord) == 48);
 static_assert(offsetof(SlotRecord, magic) == 0 && offsetof(SlotRecord, sequence) == 4 &&
@@ -35,12 +39,12 @@ static_assert(offsetof(SlotRecord, magic) == 0 && offsetof(SlotRecord, sequence)
               offsetof(SlotRecord, confirmed) == 36 && offsetof(SlotRecord, trial) == 37 &&
               offsetof(SlotRecord, reserved) == 38 && offsetof(SlotRecord, reserved2) == 40 &&
               offsetof(SlotRecord, checksum) == 44);
-/// Version of the record; the version is not stored. A new layout requires a new kSlotMagic and a new number
-/// here.
+/// Version of this record layout. The version is not stored. A new layout requires a new kSlotMagic and a new
+/// number here.
 constexpr std::uint32_t kSlotRecordVersion = 2;
 constexpr std::uint32_t kSlotMagic = 0x324f4c53;  // "SLO2"
 
-/// Record of version 1, which an old store may contain.
+/// Record of version 1, which an old store can contain.
 struct SlotRecordV1 {
   std::uint32_t magic;  // kSlotMagicV1
   std::uint32_t sequence;
@@ -58,52 +62,56 @@ constexpr std::uint32_t kSlotMagicV1 = 0x544f4c53;  // "SLOT"
 
 using SlotPlace = StoredPlace<SlotRecord>;
 
-/// A record and the place (0 or 1) where it must be stored.
+/// A record, and the place (0 or 1) where it must be stored.
 struct SlotChange {
   std::uint32_t place;
   SlotRecord record;
 };
 
-/// State machine of the two slots, without access to the medium. Slots returns the record to be stored for a
-/// change, and applies the change only after the record is stored. Intact are two valid records, one change
-/// apart, or the first record alone. After a power failure at any byte of any write the state is the state
-/// before or after the change; or the state before it, of a damaged pair.
+/// State machine of the two slots, without access to the medium. Slots returns the record that must be stored
+/// for a change. Slots applies a change only after its record is stored. The stored records are intact if
+/// both are valid and differ by one change, or if there is only the first record. After a power failure at
+/// any byte of any write, the state is the state before or after the change. If the pair of records is
+/// damaged, it is the state before the change.
 ///
 ///   confirmed A ── (image written to B) ── try ──► confirmed A, trial B ── confirm ──► confirmed B
 ///                                                          └──── revert, or a reset ──► confirmed A
 class Slots {
  public:
-  /// Loads the newer valid record of the two; without a valid record, there is no confirmed image. A damaged
-  /// pair has no trial: a reset ends it. Not real-time safe.
+  /// Loads the newer valid record of both places. If there is no valid record, there is no confirmed image. A
+  /// damaged pair of records has no trial, because a reset of the board ends the trial. Not real-time safe.
   static Slots load(const SlotPlace& first, const SlotPlace& second) noexcept;
-  /// State of the places since load() and the changes stored since. A damaged pair is intact after at most
-  /// two changes.
+  /// Returns the state of the places after load() and the changes that were stored since. A damaged pair of
+  /// records is intact again after at most two changes.
   StoredPair places() const noexcept { return places_; }
   /// True if load() found the state in one place only.
   bool once() const noexcept { return once_; }
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }
   std::uint8_t trial() const noexcept { return now_.trial; }
-  /// Returns the signing time of the confirmed image; 0 without a confirmed image.
+  /// Returns the signing time of the confirmed image; 0 if there is no confirmed image.
   std::uint64_t issued() const noexcept { return now_.issued; }
   std::uint64_t trial_issued() const noexcept { return now_.trial_issued; }
-  /// Limits for a new upload: signing time above newest_issued(), security at least security(). Both values
-  /// are the highest of all images that the board has run on trial.
+  /// Limits for a new upload: its signing time must be later than newest_issued(), and its security number
+  /// must be at least security(). Both limits are the highest values of all images that the board has run on
+  /// trial.
   std::uint64_t newest_issued() const noexcept { return now_.newest_issued; }
   std::uint32_t security() const noexcept { return now_.security; }
-  /// Returns the slot that may be overwritten: neither confirmed nor on trial; kNoSlot while a trial runs.
+  /// Returns the slot that may be overwritten, which is neither confirmed nor on trial; kNoSlot while an
+  /// image is on trial.
   std::uint8_t free_slot() const noexcept;
 
-  /// Starts the trial of the image in free_slot(). Only while no trial runs. Not real-time safe.
+  /// Returns the change that starts the trial of the image in free_slot(). Call start_trial() only if no
+  /// image is on trial. Not real-time safe.
   SlotChange start_trial(std::uint64_t issued, std::uint32_t security) const noexcept;
-  /// Returns the change that confirms the image on trial. Call confirm() only while an image is on trial.
-  /// Not real-time safe.
+  /// Returns the change that confirms the image on trial. Call confirm() only while an image is on trial. Not
+  /// real-time safe.
   SlotChange confirm() const noexcept;
-  /// Reverts the image on trial. Not real-time safe.
+  /// Returns the change that reverts the image on trial. Not real-time safe.
   SlotChange revert() const noexcept;
-  /// Writes the present state once more, to the other place. Not real-time safe.
+  /// Returns the change that writes the present state once more, to the other place. Not real-time safe.
   SlotChange again() const noexcept { return change_to(now_); }
-  /// Reports to the object that the change is on the medium. Not real-time safe.
+  /// Informs the object that a change is now on the medium. Not real-time safe.
   void stored(const SlotChange& change) noexcept;
 
  private:
@@ -115,10 +123,11 @@ class Slots {
   bool once_ = false;
 };
 
-/// Converts a valid record of version 1 to the present version; an invalid record gives no record.
-/// Not real-time safe.
+/// Converts a valid record of version 1 to the present version. For an invalid record, the result contains no
+/// record. Not real-time safe.
 SlotRecord upgraded(const SlotRecordV1& record) noexcept;
-/// True for a record that a board may use: magic, checksum, slots that exist and differ. Not real-time safe.
+/// True if a board may use the record: magic and checksum are valid, and the slots exist and are different.
+/// Not real-time safe.
 bool is_valid(const SlotRecord& record) noexcept;
 
 }  // namespace vernier

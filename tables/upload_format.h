@@ -7,21 +7,22 @@ namespace vernier {
 
 constexpr std::uint32_t kBoardNameBytes = 24;
 
-/// Contents of an upload and of a slot: UploadHeader (little-endian, 152 bytes), then the correction image
-/// (image_format.h). The signature, Ed25519 in its pre-hashed form (RFC 8032, Ed25519ph), covers the header
-/// up to the signature and the whole image.
+/// Content of an upload and of a slot: UploadHeader (little-endian, 152 bytes), and then the correction image
+/// (image_format.h). The signature (Ed25519 in its pre-hashed form, Ed25519ph, RFC 8032) covers the header up
+/// to the signature and the whole image.
 struct UploadHeader {
   std::uint8_t magic[8];       // kUploadMagic
   std::uint32_t header_bytes;  // 152
   std::uint32_t image_bytes;
-  std::uint64_t issued;  // when it was signed, microseconds since 1970: higher than all that were ever tried
-  std::uint64_t fingerprint;  // of the image's equation
-  std::uint32_t
-      security;  // at least the highest that was ever tried: raised to shut older images out for good
+  std::uint64_t issued;  // signing time, microseconds since 1970; it must be later than that of all images
+                         // that were ever on trial
+  std::uint64_t fingerprint;  // fingerprint of the equation in the image
+  std::uint32_t security;  // security number; it must be at least the highest number that was ever on trial.
+                           // The security number is increased to exclude older images permanently
   std::uint32_t reserved;  // 0
-  char
-      board[kBoardNameBytes];  // name of the board that it is for, or of its class; zeros: one without a name
-  std::uint8_t key[24];        // first bytes of the public key that checks the signature
+  char board[kBoardNameBytes];  // name of the board (or of the board class) for which the image is; zeros: a
+                                // board without a name
+  std::uint8_t key[24];         // first bytes of the public key that verifies the signature
   std::uint8_t signature[64];
 };
 static_assert(sizeof(UploadHeader) == 152);
@@ -30,17 +31,17 @@ static_assert(offsetof(UploadHeader, magic) == 0 && offsetof(UploadHeader, heade
               offsetof(UploadHeader, fingerprint) == 24 && offsetof(UploadHeader, security) == 32 &&
               offsetof(UploadHeader, reserved) == 36 && offsetof(UploadHeader, board) == 40 &&
               offsetof(UploadHeader, key) == 64 && offsetof(UploadHeader, signature) == 88);
-/// Version of the upload header; the version is not sent. A new layout requires a new kUploadMagic and a new
+/// Version of this header layout. The version is not sent. A new layout requires a new kUploadMagic and a new
 /// number here.
 constexpr std::uint32_t kUploadFormatVersion = 2;
 constexpr std::uint8_t kUploadMagic[8] = {'V', 'E', 'R', 'N', 'U', 'P', '2', '\n'};
-constexpr std::uint32_t kSignedHeaderBytes = 88;  // of the header, those under the signature
-/// Latest accepted time of signing (the year 2200). A later time is due to a wrong clock, and would block all
-/// later uploads.
+constexpr std::uint32_t kSignedHeaderBytes = 88;  // number of bytes of the header that the signature covers
+/// Latest accepted time of signing (the year 2200). A later signing time is caused by a wrong clock, and
+/// would block all later uploads.
 constexpr std::uint64_t kLatestIssued = 7'258'118'400'000'000;
 
-/// Header of version 1, which names no board. A slot that was confirmed with it still runs; a new upload with
-/// it is refused.
+/// Upload header of version 1, which contains no board name. An image that was confirmed with a header of
+/// version 1 still runs. A new upload with a header of version 1 is refused.
 struct UploadHeaderV1 {
   std::uint8_t magic[8];       // kUploadMagicV1
   std::uint32_t header_bytes;  // 128
@@ -57,11 +58,13 @@ static_assert(offsetof(UploadHeaderV1, magic) == 0 && offsetof(UploadHeaderV1, h
 constexpr std::uint8_t kUploadMagicV1[8] = {'V', 'E', 'R', 'N', 'U', 'P', 'L', '\n'};
 constexpr std::uint32_t kSignedHeaderBytesV1 = 64;
 
-/// Head of a signed request. The signature (Ed25519ph) covers this head, the op and the payload.
+/// First part of a signed request. The signature (Ed25519ph) covers the first part, the operation code and
+/// the payload of the request.
 struct SignedRequestHead {
   std::uint8_t magic[8];       // kRequestMagic
-  std::uint8_t nonce[16];      // of the board, new with each start
-  std::uint8_t challenge[16];  // of the last ten seconds over this connection, which is used up by it
+  std::uint8_t nonce[16];      // nonce of the board, which is new for each start
+  std::uint8_t challenge[16];  // challenge of the last ten seconds over this connection; it can be used only
+                               // once
   char board[kBoardNameBytes];
 };
 static_assert(sizeof(SignedRequestHead) == 64);
@@ -74,9 +77,9 @@ constexpr std::uint32_t kPublicKeyBytes = 32;
 /// Data that a board signs with its key to prove its identity: Ed25519ph of these 80 bytes.
 struct IdentityHead {
   std::uint8_t magic[8];         // kIdentityMagic
-  std::uint8_t asked_nonce[32];  // of the client, new with each request
-  std::uint8_t start_nonce[16];  // of this start of the board: signed requests name the same one
-  char board[kBoardNameBytes];   // name in its board file
+  std::uint8_t asked_nonce[32];  // nonce of the client, which is new for each request
+  std::uint8_t start_nonce[16];  // nonce of this start of the board; signed requests contain the same nonce
+  char board[kBoardNameBytes];   // name of the board in its board file
 };
 static_assert(sizeof(IdentityHead) == 80);
 static_assert(offsetof(IdentityHead, magic) == 0 && offsetof(IdentityHead, asked_nonce) == 8 &&

@@ -6,42 +6,45 @@
 
 namespace vernier {
 
-/// Counters of a probe's line.
+/// Kind of an event that TouchFilter detects in the signal of a touch probe.
 enum class TouchKind : std::uint8_t {
-  kTouch = 0,           // closed, and stayed closed through the settling time
-  kReleaseMissing = 1,  // a touch, but the line had not opened since the one before: an edge was lost
-  kMissed = 2,          // the line opened without having closed: the touch was lost, its instant is unknown
+  kTouch = 0,           // the contact closed, and stayed closed until the end of the settling time
+  kReleaseMissing = 1,  // a touch, but the contact had not opened since the previous touch: an edge was lost
+  kMissed = 2,          // the contact opened without having closed: the touch was lost, and its time is
+                        // unknown
 };
 
 /// One contact of the probe with the workpiece.
 struct Touch {
-  InstantNs at;  // first edge of the contact; of kMissed: the edge that opened it
+  InstantNs at;  // time of the first edge of the contact; for kMissed: time of the edge that opened the
+                 // contact
   TouchKind kind = TouchKind::kTouch;
-  std::uint8_t bounces = 0;  // further closing edges while it settled, at most 255
+  std::uint8_t bounces = 0;  // number of further closing edges during the settling time, at most 255
 };
 
-/// Counters of the edges and contacts of a probe's line; each counter only increases.
+/// Counters of the edges and contacts of a probe signal. The counters never decrease.
 struct TouchCounts {
   std::uint32_t touches = 0;
-  std::uint32_t spikes = 0;   // closed and open again when the settling time was over: no touch
-  std::uint32_t bounces = 0;  // edges while the contact settled, closing or opening
+  std::uint32_t spikes = 0;   // contacts that were open again at the end of the settling time: no touch
+  std::uint32_t bounces = 0;  // edges during the settling time, closing or opening
   std::uint32_t missing = 0;  // touches or releases that were lost
 };
 
-/// Converts edges to touches. The first edge of a contact counts. Bounces before the contact has settled are
-/// ignored; an edge that does not last is counted as a spike. Bounded, no heap.
+/// Converts the edges of a probe signal to touches. The time of a touch is the time of the first edge of the
+/// contact. Bounces during the settling time are ignored. A contact that does not last is counted as a spike.
+/// The computing time of TouchFilter is limited, and it uses no heap memory.
 class TouchFilter {
  public:
-  /// settle: time after a change of the contact; later edges within this time belong to the same contact, >=
-  /// 0. Not real-time safe.
+  /// `settle`: settling time after a change of the contact, >= 0. Later edges within this time belong to the
+  /// same contact. Not real-time safe.
   explicit TouchFilter(InstantNs settle = InstantNs(1'000'000)) noexcept : settle_(settle) {}
 
-  /// Processes an edge of the probe's signal. at: time of the edge, not earlier than the previous edge.
-  /// edge() returns true and fills `touch` if the settling time of a touch is over at this edge. Real-time
-  /// safe.
+  /// Processes one edge of the probe signal. `at`: time of the edge, not earlier than the previous edge. The
+  /// function edge() returns true and sets `touch` if the settling time of a touch ends at this edge.
+  /// Real-time safe.
   bool edge(InstantNs at, bool made, Touch& touch) noexcept;
-  /// Call wait() when time passes without an edge. Returns true and fills `touch` if the last contact has
-  /// settled at `now`. Real-time safe.
+  /// Call wait() if time passes without an edge. Returns true and sets `touch` if the settling time of the
+  /// last contact has ended at `now`. Real-time safe.
   bool wait(InstantNs now, Touch& touch) noexcept;
 
   const TouchCounts& counts() const noexcept { return counts_; }
@@ -52,9 +55,9 @@ class TouchFilter {
 
   InstantNs settle_;
   State state_ = State::kOpen;
-  bool made_ = false;  // level after the last edge
-  Touch pending_;      // while closing
-  InstantNs since_;    // first edge of the change
+  bool made_ = false;  // level of the signal after the last edge
+  Touch pending_;      // the touch during its settling time
+  InstantNs since_;    // time of the first edge of the change
   TouchCounts counts_;
 };
 

@@ -27,45 +27,47 @@ enum class Feature : std::uint8_t {
 };
 constexpr unsigned kFeatures = 13;
 
-/// Scale of the samples. lsb: one LSB in 1e-6 of the signal's unit (10 for 10 ug and a signal in g), 1..2^30;
-/// rate: samples per second in 1e-6 Hz, 1..2^42.
+/// Scale of the samples in a FeatureWindow. `lsb`: value of one LSB in 1e-6 of the signal's unit (10 for 10
+/// ug and a signal in g), 1..2^30. `rate`: sample rate in 1e-6 Hz, 1..2^42.
 struct FeatureScale {
   InputMicro lsb{10};
   InputMicro rate{1'000'000'000};
 };
 
-/// Features of a window as inputs of an equation: 1e-6 of the signal's unit (squared for VAR and BANDPOWER),
-/// of 1, or of Hz. Bit i of `undefined`: feature i is 0/0 (all samples zero, or all equal); the value of the
-/// feature is then 0.
+/// Features of a window, as inputs of an equation. The unit is 1e-6 of the signal's unit (squared for VAR and
+/// BANDPOWER), 1e-6, or 1e-6 Hz. If bit i of `undefined` is set, feature i is 0/0 (all samples are zero, or
+/// all are equal), and its value is 0.
 struct FeatureValues {
   InputMicro value[kFeatures];
   std::uint32_t undefined = 0;
 };
 
-/// Stores the last n samples of one axis and computes the features of these samples. Each sample needs the
-/// same work. Four power sums and sum |x| add the new sample and subtract the oldest, exactly; a tree of
-/// groups updates the extremes; n/4 products update the first moment of the spectrum (spectral_weights.h).
-/// All values of the window are integers: they do not drift in any running time. Ranges for n <= 2^11, |x| <
-/// 2^19: sum x^2 < 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below 2^121, spectral sum
-/// below 2^82: 128-bit sums are exact. Bound of the error of features(): 0.501 of 1e-6 plus 2^-54 of the
-/// value. FREQUENCY adds rate n 2^-36 for its rounded weights (36 uHz at 1651 Hz and n = 1500). Beyond int64
-/// a feature saturates.
+/// Stores the last n samples of one axis and computes their features. The computing time is the same for each
+/// sample. For each sample, four power sums and sum |x| add the new sample and subtract the oldest sample
+/// exactly. A tree of groups updates the extremes, and n/4 products update the first moment of the spectrum
+/// (spectral_weights.h). All values of the window are integers. Because all values of the window are
+/// integers, they do not drift, for any running time. Ranges for n <= 2^11, |x| < 2^19: sum x^2 < 2^49, sum
+/// x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below 2^121, spectral sum below 2^82. With these
+/// ranges, 128-bit sums are exact. The error of a value of features() is at most 0.501 of 1e-6 plus 2^-54 of
+/// the value. For FREQUENCY, the rounding of the weights adds an error of rate n 2^-36 (36 uHz at 1651 Hz and
+/// n = 1500). A feature beyond the range of int64 is limited to the range of int64.
 class FeatureWindow {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts an empty window. `weights` must outlive the window; several axes may share `weights`. Returns
-  /// false if scale or weights are out of range. Not real-time safe.
+  /// Starts an empty window. `weights` must exist longer than the window. Several axes may use the same
+  /// weights. Returns false if scale or weights are out of range. Not real-time safe.
   bool start(const FeatureScale& scale, const SpectralWeights& weights) noexcept;
 
-  /// Takes one sample, in LSB. A sample beyond +-kLimit is limited to +-kLimit and counted. Real-time safe.
+  /// Takes one sample in LSB. A sample beyond +-kLimit is limited to +-kLimit and counted. Real-time safe.
   void push(std::int32_t sample) noexcept;
 
   /// True if the window received n samples since start(). Real-time safe.
   bool filled() const noexcept { return seen_ >= window_; }
   std::uint32_t held() const noexcept { return held_; }
 
-  /// The features of the last n samples (zeros before the first). Real-time safe.
+  /// Returns the features of the last n samples. Before the first n samples, the missing samples count as
+  /// zero. Real-time safe.
   FeatureValues features() const noexcept;
 
  private:
@@ -88,10 +90,12 @@ class FeatureWindow {
     Wide cube, fourth, spectral;
   };
   Sums sums_;
-  // The samples with even and with odd index are stored separately, each part twice in succession. The
-  // samples at odd distances from a sample are then adjacent in memory.
+  // Samples with even index and samples with odd index are stored in separate arrays. Each array contains its
+  // samples twice, one copy after the other. With this arrangement, the samples at odd distances from a
+  // sample are adjacent in memory.
   std::int32_t samples_[2][2 * kMaxHalf];
-  std::int32_t highest_[2 * kLeaves], lowest_[2 * kLeaves];  // node i over nodes 2i and 2i + 1
+  std::int32_t highest_[2 * kLeaves], lowest_[2 * kLeaves];  // node i of the tree combines the nodes 2i and
+                                                             // 2i + 1
 };
 
 }  // namespace vernier

@@ -6,14 +6,16 @@
 
 namespace vernier {
 
-/// True when a watchdog may be fed: four times a second, and only if the tick ran since the last time. A fed
-/// watchdog proves only that the tick runs; it does not prove that the caller runs.
+/// Determines when a watchdog may be triggered: four times a second, and only if the tick ran since the last
+/// trigger. A triggered watchdog proves only that the tick runs. A triggered watchdog does not prove that the
+/// thread of the caller runs.
 class SignOfLife {
  public:
-  static constexpr InstantNs kPeriod{250'000'000};  // an eighth of the unit's WatchdogSec
+  static constexpr InstantNs kPeriod{250'000'000};  // an eighth of the time WatchdogSec in the systemd unit
 
   explicit SignOfLife(InstantNs now) noexcept : told_(now) {}
-  /// True if the watchdog may be fed now. ticks: number of ticks that ran so far. Not real-time safe.
+  /// True if the watchdog may be triggered now. `ticks`: number of ticks that ran until now. Not real-time
+  /// safe.
   bool due(std::uint64_t ticks, InstantNs now) noexcept {
     if (now - told_ < kPeriod || ticks == ticks_) return false;
     ticks_ = ticks;

@@ -4,7 +4,7 @@
 
 namespace vernier {
 
-/// The arguments of the vernierd call.
+/// Command line arguments of the program vernierd.
 struct Arguments {
   std::string image, board, json, calibrate, measured;
   int steps = 11;
@@ -14,10 +14,11 @@ struct Arguments {
 };
 
 extern const char* const kUsage;
-/// "vernierd 0.1.0 (commit)".
+/// Text with the name and version of the program: "vernierd 0.1.0 (commit)".
 extern const char* const kVersion;
 
-/// False: not understood; kUsage is the help text. Not real-time safe.
+/// Reads the command line arguments. Returns false if they are not valid; kUsage is the help text. Not
+/// real-time safe.
 bool parse_arguments(int argc, char** argv, Arguments& arguments);
 
 }  // namespace vernier

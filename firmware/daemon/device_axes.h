@@ -13,11 +13,11 @@ namespace vernier {
 class ModbusLine;
 class OutputDevice;
 
-/// An axis whose correction leaves through an output.
+/// An axis whose correction is written to an output device.
 struct OutputAxis {
   const SignalSource* source = nullptr;
-  bool rotary = false;                     // spans are in degrees, else in mm
-  std::int64_t most_per_tick = INT32_MAX;  // largest change of the correction in a tick, counts
+  bool rotary = false;                     // true: spans are in degrees; false: in mm
+  std::int64_t most_per_tick = INT32_MAX;  // largest change of the correction in one tick, counts
   TimeUs tick;
 };
 
@@ -27,8 +27,8 @@ struct PositionAxis {
   bool rotary = false;
 };
 
-/// Opens a device whose settings are read and checked already. Null with `error` set if it is missing.
-/// Not real-time safe.
+/// Function that opens a device whose settings are already read and checked. If the device is missing, the
+/// function returns null and sets `error`. Not real-time safe.
 template <class Device, class Pointer = std::unique_ptr<Device>>
 using Opener = std::function<Pointer(std::string& error)>;
 using OutputOpener = Opener<OutputDevice>;

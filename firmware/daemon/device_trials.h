@@ -14,13 +14,14 @@ class IioBuffer;
 /// Longest time for which a trial waits for a device.
 inline constexpr TimeUs kPatience(1'000'000);
 
-// Each function tries an open device: empty, or the error. setup.
+// Each function of this file tests an open device. Each test returns an empty text if the device works, or
+// the error. For the set-up of a board only.
 
-/// Waits for one frame of an axis and describes it.
+/// Waits for one frame of an axis on the bus, and returns a description of the frame.
 std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis);
-/// Waits for one reading of any axis; false: no reading came.
+/// Waits for one reading of an axis. Returns false if no reading came.
 bool hear_position(Clock& clock, AxisReader& axes, std::uint32_t axis);
-/// Waits for one scan of a sensor and describes it.
+/// Waits for one scan of a sensor, and returns a description of the scan.
 std::string hear_scan(Clock& clock, IioBuffer& buffer, std::uint32_t channel);
 
 }  // namespace vernier

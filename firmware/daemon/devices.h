@@ -14,12 +14,13 @@ namespace vernier {
 
 class WakeUp;
 
-/// Result of `--check` for a device or a file.
+/// Result of the option `--check` for one device or one file.
 struct DeviceFinding {
-  std::string device;                    // "axis.X.output  pwm"
-  std::string missing;                   // empty: it is there
-  std::function<std::string()> attempt;  // tries it once more; the missing item, or empty
-  bool is_file = false;                  // a file that is read; else a device
+  std::string device;                    // name of the device: "axis.X.output  pwm"
+  std::string missing;                   // description of the missing item; empty if the device is present
+  std::function<std::string()> attempt;  // function that tests the device again and returns the missing item,
+                                         // or an empty text
+  bool is_file = false;                  // true: a file that is read; false: a device
 };
 
 struct OpenLink {
@@ -27,50 +28,54 @@ struct OpenLink {
   LinkRights rights;
 };
 
-/// The devices that a board file names, alive as long as the board runs.
+/// The devices that a board file names. The devices exist as long as the board runs.
 class Devices {
  public:
-  /// Opens all devices; findings() lists the missing devices. file: outlives the devices. seed: of the motion
-  /// of simulated axes. Throws BoardError if a setting is wrong. Not real-time safe.
+  /// Opens all devices. The function findings() lists the missing devices. `file`: must exist longer than the
+  /// devices. `seed`: start value of the random motion of simulated axes. Throws BoardError if a setting in
+  /// the board file is wrong. Not real-time safe.
   Devices(const BoardFile& file, unsigned long seed);
   ~Devices();
   Devices(const Devices&) = delete;
   Devices& operator=(const Devices&) = delete;
 
-  /// Call only if no device is missing. Not real-time safe.
+  /// Returns the ports of the board. Call board() only if no device is missing. Not real-time safe.
   Board board() noexcept;
   Clock& clock() noexcept;
   std::vector<OpenLink>& links() noexcept;
-  /// Waits at most `wait` for a request over one of the links, or for a call of wake(). Not real-time safe.
+  /// Waits for a request over one of the links, or for a call of `wake_up`, for at most `wait`. Not real-time
+  /// safe.
   void wait_for_request(TimeUs wait, WakeUp& wake_up) noexcept;
-  /// Returns one finding of each device and each file, in the order of the board file. Not real-time safe.
+  /// Returns the results of `--check`: one finding for each device and each file, in the order of the board
+  /// file. Not real-time safe.
   std::vector<DeviceFinding>& findings() noexcept;
-  /// Lists what opening and trying all devices does not test, one sentence each. Not real-time safe.
+  /// Lists what is not tested when all devices are opened and tested, one sentence each. Not real-time safe.
   std::vector<std::string> not_looked_at() const;
 
-  /// Removes from the drives a correction that a killed daemon left, or the value with which a converter
-  /// starts. The removal is before the first tick, within the limits of the axis, and takes at least a
-  /// second. All outputs move together. Returns false if `stop` came and ten seconds later a value is still
-  /// left. Not real-time safe.
+  /// Removes corrections that are in the drives before the start: the correction of a program that was
+  /// killed, or the start value of a converter. The corrections are removed before the first tick, within the
+  /// limits of the axis; this takes at least one second. All outputs are moved at the same time. Returns
+  /// false if `stop` is set and a correction still remains ten seconds later. Not real-time safe.
   bool take_left_overs_out(const std::atomic<bool>& stop) noexcept;
-  /// Opens the hardware watchdog if the board file names one. Returns the error text, or an empty text: then
-  /// the caller must feed the watchdog, and disarm it at an orderly end. Not real-time safe.
+  /// Opens the hardware watchdog if the board file names a watchdog. Returns an error text, or an empty text
+  /// if there is no error. In the latter case the caller must trigger the watchdog, and switch it off at an
+  /// orderly end. Not real-time safe.
   std::string start_watchdog();
   void feed_watchdog() noexcept;
   void disarm_watchdog() noexcept;
 
-  /// Simulated axes begin to move. Not real-time safe.
+  /// Starts the motion of simulated axes. Not real-time safe.
   void release() noexcept;
-  /// The next tick of simulated axes begins. Real-time safe.
+  /// Begins the next tick of simulated axes. Real-time safe.
   void advance() noexcept;
-  /// Takes a sample of each sensor; each sample waits for its driver. Never call sample() in the tick.
-  /// Not real-time safe.
+  /// Takes one sample of each sensor. For each sample the function waits for the driver of the sensor. Do not
+  /// call sample() in the tick. Not real-time safe.
   void sample() noexcept;
   bool has_sensors() const noexcept;
-  /// Returns the contribution of each output to the error: step, range, and the delay if the board file gives
-  /// a delay. Not real-time safe.
+  /// Returns the contribution of each output to the error of the correction: step, range, and the delay if
+  /// the board file states it. Not real-time safe.
   std::vector<std::string> output_budget() const;
-  /// Reports on standard error which outputs reached the end of their range.
+  /// Writes a message to standard error about the outputs that reached the end of their range.
   void say_held() const;
 
  private:

@@ -11,18 +11,18 @@
 
 namespace vernier {
 
-/// The daemon's threads beside the tick, one per duty:
+/// The threads of the daemon besides the tick, one thread for each duty:
 ///   guardian  hands programs over, ends trials, reports to the service manager that the tick ran;
-///             the guardian waits for time only: no client and no medium can block it;
+///             the guardian only waits for time, so that no client and no medium can block it;
 ///   links     answers requests;
 ///   store     waits for the medium;
 ///   sensors   waits for drivers.
 class Duties {
  public:
-  /// All arguments outlive this object. priority: SCHED_FIFO of the guardian, 0: an ordinary thread.
-  /// Not real-time safe.
+  /// All arguments must exist longer than this object. `priority`: priority of the guardian in SCHED_FIFO; 0:
+  /// an ordinary thread. Not real-time safe.
   Duties(Service& service, Devices& devices, ServiceManager& manager, int priority);
-  /// Ends the threads; the store first completes its present request.
+  /// Ends the threads. The store completes its present request before it ends.
   ~Duties();
   Duties(const Duties&) = delete;
   Duties& operator=(const Duties&) = delete;

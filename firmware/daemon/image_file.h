@@ -8,12 +8,12 @@
 
 namespace vernier {
 
-/// An image and the bytes of its file; a view of an image refers to these bytes.
+/// A correction image and the bytes of its file. Views of the image point to these bytes.
 class ImageFile {
  public:
-  /// Takes a copy of the bytes (aligned) and validates the image. Not real-time safe.
+  /// Copies the bytes of an image to aligned memory, and checks the image. Not real-time safe.
   ImageFault open(const std::vector<std::uint8_t>& bytes);
-  /// Valid after open() returned kNone.
+  /// Returns a view of the image. The view is valid after open() returned kNone.
   const ImageView& view() const noexcept { return view_; }
 
  private:
@@ -21,7 +21,7 @@ class ImageFile {
   ImageView view_;
 };
 
-/// Reads the bytes of a file; false if the file cannot be read. Not real-time safe.
+/// Reads the bytes of a file. Returns false if the file cannot be read. Not real-time safe.
 bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes);
 
 }  // namespace vernier

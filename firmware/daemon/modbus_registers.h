@@ -6,34 +6,36 @@
 
 namespace vernier {
 
-/// Returns the numeric IPv4 address `address` of a Modbus device. Throws BoardError for a name, for another
-/// spelling of a number, and for an address that no device can have (0.0.0.0, broadcast). Not real-time safe.
+/// Returns the numeric IPv4 address `address` of a Modbus device. Throws BoardError if `address` is a name,
+/// another spelling of a number, or an address that no device can have (0.0.0.0, broadcast). Not real-time
+/// safe.
 const std::string& modbus_address(const SignalSource& source);
 
-/// Returns the numeric IPv4 address `address` on which a link listens (127.0.0.1), or 0.0.0.0 for all
-/// addresses of the board. Throws BoardError. Not real-time safe.
+/// Returns the numeric IPv4 address `address` to which a link listens (127.0.0.1), or 0.0.0.0 for all
+/// addresses of the board. Throws BoardError if the address is not valid. Not real-time safe.
 std::string listening_address(const SignalSource& source);
 
-/// True if the device is on a serial line (`device`), not at an address. Not real-time safe.
+/// True if the Modbus device is on a serial line (setting `device`) and not at a network address. Not
+/// real-time safe.
 inline bool is_serial(const SignalSource& source) { return source.texts.contains("device"); }
 
-/// Returns the path of the serial line `device`, the same for a link to it (/dev/serial/by-id). Throws
-/// BoardError. Not real-time safe.
+/// Returns the path of the serial line `device`. A symbolic link (/dev/serial/by-id) gives the path to which
+/// it points. Throws BoardError if the setting is not valid. Not real-time safe.
 std::string serial_line(const SignalSource& source);
 
-/// Returns a serial line, or a peer over TCP (`device` or `address` and `port`), under one name for all its
-/// spellings. Throws BoardError. Not real-time safe.
+/// Returns the name of a serial line, or of a TCP peer (`device`, or `address` and `port`). All spellings of
+/// one line or peer give the same name. Throws BoardError if the settings are not valid. Not real-time safe.
 std::string modbus_peer(const SignalSource& source);
 
-/// Returns a text that is the same for all outputs that share one block of registers: peer, unit and first
-/// register. Throws BoardError. Not real-time safe.
+/// Returns a text that is equal for all outputs with the same block of registers: peer, unit and first
+/// register. Throws BoardError if the settings are not valid. Not real-time safe.
 std::string modbus_block(const SignalSource& source);
 
-/// Refuses a board file in which two uses of the registers of one Modbus device exclude each other. The
-/// registers of a peer and unit are one space: a block of `modbus-out` shares no register with another block,
-/// with an echo or with a holding register that an input reads, and no echo serves two blocks. A serial line
-/// that writes a block has no other use. Throws BoardError with the lines of both settings.
-/// Not real-time safe.
+/// Checks that different uses of the registers of one Modbus device do not conflict. All registers of a peer
+/// and unit are one address space. A block of `modbus-out` must have no register in common with another
+/// block, an echo, or a holding register that an input reads. An echo must not belong to two blocks. A serial
+/// line with a block that is written must have no other use. If two uses conflict, throws BoardError with the
+/// lines of both settings. Not real-time safe.
 void refuse_shared_registers(const BoardFile& board);
 
 }  // namespace vernier

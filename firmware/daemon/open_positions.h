@@ -13,17 +13,19 @@ class Clock;
 class CounterAxis;
 class ModbusAxes;
 
-/// Opens the counter of an axis of kind "counter". clock: outlives the result. Null with `error` set if it is
-/// missing, or too narrow for the speed of the axis; a wrong setting throws BoardError. Not real-time safe.
+/// Opens the counter for the position of an axis of kind "counter". `clock`: must exist longer than the
+/// result. Returns null with `error` set if the counter is missing, or has too few bits for the speed of the
+/// axis. Throws BoardError if a setting is wrong. Not real-time safe.
 std::unique_ptr<CounterAxis> open_counter_axis(const PositionAxis& axis, const AxisLimits& limits,
                                                TimeUs tick, Clock& clock, std::string& error);
 
-/// Returns a text that is the same for all axes of kind "modbus" that are read in one request: peer, unit and
-/// sequence register. Throws BoardError. Not real-time safe.
+/// Returns a text that is equal for all axes of kind "modbus" that one request reads: peer, unit and sequence
+/// register. Throws BoardError if the settings are not valid. Not real-time safe.
 std::string modbus_axes_block(const SignalSource& source);
 
-/// Opens the registers of the axes of one block. Axis k of the result is axes[k]. missing: of each axis, the
-/// longest time without a reading that is no fault. Errors as for open_counter_axis(). Not real-time safe.
+/// Opens the Modbus registers for the positions of the axes in one block. Axis k of the result belongs to
+/// axes[k]. `missing`: for each axis, the longest permitted time without a reading. The errors are reported
+/// as in open_counter_axis(). Not real-time safe.
 std::unique_ptr<ModbusAxes> open_modbus_axes(const std::vector<PositionAxis>& axes,
                                              const std::vector<TimeUs>& missing, std::string& error);
 

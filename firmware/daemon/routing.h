@@ -9,14 +9,15 @@
 
 namespace vernier {
 
-/// Location of a device within its backend.
+/// Connection of a device of the board to a backend (driver object) and to its index there.
 template <class Port>
 struct Route {
-  Port* port = nullptr;     // null: not wired
-  std::uint32_t index = 0;  // the backend's own
+  Port* port = nullptr;     // null: the device is not connected
+  std::uint32_t index = 0;  // index of the device in the backend
 };
 
-/// Returns each backend of the routes once: begin_tick is called once for a backend with several devices.
+/// Returns each backend of the routes once, so that begin_tick is called once for a backend with several
+/// devices.
 template <class Port>
 std::vector<Port*> backends_of(const std::vector<Route<Port>>& routes) {
   std::vector<Port*> backends;
@@ -27,7 +28,7 @@ std::vector<Port*> backends_of(const std::vector<Route<Port>>& routes) {
 }
 
 /// The axes of the board, which may belong to several backends. The backend of the first route gives the data
-/// of the path.
+/// of the path (feed, curvature).
 class RoutedAxes : public AxisReader {
  public:
   explicit RoutedAxes(std::vector<Route<AxisReader>> routes)
@@ -53,7 +54,7 @@ class RoutedAxes : public AxisReader {
   std::vector<AxisReader*> backends_;
 };
 
-/// The board's inputs, spread over several backends.
+/// The inputs of the board, which may belong to several backends.
 class RoutedInputs : public InputReader {
  public:
   explicit RoutedInputs(std::vector<Route<InputReader>> routes)
@@ -71,8 +72,9 @@ class RoutedInputs : public InputReader {
   std::vector<InputReader*> backends_;
 };
 
-/// The board's outputs. A correction for an axis without an output is refused unless it is zero. Reason: an
-/// image that corrects an axis without an output must not appear to work.
+/// The outputs of the board, which may belong to several backends. If an axis has no output, a correction for
+/// this axis is refused unless it is zero. The reason is that an image that corrects an axis without an
+/// output must not appear to work.
 class RoutedOutputs : public CorrectionWriter {
  public:
   explicit RoutedOutputs(std::vector<Route<CorrectionWriter>> routes) : routes_(std::move(routes)) {}

@@ -15,26 +15,30 @@
 
 namespace vernier {
 
-/// The board inside LinuxCNC's servo thread: firmware/core's service on HAL pins. Beside the tick the
-/// component has two threads that are not realtime: the keeper (guardian and links), and the store, which
-/// waits for vernier-hal. Until vernier-hal is connected, the joints are passed through unchanged.
+/// The program of a board as a component in the servo thread of LinuxCNC: the Service of firmware/core on HAL
+/// pins. In addition to the tick, the component has two threads that are not realtime: the keeper (guardian
+/// and links) and the store, which waits for the process vernier-hal. Until vernier-hal is connected, the
+/// commands of the joints are passed on unchanged.
 class Component {
  public:
-  /// Reports changes in LinuxCNC's log. level: as of rtapi_print_msg, 1: an error, 3: a note.
+  /// Function that writes a message to the log of LinuxCNC. `level`: as in rtapi_print_msg (1: error, 3:
+  /// note).
   using Say = void (*)(int level, const char* text);
 
-  /// pins, hatch: outlive this object. mm_per_unit: unit of the machine's lengths, mm. Not real-time safe.
+  /// `pins`, `hatch`: must exist longer than this object. `mm_per_unit`: unit of lengths of the machine, mm.
+  /// Not real-time safe.
   Component(const Pins& pins, Hatch& hatch, const Wiring& wiring, double mm_per_unit, Say say);
-  /// Call the destructor when no tick runs any more. Not real-time safe.
+  /// Call the destructor only after the last tick. Not real-time safe.
   ~Component();
   Component(const Component&) = delete;
   Component& operator=(const Component&) = delete;
-  /// Starts the two threads; false if the system refuses them. Not real-time safe.
+  /// Starts the two threads. Returns false if the operating system refuses them. Not real-time safe.
   bool start() noexcept;
-  /// Ends the two threads. Ticks may still run; the hatch is not used any more. Not real-time safe.
+  /// Ends the two threads. After stop(), ticks may still run, and the shared memory (hatch) is not used any
+  /// more. Not real-time safe.
   void stop() noexcept;
 
-  /// A cycle of the servo thread. period_ns: period of the servo thread. Real-time safe.
+  /// Executes one cycle of the servo thread. `period_ns`: period of the servo thread, ns. Real-time safe.
   void tick(long period_ns) noexcept;
 
  private:
@@ -60,16 +64,16 @@ class Component {
   std::atomic<bool> stop_{false};
   pthread_t keeper_{}, store_thread_{};
   bool keeps_ = false, stores_ = false;
-  std::atomic<std::uint32_t> tick_us_{0};  // of the thread; 0: it has not run yet
-  // The component creates this object when vernier-hal connects for the first time.
+  std::atomic<std::uint32_t> tick_us_{0};  // period of the servo thread; 0: the thread has not run yet
+  // The component creates these objects when vernier-hal connects for the first time.
   std::unique_ptr<RemoteStore> store_;
   std::unique_ptr<PinProbe> probe_;
   std::unique_ptr<Service> made_;
   std::atomic<Service*> service_{nullptr};
   Introduction met_;
-  // The tick's.
+  // Members that only the tick uses.
   bool cleared_ = false, held_ = false;
-  // The last reported state; used by the keeper only.
+  // The last reported state. Only the keeper thread uses the last reported state.
   std::atomic<std::uint32_t> fault_{0}, limits_{0};
   std::uint32_t told_fault_ = 0, told_limits_ = 0;
 };

@@ -9,9 +9,9 @@
 
 namespace vernier {
 
-/// A request from one process to another in shared memory, one at a time. The client writes the request,
-/// makes the turn number odd and waits for the next even number. If a process ends during a request, only the
-/// request in the shared memory has changed.
+/// A request from one process to another process through shared memory. Only one request is open at a time.
+/// The client writes the request, makes the number `turn` odd, and waits until it is even again. If a process
+/// ends during a request, only the data of this request in the shared memory may be incomplete.
 struct Call {
   static constexpr std::uint32_t kMostBytes = 4096;
   std::atomic<std::uint32_t> turn{0};
@@ -21,21 +21,22 @@ struct Call {
   std::uint8_t bytes[kMostBytes] = {};
 };
 
-/// True if the process exists and is not a zombie (a process that only waits for its parent).
-/// Not real-time safe.
+/// True if the process exists and is not a zombie (a process that has ended but still has an entry for its
+/// parent). Not real-time safe.
 bool process_lives(std::int32_t pid) noexcept;
-/// Waits at most `wait` for a request. Not real-time safe.
+/// Waits for a request for at most `wait`. Not real-time safe.
 bool wait_for_call(Call& call, TimeUs wait) noexcept;
 inline bool is_asked(const Call& call) noexcept {
   return (call.turn.load(std::memory_order_acquire) & 1) != 0;
 }
-/// The request is answered: result, size and bytes are in the call. Not real-time safe.
+/// Marks a request as answered. Before this call, the caller has already written the result, the size and the
+/// bytes of the answer into the call. Not real-time safe.
 void answer_call(Call& call) noexcept;
-/// Waits until the call is answered. Returns false, and withdraws the call, if `peer` has ended or `stop` is
-/// set. Not real-time safe.
+/// Makes a request and waits until it is answered. Returns false and withdraws the request if the process
+/// `peer` has ended or `stop` is set. Not real-time safe.
 bool make_call(Call& call, std::int32_t peer, const std::atomic<bool>& stop) noexcept;
 
-/// Requests of the component to its store, which the process vernier-hal manages (hal/slot_store.h).
+/// Requests of the component to its store. The process vernier-hal manages the store (hal/slot_store.h).
 enum class StoreOp : std::uint32_t {
   kReadRecord,
   kWriteRecord,
@@ -44,14 +45,16 @@ enum class StoreOp : std::uint32_t {
   kFinishImage,
   kReadGiven
 };
-/// Requests of vernier-hal's links to the component (hal/command_link.h). place: the link's access.
+/// Requests of the links of vernier-hal to the component (hal/command_link.h). The member `place` of such a
+/// Call contains the access of the link.
 enum class LinkCall : std::uint32_t { kAnswer, kLater, kRegisters, kCommand, kEnds };
 
-/// Data that vernier-hal sends about itself when it connects.
+/// Data that the process vernier-hal sends about itself when it connects to the component.
 struct Introduction {
   std::int32_t pid = 0;
-  std::uint32_t capacity = 0;     // of a slot
-  std::uint32_t given_bytes = 0;  // of an image to start with; 0: the image of the store
+  std::uint32_t capacity = 0;     // size of a slot
+  std::uint32_t given_bytes = 0;  // size of an image that is given at the start; 0: the image of the store is
+                                  // used
   std::uint32_t keys = 0;
   PublicKey key[BoardIdentity::kMostKeys] = {};
   Name board, board_class;
@@ -61,26 +64,27 @@ struct Introduction {
 };
 static_assert(sizeof(Introduction) <= Call::kMostBytes);
 
-/// Result of the component.
+/// Result of a connection of vernier-hal to the component.
 enum class Attached : std::int32_t {
   kStarted = 0,       // the image runs
-  kResumed = 1,       // it continues with its running image
-  kImageRefused = 2,  // bytes: why
-  kOtherStore = 3,    // it has been started with another store or other keys, and keeps them
+  kResumed = 1,       // the running image continues
+  kImageRefused = 2,  // the image is refused; the bytes contain the reason
+  kOtherStore = 3,    // the component was started with another store or other keys, and continues with them
   kEmpty = 4,         // the store has no image, and no image was given
 };
 
-/// The memory that component and vernier-hal share. The component never waits for vernier-hal in a tick: all
-/// data of the tick are in private memory.
+/// The memory that the component and the process vernier-hal share. The component never waits for vernier-hal
+/// in a tick, because all data of the tick are in private memory.
 struct Hatch {
-  static constexpr int kKey = 0x5645524e;              // "VERN", as HAL's keys are: one component a machine
-  static constexpr std::uint32_t kMagic = 0x32544148;  // "HAT2", written when the rest is there
+  static constexpr int kKey = 0x5645524e;              // "VERN", in the form of HAL's keys; one component for
+                                                       // each machine
+  static constexpr std::uint32_t kMagic = 0x32544148;  // "HAT2"; written after all other members
   std::atomic<std::uint32_t> magic{0};
-  std::int32_t component = 0;  // process
+  std::int32_t component = 0;  // process id of the component
   std::atomic<std::int32_t> helper{0};
-  Call attach;  // vernier-hal to component: an Introduction
-  Call link;    // vernier-hal to component: LinkCall
-  Call store;   // component to vernier-hal: StoreOp
+  Call attach;  // from vernier-hal to the component: an Introduction
+  Call link;    // from vernier-hal to the component: a LinkCall
+  Call store;   // from the component to vernier-hal: a StoreOp
 };
 
 }  // namespace vernier

@@ -5,23 +5,25 @@
 
 namespace vernier {
 
-/// The component's side of the links that vernier-hal serves.
+/// The part of a link that is in the component. The process vernier-hal serves the link itself.
 class HatchLink : public CommandLink {
  public:
-  /// call: outlives the link. Not real-time safe.
+  /// `call`: must exist longer than the link. Not real-time safe.
   explicit HatchLink(Call& call) noexcept : call_(call) {}
   HalFault serve(CommandHandler& handler, TimeUs wait) noexcept override;
-  /// The link's access, for the waiting request; LinkAccess::kRead without a request. Not real-time safe.
+  /// Returns the access of the link for the waiting request; LinkAccess::kRead if no request is waiting. Not
+  /// real-time safe.
   LinkAccess access() const noexcept;
 
  private:
   Call& call_;
 };
 
-/// vernier-hal's side: passes the requests of a link to the component.
+/// The part of a link that is in vernier-hal. The link part in vernier-hal passes the requests of the link to
+/// the component.
 class HatchHandler : public CommandHandler {
  public:
-  /// hatch, stop: outlive the handler. Not real-time safe.
+  /// `hatch`, `stop`: must exist longer than the handler. Not real-time safe.
   HatchHandler(Hatch& hatch, LinkAccess access, const std::atomic<bool>& stop) noexcept
       : hatch_(hatch), access_(access), stop_(stop) {}
   void comes_over(std::uint64_t connection) override { connection_ = connection; }

@@ -7,11 +7,11 @@
 
 namespace vernier {
 
-/// The arguments of the vernier-hal call.
+/// Command line arguments of the program vernier-hal.
 struct HelperArguments {
   std::string store, image, board, board_class;
   std::vector<std::string> public_keys;
-  std::string address;  // to listen on; empty: no link
+  std::string address;  // address to which the program listens; empty: no link
   int port = 0;
   LinkAccess access = LinkAccess::kUpload;
   bool help = false, version = false;

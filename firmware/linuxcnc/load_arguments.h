@@ -7,20 +7,21 @@
 
 namespace vernier {
 
-/// The arguments of `loadrt vernier`, as rtapi_app fills them in; null: the argument is not given.
+/// The arguments of `loadrt vernier`, as rtapi_app sets them. A null pointer means that the argument is not
+/// given.
 struct LoadArguments {
   std::span<char*const> axes, inputs, rotary;
   const char* units = nullptr;
 };
 
-/// Settings of the component.
+/// Settings of the component, from its arguments.
 struct LoadedWiring {
   Wiring wiring;
   double mm_per_unit = 1;
 };
 
-/// Checks every argument before any object is made. Returns true, or false with `why`: one line that names
-/// the argument and its error. Not real-time safe.
+/// Checks all arguments before any object is constructed. Returns false if an argument is wrong. `why` is
+/// then one line with the name of the argument and its error. Not real-time safe.
 bool read_load_arguments(const LoadArguments& arguments, LoadedWiring& loaded, std::span<char> why);
 
 }  // namespace vernier

@@ -5,11 +5,11 @@
 
 namespace vernier {
 
-/// Access of the component to the store, which the process vernier-hal manages. After the end of vernier-hal
-/// every access is refused, as by a broken medium; the running image continues.
+/// Access of the component to the store, which the process vernier-hal manages. After the end of vernier-hal,
+/// every access fails as with a broken medium. The running image continues.
 class RemoteStore : public SlotStore {
  public:
-  /// hatch, stop: outlive the store. Not real-time safe.
+  /// `hatch`, `stop`: must exist longer than the store. Not real-time safe.
   RemoteStore(Hatch& hatch, std::uint32_t capacity, const std::atomic<bool>& stop) noexcept
       : hatch_(hatch), stop_(stop), capacity_(capacity) {}
 
@@ -22,7 +22,7 @@ class RemoteStore : public SlotStore {
   HalFault write_image(std::uint32_t slot, std::uint32_t offset, const std::uint8_t* bytes,
                        std::uint32_t size) noexcept override;
   HalFault finish_image(std::uint32_t slot, std::uint32_t size) noexcept override;
-  /// Bytes of the image that vernier-hal was started with. Not real-time safe.
+  /// Reads bytes of the image that was given to vernier-hal at its start. Not real-time safe.
   HalFault read_given(std::uint32_t offset, std::uint8_t* bytes, std::uint32_t size) noexcept;
 
  private:

@@ -8,7 +8,8 @@
 
 namespace vernier {
 
-/// Sensors as pins. A value that is not a finite number is a missing reading.
+/// Sensors of the board, as pins of LinuxCNC's HAL. If the value of a pin is not a finite number, the reading
+/// of the sensor is missing.
 class PinInputs : public InputReader {
  public:
   PinInputs(const Pins& pins, std::uint32_t count) noexcept : pins_(pins), count_(count) {}
@@ -19,7 +20,7 @@ class PinInputs : public InputReader {
   std::uint32_t count_;
 };
 
-/// The line is on if the pin `enable` is on and every joint is homed.
+/// Enable signal of the board: on if the pin `enable` is on and every joint is homed.
 class EnablePin : public DigitalInput {
  public:
   EnablePin(const Pins& pins, const Joints& joints) noexcept : pins_(pins), joints_(joints) {}
@@ -33,11 +34,12 @@ class EnablePin : public DigitalInput {
   const Joints& joints_;
 };
 
-/// The pin `probe-in`, read once per tick: an edge is half a tick old on average.
+/// Probe signal from the pin `probe-in`, which is read once per tick. An edge of the probe signal is
+/// therefore half a tick old on average.
 class PinProbe : public ProbeLine {
  public:
   PinProbe(const Pins& pins, TimeUs tick) noexcept : pins_(pins), tick_(instant_ns(tick)) {}
-  /// Sets the runner whose ticks give the times of the edges. Not real-time safe.
+  /// Sets the runner whose ticks define the times of the edges. Not real-time safe.
   void follow(const Runner& runner) noexcept { runner_ = &runner; }
   HalFault read_edge(ProbeEdge& edge) noexcept override;
   InstantNs resolution() const noexcept override { return tick_; }

@@ -8,13 +8,15 @@
 
 namespace vernier {
 
-/// vernier-hal's side of the component's store: executes requests of the component, one at a time.
+/// The part of the component's store that is in vernier-hal. The store part in vernier-hal executes the
+/// requests of the component, one at a time.
 class StoreServer {
  public:
-  /// call, store, given (the image to start with): outlive this object. Not real-time safe.
+  /// `call`, `store`, `given` (the image to start with): must exist longer than this object. Not real-time
+  /// safe.
   StoreServer(Call& call, SlotStore& store, std::span<const std::uint8_t> given) noexcept
       : call_(call), store_(store), given_(given) {}
-  /// Waits at most `wait` for a request of the component and answers it. Not real-time safe.
+  /// Waits for a request of the component for at most `wait`, and answers it. Not real-time safe.
   void serve(TimeUs wait) noexcept;
 
  private:

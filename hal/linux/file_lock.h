@@ -4,11 +4,12 @@
 
 namespace vernier {
 
-/// A lock (flock(2)) on a file or directory: one process has it until it closes its descriptor or ends.
+/// A lock (flock(2)) on a file or directory. A process has the lock until it closes the file descriptor or
+/// ends.
 class FileLock {
  public:
-  /// Locks `path`, which exists. Returns empty, or the reason of a failure: "in use by another process".
-  /// Not real-time safe.
+  /// Locks the existing file or directory `path`. Returns an empty text, or the reason of a failure: "in use
+  /// by another process". Not real-time safe.
   std::string take(const std::string& path);
   FileLock() = default;
   ~FileLock();
@@ -19,7 +20,7 @@ class FileLock {
   int fd_ = -1;
 };
 
-/// Locks an open descriptor; false if another process has the lock. Not real-time safe.
+/// Locks an open file descriptor. Returns false if another process has the lock. Not real-time safe.
 bool lock_descriptor(int fd) noexcept;
 
 }  // namespace vernier

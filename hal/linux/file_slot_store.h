@@ -6,17 +6,19 @@
 
 namespace vernier {
 
-/// Slots as files of a directory: slot0.vup, slot1.vup, record0 to record3; every finished write is synced.
+/// Slots and records as files of a directory: slot0.vup, slot1.vup, record0 to record3. Every completed write
+/// is on the medium.
 class FileSlotStore : public SlotStore {
  public:
-  /// directory: exists and may be written; capacity: most bytes of a slot. Not real-time safe.
+  /// `directory`: an existing directory in which files can be written; `capacity`: largest number of bytes in
+  /// a slot. Not real-time safe.
   FileSlotStore(std::string directory, std::uint32_t capacity);
 
   std::uint32_t capacity() const noexcept override { return capacity_; }
   bool reads_ones_where_erased() const noexcept override { return false; }
   HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override;
-  /// Makes the file of a record of `size` bytes, all ones (never written), if there is no file: the first
-  /// write then needs no further room on the medium. Not real-time safe.
+  /// If a record has no file, creates a file of `size` bytes with all bits one (never written). The first
+  /// write then needs no additional space on the medium. Not real-time safe.
   HalFault reserve_record(std::uint32_t place, std::uint32_t size) noexcept;
   HalFault write_record(std::uint32_t place, const std::uint8_t* bytes, std::uint32_t size) noexcept override;
   HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,

@@ -5,20 +5,21 @@
 
 namespace vernier {
 
-/// A watchdog of the kernel (/dev/watchdog): resets the computer if the daemon does not feed it within its
-/// time.
+/// A hardware watchdog of the Linux kernel (/dev/watchdog). The watchdog resets the computer if the daemon
+/// does not trigger the watchdog within its time.
 class HardwareWatchdog {
  public:
-  /// Starts the watchdog immediately, with a time of `seconds` if the driver supports setting the time.
-  /// Returns null with `error` set if the watchdog cannot be opened. Not real-time safe.
+  /// Starts the watchdog immediately. The time of the watchdog is set to `seconds` if the driver supports
+  /// this. Returns null with `error` set if the watchdog cannot be opened. Not real-time safe.
   static std::unique_ptr<HardwareWatchdog> open(const std::string& device, int seconds, std::string& error);
-  /// If disarm() was not called before, the watchdog resets the computer when its time is over.
+  /// If disarm() was not called before the destructor, the watchdog resets the computer when its time is
+  /// over.
   ~HardwareWatchdog();
   HardwareWatchdog(const HardwareWatchdog&) = delete;
   HardwareWatchdog& operator=(const HardwareWatchdog&) = delete;
 
   void feed() noexcept;
-  /// Stops the watchdog at an orderly end, if the driver supports this. Not real-time safe.
+  /// Stops the watchdog at an orderly end of the program, if the driver supports this. Not real-time safe.
   void disarm() noexcept;
 
  private:

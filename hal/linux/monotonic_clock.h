@@ -4,8 +4,8 @@
 
 namespace vernier {
 
-/// The clock CLOCK_MONOTONIC. A sleep ends at an absolute time, so that a late wake-up does not shift the
-/// next wake-up.
+/// The clock CLOCK_MONOTONIC of the operating system. A sleep ends at an absolute time. A late wake-up
+/// therefore does not delay the next wake-up.
 class MonotonicClock : public Clock {
  public:
   InstantNs now() noexcept override;

@@ -8,8 +8,9 @@
 
 namespace vernier {
 
-/// One attribute of a device in sysfs: a number as text. The attribute is opened once in setup. Each read or
-/// write at its beginning is a single system call without allocation.
+/// One attribute of a device in sysfs: a file that contains a number as text. The attribute is opened once,
+/// before the first tick. Each read or write is at the beginning of the file. Each read or write of the
+/// attribute is a single system call without allocation of memory.
 class SysfsAttribute {
  public:
   enum class Use { kRead, kWrite, kBoth };
@@ -21,19 +22,20 @@ class SysfsAttribute {
   SysfsAttribute& operator=(SysfsAttribute&& other) noexcept;
   ~SysfsAttribute();
 
-  /// Takes the attribute for exclusive use; false if another process uses it. Not real-time safe.
+  /// Reserves the attribute for exclusive use. Returns false if another process uses the attribute. Not
+  /// real-time safe.
   bool lock() noexcept;
 
-  /// Writes the number and a line feed. kRefused: the driver or the device refused. realtime, if the bus of
-  /// the device is fast enough.
+  /// Writes a number and a line feed to the attribute. The function write() returns kRefused if the driver or
+  /// the device refused the number. The function is real-time safe if the bus of the device is fast enough.
   HalFault write(std::int64_t value) noexcept;
-  /// Writes a word ("normal"). Not real-time safe.
+  /// Writes a word (for example "normal") to the attribute. Not real-time safe.
   HalFault write(const std::string& word) noexcept;
-  /// Reads a decimal number, with or without a fraction, in millionths; further digits are cut off.
-  /// kNoReading: the driver gave an error, an empty text, or no number; `micro` is then not changed. The call
-  /// takes as long as the driver needs.
+  /// Reads a decimal number, with or without a fraction, in millionths. Further digits are omitted. The
+  /// function read_micro() returns kNoReading if the driver gave an error, an empty text, or text that is not
+  /// a number. Without a reading, `micro` is not changed. The duration of the call depends on the driver.
   HalFault read_micro(std::int64_t& micro) noexcept;
-  /// Reads a whole number; errors as for read_micro. Not real-time safe.
+  /// Reads a whole number. The errors are those of read_micro. Not real-time safe.
   HalFault read(std::int64_t& value) noexcept;
 
  private:
@@ -43,8 +45,8 @@ class SysfsAttribute {
   int fd_ = -1;
 };
 
-/// Reads "-12.345678\n" as -12345678 millionths. Returns false: no such number, or beyond ±10^12. parse_micro
-/// does not allocate memory.
+/// Converts text to millionths: "-12.345678\n" gives -12345678. Returns false if the text is not such a
+/// number, or if the number is beyond ±10^12. The function parse_micro does not allocate memory.
 bool parse_micro(const char* text, std::size_t size, std::int64_t& micro) noexcept;
 
 }  // namespace vernier

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Times in the form of the system calls, and the repetition of a call that a signal interrupts.
+// Conversion of times to and from the form of the system calls, and the limit for repeating a system call
+// that a signal interrupts.
 #include <cstdint>
 #include <ctime>
 
@@ -13,7 +14,7 @@ inline constexpr int kMostInterruptions = 1000;
 inline std::int64_t ns_of(const timespec& time) noexcept {
   return std::int64_t{time.tv_sec} * kNsPerS + time.tv_nsec;
 }
-/// ns: at least 0.
+/// `ns`: at least 0.
 inline timespec timespec_of(std::int64_t ns) noexcept {
   return {static_cast<time_t>(ns / kNsPerS), static_cast<long>(ns % kNsPerS)};
 }

@@ -4,20 +4,21 @@
 
 namespace vernier {
 
-/// Wakes a thread that waits in wait() or in a poll() of the handle. A wake-up before the wait ends the wait
-/// immediately.
+/// Wakes a thread that waits in wait() or in a poll() of the handle. If wake() is called before the wait
+/// begins, the wait ends immediately.
 class WakeUp {
  public:
-  /// Never throws: if the system has no more handles, waits end after their time only. Not real-time safe.
+  /// The constructor never throws. If the operating system has no more handles, a wait ends only when its
+  /// time is over. Not real-time safe.
   WakeUp() noexcept;
   ~WakeUp();
   WakeUp(const WakeUp&) = delete;
   WakeUp& operator=(const WakeUp&) = delete;
 
   void wake() noexcept;
-  /// Waits at most `wait` for a wake-up, and clears the wake-up. Not real-time safe.
+  /// Waits for a wake-up for at most `wait`, and clears the wake-up. Not real-time safe.
   void wait(TimeUs wait) noexcept;
-  /// handle() is for poll(). After poll() call clear(), which clears the wake-up.
+  /// Returns the handle for poll(). After poll(), call clear() to clear the wake-up.
   int handle() const noexcept { return fd_; }
   void clear() noexcept;
 

@@ -13,18 +13,19 @@ namespace vernier {
 
 enum class PlantFaultKind : std::uint8_t {
   kMissingPosition,  // the axis gives no reading
-  kFrozenAxis,       // the axis repeats its last position, its speed goes on
-  kJump,             // the axis has an error of `counts`
+  kFrozenAxis,       // the axis repeats its last position, while its speed continues
+  kJump,             // the position of the axis has an error of `counts`
   kSensorLost,       // the input gives no reading
-  kWriteFailure,     // corrections of the axis are refused
+  kWriteFailure,     // corrections of the axis are refused by the drive
   kReferenceLost,    // the controller reports that the axis is not referenced
-  kSensorWild,       // the input reads `counts` more than it should
+  kSensorWild,       // the reading of the input is too large by `counts`
 };
 
-/// One simulated fault during [first, first + ticks) of the plant's own count of ticks.
+/// One simulated fault. The simulated fault is active during [first, first + ticks) in the tick count of the
+/// plant.
 struct PlantFault {
   PlantFaultKind kind;
-  std::uint32_t index;  // axis or input
+  std::uint32_t index;  // index of the axis or input
   std::int64_t first;
   std::int64_t ticks;
   std::int64_t counts = 0;
@@ -33,30 +34,32 @@ struct PlantFault {
 /// Imperfections of the simulated instruments.
 struct PlantOptions {
   std::uint64_t seed = 1;
-  double position_noise_counts = 0;  // standard deviation
-  double input_noise_micro = 0;      // standard deviation
-  std::int64_t delay_ticks = 0;      // readings are that old
+  double position_noise_counts = 0;  // standard deviation of the noise
+  double input_noise_micro = 0;      // standard deviation of the noise
+  std::int64_t delay_ticks = 0;      // delay of all readings
   double dropout = 0;                // probability that a reading of an axis is missing
   bool gives_motion = true;
-  bool run_in = false;  // before release() the speeds of the first point are reported too
+  bool run_in = false;  // true: before release(), the speeds of the first point are reported too
   std::vector<PlantFault> faults;
 };
 
-/// A seeded machine on a trajectory, read through imperfect instruments. The same seed of SimPlant gives the
-/// same readings. The simulated machine stays at the first point of its trajectory until release().
+/// A simulated machine that moves on a trajectory. The readings of the plant have the errors of imperfect
+/// instruments, from a seeded random generator. With the same seed, SimPlant gives the same readings. The
+/// simulated machine stays at the first point of its trajectory until release().
 class SimPlant : public AxisReader, public InputReader, public CorrectionWriter {
  public:
   SimPlant(Trajectory& trajectory, std::uint32_t axes, std::uint32_t inputs, PlantOptions options = {});
 
-  /// Begins the next tick of the plant; call advance() once before each tick of the firmware.
+  /// Begins the next tick of the simulated machine. Call advance() once before each tick of the firmware.
   void advance() noexcept;
-  /// The motion begins with the next tick.
+  /// Starts the motion with the next tick.
   void release() noexcept { released_ = true; }
-  /// Returns the ticks since construction; tick 0 is the tick after the first advance().
+  /// Returns the number of ticks since the construction. Tick 0 is the tick after the first call of
+  /// advance().
   std::int64_t tick() const noexcept { return tick_; }
-  /// Returns the tick of the trajectory; 0 until released.
+  /// Returns the tick of the trajectory; 0 before release() is called.
   std::int64_t path_tick() const noexcept { return path_tick_; }
-  /// Returns the correction that the drive has.
+  /// Returns the correction that the drive of an axis has.
   AxisTravel written(std::uint32_t axis) const noexcept { return written_[axis]; }
 
   HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override;

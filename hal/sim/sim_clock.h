@@ -8,11 +8,11 @@
 
 namespace vernier {
 
-/// Simulated time, which passes only in sleep_until and in spend(). A SimClock can wake late by a seeded
-/// random time.
+/// Simulated time that passes only in sleep_until() and in spend(). The wake-up of a SimClock can be late by
+/// a seeded random time.
 class SimClock : public Clock {
  public:
-  /// most_late: wake-ups are late by 0..most_late, evenly spread.
+  /// `most_late`: the delay of a wake-up has a uniform distribution from 0 to most_late.
   explicit SimClock(InstantNs start = {}, InstantNs most_late = {}, std::uint64_t seed = 1)
       : now_(start), most_late_(most_late), random_(seed) {}
 
@@ -23,7 +23,7 @@ class SimClock : public Clock {
     now_ = std::max(now_, due + late);
     return HalFault::kNone;
   }
-  /// Advances the time, as a computation of this duration would.
+  /// Advances the simulated time, as a computation of this duration would do.
   void spend(InstantNs time) { now_ = now_ + time; }
 
  private:

@@ -4,11 +4,11 @@
 
 namespace vernier {
 
-/// A probe's line for tests: the test puts in the edges, at moments of the board's clock. read_edge delivers
-/// an edge even if its moment is in the future.
+/// The line of a touch probe for tests. The test adds edges with times of the board's clock. The function
+/// read_edge returns an edge even if its time is in the future.
 class SimProbeLine : public ProbeLine {
  public:
-  /// resolution: how far the stamps may be from the edges.
+  /// `resolution`: largest difference between the recorded times and the edges.
   explicit SimProbeLine(InstantNs resolution = InstantNs{}) : resolution_(resolution) {}
 
   void put(InstantNs at, bool made) noexcept { queue_.put({at, made}); }

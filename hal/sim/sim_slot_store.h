@@ -8,25 +8,25 @@
 
 namespace vernier {
 
-/// Slots in memory whose power can be cut at any byte of any write. The bytes before the power failure are
-/// new, the other bytes are old; no further byte is written until restore_power(). A SimSlotStore can also be
-/// full, or fail to write.
+/// A slot store in memory for tests. The power of this store can fail at any byte of any write. After the
+/// simulated power failure, the bytes written before it are new and the other bytes are old. No further byte
+/// is written until restore_power(). A SimSlotStore can also be full, or fail to write.
 class SimSlotStore : public SlotStore {
  public:
   explicit SimSlotStore(std::uint32_t capacity) : capacity_(capacity) {}
 
-  /// The power fails when `bytes` more bytes have been written.
+  /// Simulates a power failure after `bytes` more bytes have been written.
   void cut_power_after(std::uint64_t bytes) {
     left_ = bytes;
     limited_ = true;
   }
   void restore_power() { limited_ = dead_ = false; }
   bool dead() const { return dead_; }
-  /// Returns the number of bytes written so far.
+  /// Returns the number of bytes that were written since the start.
   std::uint64_t written() const { return written_; }
   /// Truncates a record to its first `size` bytes; with 0 bytes the record counts as never written.
   void cut_record(std::uint32_t place, std::uint32_t size) { records_[place].resize(size); }
-  /// The medium has no room for more image bytes than that.
+  /// Limits the space of the medium: no more than `bytes` image bytes can be written.
   void fill_up_to(std::uint32_t bytes) { room_ = bytes; }
 
   std::uint32_t capacity() const noexcept override { return capacity_; }

@@ -7,8 +7,8 @@
 
 namespace vernier {
 
-/// Motion of the simulated machine at one tick, before the errors of instruments. Rollover axes carry whole
-/// turns.
+/// Motion of the simulated machine at one tick, without the errors of instruments. The positions of axes with
+/// rollover include whole turns.
 struct PlantState {
   AxisReading axis[kMaxAxes];
   InputMicro input[kMaxInputs];
@@ -19,7 +19,7 @@ struct PlantState {
 class Trajectory {
  public:
   virtual ~Trajectory() = default;
-  /// Computes the state at a tick. tick: 0 is the start; ticks may be in any order.
+  /// Computes the state at a tick. `tick`: 0 is the start. The function may be called for ticks in any order.
   virtual void at(std::int64_t tick, PlantState& state) noexcept = 0;
 };
 

@@ -6,18 +6,19 @@
 
 namespace vernier {
 
-/// Edges that were received and have not been read. EdgeQueue keeps the order of the edges and records where
-/// edges are missing. The contact of a probe closes and opens alternately: if two edges of the same kind
-/// follow each other, an edge between these two edges is lost. A kernel that numbers its edges makes every
-/// loss visible.
+/// Queue of the edges of a probe signal that were received but not yet read. EdgeQueue keeps the order of the
+/// edges and records where edges are missing. The contact of a probe closes and opens alternately: if two
+/// edges of the same kind follow each other, an edge between these two edges is lost. If the kernel numbers
+/// the edges, every loss of an edge is detected.
 class EdgeQueue {
  public:
   static constexpr std::uint32_t kRoom = 128;
   static constexpr std::uint32_t kNoNumber = 0;
 
-  /// Adds an edge. number: the number that the device gave to the edge; it increases by one with each edge. A
-  /// device never gives 0. kNoNumber (0): the device does not number its edges. If the queue is full, the
-  /// edge is dropped and reported as lost. Real-time safe.
+  /// Adds an edge. `number`: number that the device gave to the edge. The number of the edges increases by
+  /// one with each edge. A device never gives the number 0. The value kNoNumber (0) means that the device
+  /// does not number its edges. If the queue is full, the edge is dropped and reported as lost. Real-time
+  /// safe.
   void put(const ProbeEdge& edge, std::uint32_t number = kNoNumber) noexcept {
     if (count_ == kRoom) return put_loss();
     const bool out_of_turn = known_ && edge.made == last_made_;
@@ -34,8 +35,9 @@ class EdgeQueue {
     loss_ = true;
     known_ = false;
   }
-  /// Oldest edge. kNoReading: the queue is empty; kRefused: edges are missing here, the next call continues.
-  /// Real-time safe.
+  /// Reads the oldest edge. The function take() returns kNoReading if the queue is empty, and kRefused if
+  /// edges are missing before the next edge. The call after kRefused continues with the next edge. Real-time
+  /// safe.
   HalFault take(ProbeEdge& edge) noexcept {
     bool& missing = count_ > 0 ? entries_[first_].after_loss : loss_;
     if (missing) {
@@ -50,9 +52,9 @@ class EdgeQueue {
     return HalFault::kNone;
   }
   bool empty() const noexcept { return count_ == 0 && !loss_; }
-  /// Edges that can still be put in.
+  /// Returns the number of edges that can be added before the queue is full.
   std::uint32_t room() const noexcept { return kRoom - count_; }
-  /// Number of gaps in the sequence of edges since the start; never decreases.
+  /// Returns the number of gaps in the sequence of edges since the start. The number never decreases.
   std::uint64_t losses() const noexcept { return losses_; }
 
  private:

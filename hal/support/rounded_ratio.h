@@ -7,19 +7,21 @@
 
 namespace vernier {
 
-/// round(value * numerator / denominator), halves away from zero, exact to the last bit and without a
-/// division. The ratio is computed once. The product of a value with the ratio is the quotient or one less;
-/// the remainder decides which.
+/// Computes round(value * numerator / denominator) with halves away from zero. The rounded ratio is exact and
+/// needs no division. The ratio numerator / denominator is computed once, in the constructor. The product of
+/// a value and the ratio is the exact quotient or one less. The remainder determines which of both is
+/// correct.
 class RoundedRatio {
  public:
   static constexpr std::int64_t kMost = std::int64_t{1} << 50;
 
-  /// numerator, denominator: 1 .. kMost. Not real-time safe.
+  /// `numerator`, `denominator`: 1 to kMost. Not real-time safe.
   constexpr RoundedRatio(std::int64_t numerator, std::int64_t denominator) noexcept
       : numerator_(static_cast<std::uint64_t>(numerator)),
         denominator_(static_cast<std::uint64_t>(denominator)),
         ratio_(numerator_ / denominator_) {
-    // ratio_ = numerator * 2^shift_ / denominator, cut, from 2^62 on: error below 2^-62 of the ratio.
+    // ratio_ is numerator * 2^shift_ / denominator without the fraction, at least 2^62. The relative error of
+    // ratio_ is below 2^-62.
     for (std::uint64_t rest = numerator_ % denominator_; ratio_ < std::uint64_t{1} << 62; ++shift_) {
       rest *= 2;
       ratio_ *= 2;
@@ -29,7 +31,7 @@ class RoundedRatio {
     }
   }
 
-  /// value: limited to +-kMost; the result is limited too. Real-time safe.
+  /// `value`: limited to +-kMost. The rounded ratio is also limited to +-kMost. Real-time safe.
   constexpr std::int64_t of(std::int64_t value) const noexcept {
     const bool beyond = value >= kMost || value <= -kMost;
     const auto size = static_cast<std::uint64_t>(beyond ? kMost : magnitude_of(value));
@@ -56,7 +58,7 @@ class RoundedRatio {
 
  private:
   std::uint64_t numerator_, denominator_, ratio_;
-  unsigned shift_ = 0;  // 12 .. 113
+  unsigned shift_ = 0;  // 12 to 113
 };
 
 }  // namespace vernier

@@ -8,10 +8,10 @@
 
 namespace vernier::commands {
 
-/// Adds one subcommand to `vernier`. The callback of the subcommand does the job. A command throws InputError
-/// (exit 1) or LimitNotMet (exit 2), and returns normally otherwise (exit 0). Any other exception of a
-/// callback is an error of Vernier (exit 70). Each command has one function of this kind;
-/// tools/commands/vernier.cpp lists the functions by topic.
+/// Adds one subcommand to the program `vernier`. The callback of the subcommand executes the command. If a
+/// command fails, it throws InputError (exit 1) or LimitNotMet (exit 2). A command that succeeds returns
+/// normally (exit 0). Any other exception of a callback is an internal error of Vernier (exit 70). Each
+/// command has one function of this type. tools/commands/vernier.cpp lists these functions by topic.
 using RegisterCommand = void (*)(CLI::App& vernier);
 
 namespace again_cli {
@@ -130,12 +130,14 @@ void register_workbench(CLI::App& vernier);
 void register_image_diff(CLI::App& vernier);
 }  // namespace workbench_cli
 
-/// Writes the result for programs: to a file, or to standard output for "-"; no output for an empty path.
-/// Throws std::logic_error if a figure that tools/docs/formats.md promises is not finite.
+/// Writes the result of a command for programs: to a file, or to standard output if the path is "-". If the
+/// path is empty, nothing is written. Throws std::logic_error if a number that tools/docs/formats.md defines
+/// is not finite.
 void write_json(const std::string& path, const nlohmann::ordered_json& result);
 
-/// type_name() of an option that names a file or a folder: which of both the help prints, and whether the
-/// command reads or writes it. The workbench confines such names to its folder (description.h).
+/// Values for type_name() of an option that names a file or a folder. The type names of file options
+/// determine what the help prints (file or folder), and whether the command reads or writes it. The workbench
+/// permits only names inside its folder for such options (description.h).
 inline constexpr const char *kReads = "FILE", *kReadsFolder = "FOLDER", *kReadsOrServer = "FILE:or server",
                             *kWrites = "FILE:written", *kWritesFolder = "FOLDER:written";
 
@@ -143,19 +145,21 @@ inline constexpr const char *kReads = "FILE", *kReadsFolder = "FOLDER", *kReadsO
 inline constexpr const char* kResidualsHelp =
     "every reading as CSV: row, observation, value, prediction, residual, u (mm or deg)";
 
-/// Output of the human-readable lines: standard output, or standard error if `--json -` uses standard output.
+/// Returns the stream for text for people: standard output, or standard error if `--json -` uses standard
+/// output.
 std::FILE* human_stream(const std::string& json_path);
 
-/// Progress of a job that may take more than two seconds, on standard error. On a terminal the progress line
-/// is updated; else each step is one line. With VERNIER_PROGRESS=lines (for a program that reads them) every
-/// step is printed immediately.
+/// Prints the progress of a command that takes more than two seconds to standard error. On a terminal one
+/// progress line is updated. If the output is not a terminal, each step is printed on its own line. If the
+/// environment variable VERNIER_PROGRESS is `lines` (for a program that reads the progress), every step is
+/// printed immediately.
 class Progress {
  public:
   explicit Progress(std::string what);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// fraction 0..1, and the present step.
+  /// `fraction`: completed share, 0..1; `step`: name of the present step.
   void update(double fraction, const std::string& step = {});
 
  private:

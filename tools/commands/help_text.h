@@ -6,11 +6,12 @@
 
 namespace vernier::commands {
 
-/// Formats the help in 80 columns: names on the left, wrapped descriptions on the right, paragraphs below.
+/// Formats the help text with 80 columns: names on the left, wrapped descriptions on the right, paragraphs
+/// below.
 class HelpText : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override;
-  /// Returns the names of an option with its value, and its description with choices and default.
+  /// Returns two texts for an option: its names with its value, and its description with choices and default.
   std::pair<std::string, std::string> option_words(const CLI::Option* option, bool is_positional) const;
   std::string make_option(const CLI::Option* option, bool is_positional) const override;
   std::string make_subcommand(const CLI::App* command) const override;

@@ -8,19 +8,22 @@
 
 namespace vernier::commands {
 
-/// Data of a report that is handed over: company, machine, serial number, operator, instrument, date,
+/// Header data of a report for a customer: company, machine, serial number, operator, instrument, date,
 /// temperature and further entries.
 struct ReportHeader {
-  std::vector<std::string> given;  // --header "serial number=4711"
-  std::string file;                // --letterhead: lines of such entries, for all reports of a shop
-  std::string language;            // --language: of a built-in catalogue; empty: English
-  std::string translation;         // --translation: file with another catalogue
+  std::vector<std::string> given;  // entries from the option --header: "serial number=4711"
+  std::string file;                // file from the option --letterhead, with such entries for all reports of
+                                   // a workshop
+  std::string language;            // language of a built-in translation, from the option --language; empty:
+                                   // English
+  std::string translation;         // file with another translation, from the option --translation
 
-  /// Returns the entries of the file, then those of the arguments. An entry that is given twice keeps its
-  /// first position and its last text. Throws InputError with file and line, or the text of the option.
+  /// Returns the entries of the file, and then the entries of the arguments. If an entry is given twice, it
+  /// keeps its first position and its last text. Throws InputError with file and line, or with the text of
+  /// the option, if an entry is not valid.
   std::vector<std::pair<std::string, std::string>> entries() const;
-  /// Returns the page with the entries and the catalogue of its language, as tools/report/report.h draws
-  /// them. Throws InputError for a wrong catalogue.
+  /// Adds the header entries and the translation to the data of a report page, in the form of
+  /// tools/report/report.h. Throws InputError if the translation file is not valid.
   nlohmann::ordered_json on(nlohmann::ordered_json page) const;
 };
 

@@ -10,23 +10,24 @@
 
 namespace vernier::commands {
 
-/// Settings of a search.
+/// Arguments of the commands that search for effects in a survey.
 struct SurveyArguments {
   std::string machine, images;
   std::vector<std::string> measurements, columns;
 };
 
-/// MACHINE, MEAS, --images and --column.
+/// Adds the arguments MACHINE, MEAS, --images and --column to a command.
 void add_survey(CLI::App& command, SurveyArguments& arguments);
 
-/// A survey after reading: columns whose role is stated are inputs of the machine, and each file has its own
-/// set-up (model::with_set_ups_of_files; machine.notes says so).
+/// A survey that was read from its files. Columns with a stated role are inputs of the machine, and each file
+/// has its own set-up (model::with_set_ups_of_files, with notes in machine.notes).
 struct Survey {
   std::string text;
   model::Machine machine;
   model::Measurement rows;
 };
-/// prepare: changes the machine after each reading of the file; may be empty. Throws InputError.
+/// `prepare`: a function that changes the machine each time after its file is read; may be empty. Throws
+/// InputError if a file is not valid.
 Survey read_survey(const SurveyArguments& arguments,
                    const std::function<model::Machine(model::Machine)>& prepare = {});
 

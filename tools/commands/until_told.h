@@ -5,10 +5,11 @@
 
 namespace vernier::commands {
 
-/// Runs a function that continues until SIGINT, SIGTERM or SIGHUP: the signal sets `stop` and then calls
-/// `on_signal` in another thread. If the function has not returned after one second, the process ends with
-/// the status `late`: a wait for a network or for a long computation does not delay the end. This end of the
-/// process loses no stored data, in the same way as a power cut.
+/// Executes a function that runs until SIGINT, SIGTERM or SIGHUP. The signal sets `stop`, and then
+/// `on_signal` is called in another thread. If the function has not returned one second after the signal, the
+/// process ends with the exit status `late`. A wait for a network or a long computation therefore does not
+/// delay the end of the process. The forced end of the process is like a power failure and loses no stored
+/// data.
 void until_told(
     const std::function<void(const std::atomic<bool>& stop)>& run,
     const std::function<void()>& on_signal = [] {}, int late = 0);

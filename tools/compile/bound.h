@@ -7,10 +7,10 @@
 
 namespace vernier::compile {
 
-/// Returns `rounding`, `table`, `function`, `input`, `lag`.
+/// Returns the name of an error source: `rounding`, `table`, `function`, `input`, `lag`.
 const char* name_of(ErrorSource source);
 
-/// Returns the bounds of all outputs.
+/// Returns the proved error bounds of all outputs (axis corrections) of a compiled program.
 std::vector<OutputBound> bounds_of(const model::Machine& machine, const Derivation& derivation,
                                    const LoweredProgram& program);
 /// Returns the proved bound of the error of the tool's direction; nullopt if the direction is not corrected.

@@ -10,9 +10,9 @@
 
 namespace vernier::compile {
 
-/// Registers during the construction of the program. Constants, channels and results have three provisional
-/// ranges of register numbers, because the number of constants is known only at the end. finish() closes the
-/// gaps between the ranges.
+/// The registers of a fixed-point program while the program is built. Constants, channels and results have
+/// three provisional ranges of register numbers, because the number of constants is known only at the end.
+/// The function finish() removes the gaps between the ranges.
 class ProgramBuilder {
  public:
   using Id = std::uint32_t;
@@ -22,39 +22,44 @@ class ProgramBuilder {
   /// Adds a constant in the finest format that can represent it, or in the given format.
   Id constant(double value);
   Id constant(double value, int fraction_bits);
-  /// Adds a channel. channel: with the range in the quantity's own counts; unit: size of a count in the
-  /// machine file's unit; reach: largest magnitude that must be representable in addition to the range
-  /// (stations of a table).
+  /// Adds a channel (an input quantity of the program). `channel`: with its range in counts of the quantity;
+  /// `unit`: size of a count in the unit of the machine file; `reach`: largest magnitude that must be
+  /// representable besides the range (stations of a table).
   Id channel(Channel channel, double unit, double reach, const std::string& name);
 
-  /// Makes register `source` of the other program a channel of this program.
+  /// Makes the register `source` of another program a channel of this program.
   Id imported(const LoweredProgram& other, std::uint32_t source);
 
-  /// Adds k*a + l*b. exact: interval of the exact value.
+  /// Adds the linear combination k*a + l*b. `exact`: interval of the exact result.
   Id linear(double k, Id a, double l, Id b, const Interval& exact, const std::string& name);
   Id product(Id a, Id b, const Interval& exact, const std::string& name);
-  /// A product of two registers, or of a register and a factor; added or subtracted.
+  /// A product of two registers, or of a register and a factor, which is added to a sum or subtracted from
+  /// it.
   struct Product {
     Id a;
     std::optional<Id> b;
-    double factor = 1;  // > 0; if there is no b
+    double factor = 1;  // factor > 0; used if the product has no register b
     bool minus = false;
   };
-  /// Adds constant + the sum of products, rounded once. exact: interval of the exact value.
+  /// Adds a constant plus a sum of products; the result is rounded once. `exact`: interval of the exact
+  /// result.
   Id dot(double constant, std::vector<Product> products, const Interval& exact, const std::string& name);
-  /// Adds an operation whose result has the given format and needs no shift. error: error of the operation
+  /// Adds an operation whose result has the given format and needs no shift. `error`: error of the operation
   /// itself, in the unit of the result.
   Id plain(Instruction step, int fraction_bits, const Interval& exact, double error, ErrorSource source,
            std::vector<Register::Use> uses, const std::string& name);
   /// Adds one interpolation in a table to the program. The interpolation has one result per column, in the
-  /// order of `results` (name, format, range, own error and uses). Returns the first result.
+  /// order of `results` (name, format, range, own error and uses). look_up() returns the register of the
+  /// first column.
   Id look_up(Id position, LoweredTable table, std::vector<Register> results);
-  /// Adds sine and cosine of an angle in deg. The cosine is in the register after the returned register.
+  /// Adds the sine and the cosine of an angle in deg, and returns the register of the sine. The cosine is in
+  /// the register after the register of the sine.
   Id sine_cosine(Id angle, const Interval& sine, const Interval& cosine);
-  /// Returns register a in the given format. If `a` already has the format, no instruction is added.
+  /// Returns a register with the value of `a` in the given format. If `a` already has this format, reformat()
+  /// adds no instruction.
   Id reformat(Id a, int fraction_bits);
 
-  /// From this call on, the value of the register counts as exact (Register::given).
+  /// Declares that the value of a register counts as exact from this call on (Register::given).
   void give(Id id) { registers_[id].given = true; }
 
   std::uint16_t add_wrap(const Wrap& wrap);
@@ -63,20 +68,21 @@ class ProgramBuilder {
   const Register& at(Id id) const { return registers_[id]; }
   const ValueRange& counts(Id id) const { return ranges_[id]; }
   double lsb(Id id) const;
-  /// Returns the number of registers so far.
+  /// Returns the number of registers that were added so far.
   std::size_t size() const;
-  /// Returns the index of a register in the finished program. Valid after the last addition.
+  /// Returns the number of a register in the finished program. final_id() is valid after the last register
+  /// was added.
   Id final_id(Id id) const;
   LoweredProgram finish(const std::vector<std::pair<Output, Id>>& outputs);
 
  private:
   Id append(const Instruction& step, std::vector<Register> results, bool& overflow);
-  /// Error that a register propagates.
+  /// Returns the error of a register that its users must include.
   double error_of(Id id) const { return registers_[id].given ? 0 : registers_[id].error; }
   double largest_count(Id id) const;
   double largest_value(const Product& p) const;
-  // Adds the terms of a sum in the format of sum_bits, for a result of result_bits. `meta` gets
-  // their errors and uses.
+  // Adds the terms of a sum with `sum_bits` fraction bits, for a result with `result_bits` fraction bits.
+  // `meta`: the register that receives the errors and uses of the terms.
   void add_terms(const std::vector<Product>& products, int sum_bits, int result_bits, Instruction& step,
                  Register& meta);
   std::string unique(const std::string& name);
@@ -90,7 +96,7 @@ class ProgramBuilder {
   std::vector<ErrorTable> table_views_;
 };
 
-/// Returns the largest number of fraction bits with which `magnitude` fits int32; at most 50.
+/// Returns the largest number of fraction bits, at most 50, with which `magnitude` fits int32.
 int fraction_bits_for(double magnitude);
 
 }  // namespace vernier::compile

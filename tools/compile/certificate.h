@@ -7,12 +7,12 @@
 
 namespace vernier::compile {
 
-/// Writes the fixed-point program as a script for Gappa (https://gappa.gitlabpages.inria.fr), which then
-/// proves the error of each output without this compiler: every sum and product with its exact rounding, one
-/// statement per output. Assumptions of the script (its hypotheses): the declared ranges; the error of a
-/// channel's format; the error and the slope of each table and function. The script does not contain the
-/// neglected terms of the error equation, the second order of the correction, and the conversion of an output
-/// to counts.
+/// Returns the fixed-point program as a script for the proof tool Gappa (https://gappa.gitlabpages.inria.fr).
+/// Gappa then proves the error of each output without this compiler. The script contains every sum and
+/// product with its exact rounding, and one statement per output. The hypotheses of the script are: the
+/// declared ranges; the error of each channel's format; the error and the slope of each table and function.
+/// The script does not contain the neglected terms of the error equation, the second order of the correction,
+/// and the conversion of an output to counts.
 std::string print_certificate(const model::Machine& machine, const CompiledMachine& compiled);
 
 }  // namespace vernier::compile

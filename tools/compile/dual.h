@@ -8,24 +8,24 @@
 
 namespace vernier::compile {
 
-/// A quantity of the chain in two parts: its value in the nominal chain, and actual minus nominal. A small
-/// difference of two large numbers is therefore never computed.
+/// A quantity of the chain in two parts: its value in the nominal chain, and the difference actual minus
+/// nominal. With these two parts, a small difference of two large numbers is never computed.
 struct Dual {
   NodeId nominal;
   NodeId delta;
 };
 
-/// Addition to the command of each axis, mm or deg. The actual chain is evaluated at command plus addition,
-/// the nominal chain at the command.
+/// Addition (correction) to the command of each axis, mm or deg. The actual chain is evaluated at the command
+/// plus this addition; the nominal chain is evaluated at the command.
 using Additions = std::map<std::size_t, NodeId>;
 
-/// Converts expressions of the machine file into duals.
+/// Converts expressions of the machine file into duals (nominal value and difference).
 class Translator {
  public:
   Translator(const model::Machine& machine, Derivation& derivation, Additions added = {})
       : machine_(machine), d_(derivation), g_(derivation.graph), added_(std::move(added)) {}
 
-  /// Throws InputError naming `text` if the expression has no fixed-point form.
+  /// Throws InputError with the text `text` if the expression has no fixed-point form.
   Dual translate(const model::Expr& expr, const std::string& text, std::size_t line);
   Dual constant(double nominal, double delta) { return {g_.constant(nominal), g_.constant(delta)}; }
   NodeId actual(const Dual& a);

@@ -4,13 +4,14 @@
 
 namespace vernier::compile {
 
-/// Selects fixed-point formats by interval analysis and writes the straight-line program. Each register has a
-/// proved error bound. tick_us: the cycle time for lags and slew limits. Throws InputError if a format or the
-/// size is not sufficient.
+/// Selects fixed-point formats by interval arithmetic and writes the error equation as a program without
+/// branches. Each register of the program has a proved error bound. `tick_us`: the cycle time for which lags
+/// and slew limits are computed. Throws InputError if no fixed-point format is sufficient or if the program
+/// is too large.
 LoweredProgram lower(const model::Machine& machine, const Derivation& derivation, std::uint32_t tick_us);
 
-/// Returns the shares of derivation.parts, computed from the registers of `tick` (the lowered program of the
-/// same derivation).
+/// Returns the program for the shares of derivation.parts. The share program uses the registers of `tick`,
+/// the lowered program of the same derivation.
 LoweredShares lower_shares(const model::Machine& machine, const Derivation& derivation,
                            const LoweredProgram& tick);
 

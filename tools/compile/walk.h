@@ -9,12 +9,12 @@
 
 namespace vernier::compile {
 
-/// One elementary step along the chain, in the order in which the steps act on the point: a rotation about a
-/// coordinate axis, or a shift along one.
+/// One elementary step along the chain: a rotation about a coordinate axis, or a shift along a coordinate
+/// axis. The steps are in the order in which they act on the tool point.
 struct Step {
   bool turn;
   int axis;  // 0..2: X Y Z
-  Dual by;   // deg or mm
+  Dual by;   // angle in deg or shift in mm
   std::string where;
   struct Part {
     std::string term;
@@ -23,27 +23,27 @@ struct Step {
   std::vector<Part> parts;  // the terms whose sum is by.delta
 };
 
-/// Returns the elementary steps of the chain: from the tool point through the tool branch to the base, then
-/// through the workpiece branch, reversed, to the workpiece.
+/// Returns the elementary steps of the whole chain: from the tool point through the tool branch to the base,
+/// and then through the reversed workpiece branch to the workpiece.
 std::vector<Step> all_steps(const model::Machine& machine, Translator& translate, Graph& graph);
 
-/// Returns the motion of a point with an axis, mm per mm or deg, in the frame before `last_turn` (null: the
-/// frame of the point). The axis may also drive the rotation `last_turn`. Throws std::domain_error if the
-/// motion has a step.
+/// Returns the motion of a point with an axis, mm per mm or deg. The frame is that before `last_turn`; if
+/// `last_turn` is null, it is the frame of the point. The same axis may also drive the rotation `last_turn`.
+/// Throws std::domain_error if the motion of the point contains a step.
 NodeVector motion_of(Graph& graph, NodeId axis, const NodeVector& point, const Step* last_turn);
 
-/// Moves a point through the chain: its nominal position, and the addition that the actual chain makes.
+/// Moves a point through the chain, and computes its nominal position and the deviation of the actual chain.
 class Walk {
  public:
-  /// neglect_mm: a higher-order term smaller than neglect_mm is omitted and entered in `neglected`.
+  /// `neglect_mm`: a higher-order term that is smaller than this limit is omitted and listed in `neglected`.
   Walk(Derivation& derivation, double neglect_mm, std::vector<Neglected>& neglected);
-  /// Returns a Walk for the direction of the tool, the z axis of its last frame, instead of a point. Shifts
-  /// do not change a direction; all lengths are those of a vector of length 1.
+  /// Returns a Walk for the direction of the tool (the z axis of its last frame) instead of a point. Shifts
+  /// do not change a direction. All lengths of this Walk are those of a vector of length 1.
   static Walk of_direction(Derivation& derivation, double neglect, std::vector<Neglected>& neglected);
 
   void take(const Step& step);
-  /// From this call on no corrected axis moves. After freeze(), nominal rotations no longer rotate the
-  /// deviation, because they rotate the axes in the same way.
+  /// Declares that no corrected axis moves from this call on. After freeze(), nominal rotations no longer
+  /// rotate the deviation, because they rotate the axes in the same way.
   void freeze() { frozen_ = true; }
 
   const NodeVector& nominal() const { return nominal_; }
@@ -51,8 +51,9 @@ class Walk {
   const std::map<std::string, NodeVector>& parts() const { return parts_; }
   /// Returns the deviation in the frame in which freeze() was called.
   const NodeVector& deviation() const { return deviation_; }
-  /// Returns the bounds of the two vectors' lengths, mm. Rotations keep a length. These bounds therefore do
-  /// not grow with every rotation, unlike the intervals of the components.
+  /// reach_mm() and spread_mm() return bounds of the lengths of nominal() and deviation(), mm. A rotation
+  /// does not change the length of a vector. The bounds of the lengths therefore do not grow with every
+  /// rotation, as the intervals of the components do.
   double reach_mm() const;
   double spread_mm() const;
 
@@ -82,11 +83,11 @@ class Walk {
   std::map<std::string, NodeVector> parts_;
   double reach_mm_ = 0, spread_mm_ = 0;
   bool frozen_ = false;
-  std::vector<Step> turns_;  // nominal turns since freeze()
+  std::vector<Step> turns_;  // nominal rotations since the call of freeze()
 };
 
-/// Returns a walk along the whole chain with `added` on the axes, in the frame after `frozen_from`
-/// steps.
+/// Returns a walk along the whole chain with the additions `added` on the axes, in the frame after
+/// `frozen_from` steps.
 Walk walked(const model::Machine& machine, Derivation& derivation, const Additions& added,
             std::size_t frozen_from, Walk walk);
 

@@ -5,9 +5,9 @@
 
 namespace vernier::create {
 
-/// One joint of an arm: Tz(d)·Rz(theta)·Tx(a)·Rx(alpha), the row of Denavit and Hartenberg. Ry(beta) follows
-/// if the next axis is nearly parallel (Hayati 1983). The position of the joint is added to theta; for a
-/// prismatic joint it is added to d.
+/// One joint of a robot arm as a row of Denavit and Hartenberg: Tz(d)·Rz(theta)·Tx(a)·Rx(alpha). If the next
+/// joint axis is nearly parallel, a rotation Ry(beta) is added (Hayati 1983). The position of the joint is
+/// added to theta. For a prismatic joint it is added to d.
 struct DhRow {
   double theta = 0, d = 0, a = 0, alpha = 0;  // deg, mm, mm, deg
   bool prismatic = false;
@@ -17,15 +17,16 @@ struct DhRow {
   bool operator==(const DhRow&) const = default;
 };
 
-/// The default arm: six joints, published lengths of the UR10e.
+/// Returns the default arm: six joints with the published lengths of the UR10e.
 const std::vector<DhRow>& default_arm();
 
-/// Reads a table of rows: a header of `theta[deg] d[mm] a[mm] alpha[deg]` in any order (optional `type` of R
-/// or P), then one row per joint. Without a theta column, theta is 0. Throws InputError with file, line and
-/// word.
+/// Reads a table of Denavit-Hartenberg rows. The header has `theta[deg] d[mm] a[mm] alpha[deg]` in any order
+/// (optional `type` of R or P); then there is one row per joint. If the table has no column theta, theta is
+/// 0. If the table is not valid, throws InputError with file, line and word.
 std::vector<DhRow> parse_dh_table(const std::string& text, const std::string& file);
 
-/// Reads one joint from "theta,d,a,alpha" or "P,theta,d,a,alpha". Throws InputError with the word.
+/// Reads one joint from a text of the form "theta,d,a,alpha" or "P,theta,d,a,alpha". Throws InputError with
+/// the wrong word.
 DhRow parse_dh_row(const std::string& words);
 
 }  // namespace vernier::create

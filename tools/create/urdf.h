@@ -9,25 +9,26 @@
 
 namespace vernier::create {
 
-/// An arm of a URDF file (Unified Robot Description Format, wiki.ros.org/urdf/XML), from its root link to one
-/// of its end links, in rows of Denavit and Hartenberg. If the axes of two joints are parallel to 0.05 rad or
-/// better, the row has Hayati's form.
+/// A robot arm from a URDF file (Unified Robot Description Format, wiki.ros.org/urdf/XML), as rows of Denavit
+/// and Hartenberg. The arm extends from the root link to one of the end links. If the axes of two joints are
+/// parallel within 0.05 rad, the row has Hayati's form.
 struct UrdfArm {
   std::string name, root, tip;
   std::vector<DhRow> rows;
   std::vector<PlannedAxis> axes;  // names and limits of the joints; deg, mm
-  std::array<double, 6> base{};   // of the first row's frame in the root's, T(X,Y,Z)·Rx·Ry·Rz: mm, deg
-  // Frame of the tip in the frame of the last row, mm.
+  /// Frame of the first row in the frame of the root link, T(X,Y,Z)·Rx·Ry·Rz: mm, deg
+  std::array<double, 6> base{};
+  // Frame of the end link in the frame of the last row, mm.
   Eigen::Matrix3d tip_rotation;
   Eigen::Vector3d tip_at;
-  /// Converts a point of the tip's frame to the frame of the last row, to 1e-9 mm.
+  /// Converts a point from the frame of the end link to the frame of the last row, rounded to 1e-9 mm.
   std::array<double, 3> tool(const std::array<double, 3>& in_tip) const;
 };
 
-/// tip: name of a link; empty: the only end of the chain with most moving joints. Joints that do not move
-/// (`fixed`) become part of the links. Throws InputError with file, line and word: no URDF, an xacro that is
-/// not expanded, a joint type that an arm does not have (floating, planar, mimic), a link that does not
-/// exist, several ends.
+/// `tip`: name of the end link; empty: the only end of the chain with the most moving joints. Joints that do
+/// not move (`fixed`) become parts of the links. Throws InputError with file, line and word for: text that is
+/// not URDF, an xacro that is not expanded, a joint type that an arm does not have (floating, planar, mimic),
+/// a link that does not exist, a robot with several ends.
 UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::string& tip);
 
 }  // namespace vernier::create

@@ -8,11 +8,12 @@ namespace vernier::derive {
 
 enum class Notation { kText, kLatex };
 
-/// Prints the expression with terms and factors in a fixed order. Every run gives the same text (GiNaC's own
-/// order depends on addresses). GiNaC's parser can read the text form if all names are identifiers.
+/// Returns an expression as text, with terms and factors in a fixed order. Every run of the program gives the
+/// same text. (The order of GiNaC itself depends on memory addresses.) The parser of GiNaC can read the text
+/// form if all names are identifiers.
 std::string print(const GiNaC::ex& expr, Notation notation);
 
-/// Returns a name in LaTeX: EXX is E_{XX}, d_lAx is \Delta \mathrm{lAx}.
+/// Returns a name in LaTeX form: EXX becomes E_{XX}, and d_lAx becomes \Delta \mathrm{lAx}.
 std::string latex_name(const std::string& name);
 
 }  // namespace vernier::derive

@@ -9,7 +9,7 @@
 
 namespace vernier::derive {
 
-/// An error equation with the bound of its remainder.
+/// An error equation with the bound of its remainder (terms of second and higher order).
 struct DerivedMachine {
   ErrorEquation equation;
   SecondOrderBound bound;
@@ -17,13 +17,13 @@ struct DerivedMachine {
   std::size_t samples = 0;
 };
 
-/// Prints one component of the deviation: 0..2 tool point (mm), 3..5 rotation vector (rad), 6..8 direction of
-/// the tool's z. The component is printed as a sum over the errors with their sensitivities in factored form.
-/// The text is "0" if there is no term.
+/// Returns one component of the deviation as text: 0..2 tool point (mm), 3..5 rotation vector (rad), 6..8
+/// direction of the tool's z axis. The text is a sum over the errors, each with its sensitivity in factored
+/// form. If the component has no term, the text is "0".
 std::string print_component(const ErrorEquation& equation, std::size_t component, Notation notation,
                             const std::string& separator = " ");
 
-/// The page that `vernier derive` prints.
+/// Returns the text that the command `vernier derive` prints.
 std::string print_text(const DerivedMachine& derived);
 /// Returns the error equation of a machine as a LaTeX fragment (amsmath).
 std::string print_latex(const DerivedMachine& derived);

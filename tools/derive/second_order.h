@@ -9,33 +9,35 @@
 
 namespace vernier::derive {
 
-/// Remainder of the first order over the declared ranges of axes and inputs, with all errors up to their
-/// magnitude.
+/// Remainder of the first-order equation over the declared ranges of axes and inputs, with all errors up to
+/// their magnitude.
 struct SecondOrder {
-  double position_mm = 0;  // norm of the missing part of the tool point's deviation
-  double axis_rad = 0;     // norm of the missing change of the tool's direction
+  double position_mm = 0;  // norm of the remainder of the tool point's deviation
+  double axis_rad = 0;     // norm of the remainder of the tool direction's change
 };
 
-/// A proved bound of the remainder, or the reason why there is no bound. The bound uses interval arithmetic,
-/// no samples. Every error is scaled by s from 0 to 1. p(s) is then a rigid chain whose motion j has at most
-/// speed D1 and acceleration D2. Therefore |p''| <= sum_j D2_j L_j + sum_turns D1_j^2 L_j + 2 sum_{i<j, i
-/// turns} D1_i D1_j L_j. L_j is the largest distance of the tool point from rotary axis j, 1 for a shift. The
-/// remainder is at most half of |p''|.
+/// A proved bound of the remainder, or the reason why no bound exists. The bound is computed with interval
+/// arithmetic and not from samples. Every error is multiplied by a factor s from 0 to 1. With errors
+/// multiplied by s, p(s) is a chain of rigid bodies whose motion j has at most the speed D1 and the
+/// acceleration D2. From this follows |p''| <= sum_j D2_j L_j + sum_turns D1_j^2 L_j + 2 sum_{i<j, i turns}
+/// D1_i D1_j L_j. In this formula, L_j is the largest distance of the tool point from the rotary axis j; L_j
+/// is 1 for a shift. The remainder of the first order is at most half of |p''|.
 struct SecondOrderBound {
   std::optional<SecondOrder> bound;
-  std::string reason;  // if there is no bound
+  std::string reason;  // reason why no bound exists
 };
 SecondOrderBound bound_second_order(const ErrorEquation& equation);
 
-/// Returns the largest remainder in `count` random poses with all errors at plus or minus their magnitude.
-/// The result is a lower limit, which shows how tight the bound is; the result is no proof. nullopt if a
+/// Returns the largest remainder in `count` random poses, with each error at plus or minus its magnitude. The
+/// result of sample_second_order() is a lower limit of the true maximum and not a proof. The sampled
+/// remainder shows how close the proved bound is. The function sample_second_order() returns nullopt if a
 /// linear axis has no range.
 std::optional<SecondOrder> sample_second_order(const ErrorEquation& equation, std::size_t count,
                                                std::uint64_t seed);
 
-/// Returns ranges of all nominal symbols: axes by min and max (if absent: the ends of the tables, a full turn
-/// for rotary axes), statics at their nominal, inputs and motion as for compile. Linear axes without a range
-/// are omitted.
+/// Returns the ranges of all nominal symbols. Axes have their min and max (if absent, the ends of the tables,
+/// or a full turn for rotary axes). Statics have their nominal values; inputs and motion have the ranges of
+/// compile. Linear axes without a range are not in the result.
 Ranges nominal_ranges(const ErrorEquation& equation);
 
 }  // namespace vernier::derive

@@ -10,29 +10,31 @@
 
 namespace vernier::derive {
 
-/// The symbols of one derivation, and conversion of the machine's expressions to these symbols. Values are in
-/// units of the machine file (mm, deg). The symbols are in rad if the file has degrees.
+/// The symbols of one derivation. The class converts the expressions of the machine to these symbols. The
+/// values are in the units of the machine file (mm, deg). If the machine file uses degrees, the symbol is in
+/// rad.
 class SymbolBook {
  public:
   explicit SymbolBook(const model::Machine& machine);
 
-  /// Returns the expression with all errors included. Throws GiNaC's pole_error and std::logic_error if the
+  /// Returns the expression with all errors included. Throws pole_error of GiNaC and std::logic_error if the
   /// expression has no value.
   GiNaC::ex value(const model::Expr& expr);
 
-  /// Decides for constants (statics) without a unit whether they are lengths or angles, from the degree of
-  /// freedom on which they act. Call settle_units once, when all motions are known. Replaces degrees by
-  /// radians in the motions.
+  /// Determines whether statics without a unit are lengths or angles. The degree of freedom on which a static
+  /// acts determines this. Call settle_units once, after all motions are known. settle_units also replaces
+  /// degrees by radians in the motions.
   void settle_units(std::vector<ElementaryMotion>& motions);
 
-  /// Gives every error its largest size, from the machine file or from `sizes`.
+  /// Sets the largest size of every error, from the machine file or from `sizes`.
   void settle_sizes(const ErrorSizes& sizes);
 
-  /// Returns the function (for example abs) that makes an error not differentiable, if `coefficient` depends
-  /// on such a function; else an empty text.
+  /// Returns the name of a function (for example abs) that makes an error not differentiable, if
+  /// `coefficient` depends on such a function; otherwise an empty text.
   std::string rough_word(const GiNaC::ex& coefficient) const;
 
-  /// Returns `wanted`, or `other` if `wanted` is already used. The returned name is then used.
+  /// Returns the name `wanted`, or `other` if `wanted` is already used. The returned name then counts as
+  /// used.
   std::string free_name(const std::string& wanted, const std::string& other);
 
   std::vector<ErrorParameter> parameters;
@@ -59,7 +61,8 @@ class SymbolBook {
   std::map<std::pair<int, std::size_t>, GiNaC::ex> known_;
   std::map<std::string, GiNaC::ex> known_opaque_;
   std::set<std::string> names_;
-  std::vector<std::pair<GiNaC::realsymbol, std::string>> rough_;  // replaces a derivative that does not exist
+  std::vector<std::pair<GiNaC::realsymbol, std::string>> rough_;  // symbols that replace a derivative that
+                                                                  // does not exist
 };
 
 }  // namespace vernier::derive

@@ -6,21 +6,21 @@
 
 namespace vernier::derive {
 
-/// True if the expression is a call of the function with this name.
+/// True if the expression is a call of the function `name`.
 bool is_call(const GiNaC::ex& e, const char* name);
 
 /// Expands the expression, including the arguments of functions.
 GiNaC::ex expand_inside(const GiNaC::ex& expr);
 
-/// Expands the expression and replaces sin^2 by 1 - cos^2. Equal trigonometric polynomials of one angle
-/// thereby become identical.
+/// Expands an expression and replaces sin^2 by 1 - cos^2. With this form, equal trigonometric polynomials of
+/// one angle have identical text.
 GiNaC::ex canonical(const GiNaC::ex& expr);
 
-/// Returns an equal expression in the shortest form found: canonical, then factored if the expression is
-/// small enough.
+/// Returns the shortest equal expression that was found. The expression is brought to canonical form, and
+/// factored if it is small enough.
 GiNaC::ex tidy(const GiNaC::ex& expr);
 
-/// Returns the number of terms of a sum, 1 for any other expression, 0 for zero.
+/// Returns the number of terms in a sum; 1 for any other expression; 0 for zero.
 std::size_t term_count(const GiNaC::ex& expr);
 
 }  // namespace vernier::derive

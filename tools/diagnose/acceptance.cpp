@@ -182,7 +182,7 @@ std::vector<std::vector<int>> place_blocks(const Evidence& evidence, std::option
     if (count_of(order) > 1) axes.emplace_back(count_of(order), std::move(order));
   }
   std::stable_sort(axes.begin(), axes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  constexpr std::size_t kOfSpace = 3;
+  constexpr std::size_t kOfSpace = 3;  // axes: eight corners
   axes.resize(std::min(axes.size(), kOfSpace));
   std::vector<int> corners(evidence.rows().size());
   for (std::size_t bit = 0; bit < axes.size(); ++bit)

@@ -8,28 +8,31 @@
 
 namespace vernier::diagnose {
 
-/// Result of leaving out whole runs, for the columns that a model would gain.
+/// Result of a leave-one-run-out test of the columns (regressors) that a model would gain.
 struct HeldOut {
-  double chi_square = 0;          // of all rows, each predicted from the other runs
-  std::vector<double> agreement;  // per run left out: cosine between its columns' part and that of all runs
+  double chi_square = 0;          // sum over all rows; each row is predicted from the other runs
+  std::vector<double> agreement;  // cosine, for each run left out, between the contribution of the watched
+                                  // columns in this run and in all runs
 };
 
-/// Predicts every run of the fit rows from the other runs, with the free parameters of the model and
-/// `columns` (any columns, after projection on the orthogonal complement of the model's free parameters).
-/// Parameters that only the held-out run determines are fitted to the held-out run. `within_runs`: leaves out
-/// parts of runs instead (for effects that are a property of a run). `watched`: first and count of the
-/// columns whose agreement is reported.
+/// Leave-one-run-out test: predicts every run of the fit rows from the other runs. The regressors are the
+/// free parameters of the model and `columns`, after projection on the orthogonal complement of those
+/// parameters. Parameters that only the held-out run determines are fitted to the held-out run.
+/// `within_runs`: true leaves out parts of runs instead of whole runs, for effects that are a property of a
+/// run. `watched_first`, `watched_count`: first index and number of the columns whose agreement is reported.
 HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                        Eigen::Index watched_count, bool within_runs = false);
 
-/// Predicts each block of the fit rows from the other blocks, like leave_runs_out. blocks: one index per fit
-/// observation.
+/// Leave-one-block-out test: predicts each block of the fit rows from the other blocks, with the method of
+/// leave_runs_out. `blocks`: the index of the block for each fit observation.
 HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                          Eigen::Index watched_count, const std::vector<int>& blocks);
 
-/// Returns blocks of whole feeds, and of whole temperatures of each thermometer. A term that was learned on
-/// features must be confirmed on such blocks, because features depend on feed and temperature. The result has
-/// one list for each quantity with two levels or more.
+/// Returns the blocks for held-out tests over levels of the feed and of each thermometer. All rows with one
+/// level of feed, or of one temperature, are in one block. A term that was learned on features must be
+/// confirmed on held-out levels of feed and temperature, because features depend on both quantities. The
+/// result of level_blocks() has one list of blocks for each quantity (feed, thermometer) with at least two
+/// levels.
 std::vector<std::vector<int>> level_blocks(const Evidence& evidence);
 
 /// Returns blocks of whole places: five stretches of an axis, its positions counted off by five, and the

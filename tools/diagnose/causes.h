@@ -7,17 +7,18 @@
 
 namespace vernier::diagnose {
 
-/// Level of the set of causes: the true cause is rejected at most one time in twenty. A cause is rejected if
-/// the data are 20 times more likely under the best cause (Markov's inequality for a likelihood ratio).
+/// Confidence level of the set of possible causes: the set excludes the true cause at most one time in
+/// twenty. A cause is rejected if the data are 20 times more likely under the best cause (Markov's inequality
+/// for a likelihood ratio).
 inline constexpr double kLevelOfCauses = 0.95;
 
-/// Returns the causes of the first step that the data do not reject, most likely first: the accepted cause,
-/// its alternatives, each period that the positions do not distinguish, and the error of the instrument.
-/// Empty if nothing is missing, or if no cause of the catalogue explains the residual. `answer`: with its
-/// verdict.
+/// Returns the possible causes of the first step of the stepwise model that the data do not reject, most
+/// likely first. The list contains the accepted cause, its alternatives, each period that the positions do
+/// not distinguish, and the error of the instrument. The list of causes is empty if no effect is missing, or
+/// if no cause of the catalogue explains the residual. `answer`: a diagnosis whose verdict is set.
 std::vector<Cause> causes_not_rejected(const Findings& found, const Diagnosis& answer);
 
-/// Returns the error of the instrument as a cause. kind: Cause::kind.
+/// Returns the error of the instrument as a cause. `kind`: a value of Cause::kind.
 Cause instrument_cause(const std::string& kind, double evidence);
 
 }  // namespace vernier::diagnose

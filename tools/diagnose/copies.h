@@ -8,15 +8,16 @@
 
 namespace vernier::diagnose {
 
-/// The rows without copies, and the sentence that states their number.
+/// The rows of a measurement without copied readings, and the sentence that states the number of copies.
 struct WithoutCopies {
   std::vector<std::size_t> kept;
   std::string sentence;
 };
 
-/// Excludes rows that repeat the readings of the row before at the same position, digit for digit, if the
-/// file repeats nearly all readings of its stays like that. Such rows are copies, and not independent
-/// readings. Returns nullopt for other files: readings of a coarse resolution agree now and then.
+/// Excludes rows that repeat the readings of the previous row at the same position in every digit. Repeated
+/// readings are excluded only if the file repeats nearly all readings of its dwells in this way. Rows with
+/// digit-for-digit equal readings are copies, not independent readings. Returns nullopt for a file with only
+/// a few repeated readings: with a coarse resolution, some readings are equal by chance.
 std::optional<WithoutCopies> without_copies(const model::Measurement& rows);
 
 }  // namespace vernier::diagnose

@@ -15,141 +15,154 @@
 
 namespace vernier::diagnose {
 
-/// Another cause in place of an accepted cause.
+/// Another effect that can replace an accepted effect as the cause.
 struct Alternative {
-  std::size_t item = 0;  // of the pool
-  double distance = 0;   // its BIC minus that of the accepted set
+  std::size_t item = 0;  // index of the alternative in the pool of candidates
+  double distance = 0;   // BIC with the alternative minus BIC of the accepted set
 };
 
-/// Alternatives to an accepted effect.
+/// Other effects that explain the readings nearly as well as an accepted effect.
 struct Alternatives {
-  std::vector<Alternative> other;  // other causes, by distance
-  std::vector<std::size_t> same;   // items with the same columns from the same kinds of quantities
+  std::vector<Alternative> other;  // other causes, in order of the distance in BIC
+  std::vector<std::size_t> same;   // candidates with the same columns, from the same kinds of quantities
 
-  /// Returns the items within a distance, in their order.
+  /// Returns the alternatives whose distance in BIC is at most `distance`, in the order of the list.
   std::vector<std::size_t> within(double distance) const;
 };
 
-/// Searches the candidates of one fitted machine for the set that explains its residual. Keeps the items that
-/// pass every acceptance test. Finder works on the linearised problem and makes no new fit.
+/// Searches the candidate effects of one fitted machine for the set that explains the residual of the fit.
+/// Finder keeps the candidate effects that pass every acceptance test. Finder uses the linearised problem and
+/// makes no new fit.
 class Finder {
  public:
-  /// `fitted`: the machine at its best fit. `progress`: share of the whole diagnosis, and the
-  /// current step.
+  /// `fitted`: the machine at its best fit. `progress`: receives the completed share of the diagnosis (0 to
+  /// 1) and the name of the current step.
   Finder(const model::Machine& fitted, const model::Measurement& measurement,
          const std::vector<effects::Effect>& effects, std::size_t most_effects,
          std::function<void(double, const std::string&)> progress, const DiagnoseThresholds& thresholds = {});
   Finder(const Finder&) = delete;
   Finder& operator=(const Finder&) = delete;
 
-  /// Searches the catalogue first, then products of quantities if the residual exceeds the noise.
+  /// Searches the catalogue of effects first. If the residual then exceeds the noise, searches products of
+  /// recorded quantities.
   void find();
 
-  /// Returns the accepted items of the pool; the item that explains most is first.
+  /// Returns the indices of the accepted effects in the pool; the effect that explains most is first.
   const std::vector<std::size_t>& chosen() const { return chosen_; }
   const Pool& pool() const { return pool_; }
   const Evidence& evidence() const { return evidence_; }
-  /// Returns the correlation of the errors of the readings beside the accepted effects.
+  /// Returns the noise model of the readings (correlation of their errors) with the accepted effects in the
+  /// model.
   fit::NoiseModel noise() const;
   const std::vector<ScannedCandidate>& candidates() const { return list_; }
 
-  /// Returns the coefficients of an item's columns within the accepted set, in the unit of its unknowns.
+  /// Returns the coefficients of a candidate's columns, fitted together with the accepted set, in the units
+  /// of the candidate's unknowns.
   Eigen::VectorXd own_coefficients(std::size_t item) const;
-  /// Returns one coefficient of an item within the accepted set for each coefficient of its term. The value
-  /// is 0 for a coefficient whose column the model or other items contain.
+  /// Returns the coefficients of a candidate's term, fitted together with the accepted set: one number for
+  /// each coefficient of the term. A coefficient is 0 if the model or other candidates contain its column.
   std::vector<double> coefficient_of_each_unknown(std::size_t item) const;
-  /// Returns the decrease of the BIC by an item alone.
+  /// Returns the decrease of the BIC if one candidate alone is added to the model.
   double score_alone(std::size_t item) const;
-  /// Returns the probability that noise alone gives such a decrease of the BIC, times the number of tested
-  /// candidates.
+  /// Returns the p-value of a candidate: the probability that noise alone decreases the BIC as much, times
+  /// the number of tested candidates (Bonferroni).
   double p_value(std::size_t item) const;
-  /// Returns the p-value of an item beside the accepted items; 1 for an item with the same columns as an
-  /// accepted item.
+  /// Returns the p-value of a candidate that is added to the accepted set. The p-value is 1 if an accepted
+  /// effect has the same columns.
   double p_value_beside(std::size_t item) const;
-  /// Returns the likelihood ratio (natural logarithm) of held-out runs: with an accepted item to without this
-  /// item. Each run is predicted from the other runs.
+  /// Returns the natural logarithm of the likelihood ratio of held-out runs: the model with an accepted
+  /// effect against the model without this effect. Each run is predicted from the other runs
+  /// (leave-one-run-out).
   double held_out_evidence(std::size_t item) const;
-  /// Returns alternatives to an accepted item, by the linear estimate; the other items are unchanged.
+  /// Returns the alternatives to one accepted effect by a linear estimate; the other accepted effects are
+  /// unchanged.
   Alternatives alternatives_to(std::size_t item) const;
-  /// Returns the BIC of a set of items whose fit has `ratio` times the chi^2 of the accepted set's fit.
+  /// Returns the BIC of a set of candidates whose chi^2 is `ratio` times the chi^2 of the accepted set.
   double criterion_of_fit(const std::vector<std::size_t>& items, double ratio) const;
-  /// Replaces an accepted item. Returns false, and changes nothing, if the new set fails an acceptance test.
+  /// Replaces the accepted effect `item` by the candidate `by`. Returns false and changes nothing if the set
+  /// with the replaced effect fails an acceptance test.
   bool replace(std::size_t item, std::size_t by);
-  /// Returns the evidence for an accepted item: half the increase of the BIC without it, by the linear
-  /// estimate. The second form: with its scanned unknowns at other values.
+  /// Returns the evidence for an accepted effect by a linear estimate: half the increase of the BIC if the
+  /// effect is removed. The second form of evidence_for uses other values of the effect's scanned unknowns
+  /// (for example a period).
   double evidence_for(std::size_t item) const;
   double evidence_for(std::size_t item, const std::vector<double>& scanned) const;
-  /// Returns other periods that fit as well as the period of an accepted item (Scanner::aliases), with the
-  /// other items unchanged.
+  /// Returns the other periods that fit as well as the period of an accepted cyclic error (Scanner::aliases).
+  /// The other accepted effects are unchanged.
   std::vector<double> aliases_of(std::size_t item) const;
-  /// Returns the factor by which chi^2 increases if an accepted item is excluded and the others are fitted
-  /// again.
+  /// Returns the factor by which chi^2 increases if one accepted effect is removed and the other effects are
+  /// fitted again.
   double growth_without(std::size_t item) const;
-  /// True if the residual beside the accepted effects is noise, by the linear estimate.
+  /// True if the residual of the model with the accepted effects is noise, by a linear estimate.
   bool linear_down_to_noise() const;
 
  private:
   void scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first = 0);
-  /// Searches the thermal responses of the structures (responses.h) beside the effects without temperature.
+  /// Searches the thermal responses of the structures (responses.h). Accepted effects that do not depend on a
+  /// temperature stay in the model.
   void search_responses();
-  /// Returns the number of accepted items that depend on a temperature.
+  /// Returns the number of accepted effects that depend on a temperature.
   std::size_t thermal_items() const;
-  /// Searches beyond the catalogue: products of recorded quantities, first pairs, then a third factor on the
-  /// best pairs.
+  /// Searches products of recorded quantities, which the catalogue does not contain: first products of two
+  /// quantities, then the best products with a third factor.
   void search_products();
-  /// Returns the products that decrease the BIC most, each product alone.
+  /// Returns the products of recorded quantities that decrease the BIC most, if each product is added alone.
   std::vector<Product> best_products();
-  /// Prepares the present entries of the pool for a selection.
+  /// Builds the selection problem from the candidates in the pool.
   void pose_problem();
-  /// Returns the position of an item in the problem; nullopt for a banned item.
+  /// Returns the index of a candidate in the selection problem; nullopt if the candidate failed a test
+  /// (banned).
   std::optional<std::size_t> entry_of(std::size_t item) const;
   void select_again();
-  /// A form that contains a simpler form is accepted only if there is evidence for its additional terms
-  /// themselves. Among forms with the same columns, the form nearest to the axis is used. share: if the
-  /// decrease of chi^2 by the simpler form is at least this share of the decrease by a richer form, the
-  /// simpler form is used. A share above 1 never selects the simpler form in this way.
+  /// Replaces an accepted form of an effect by a simpler form that it contains, unless there is evidence for
+  /// the additional terms of the richer form. Among forms with the same columns, simplify() uses the form
+  /// nearest to the axis. `share`: the simpler form is used if its decrease of chi^2 is at least this share
+  /// of the decrease by the richer form. A `share` above 1 switches this comparison of chi^2 off.
   void simplify(double share = 2);
-  /// Orders the effects: first the effect that lowers the present residual most, and so on. If the readings
-  /// have correlated errors, the most significant effect is not always the largest effect.
+  /// Orders the accepted effects. The effect that lowers the present residual most is first. If the errors of
+  /// the readings are correlated, the most significant effect is not always the largest effect.
   void order_by_size();
-  /// If the rows have no standard uncertainty u, any remaining structure counts as noise. In this case
-  /// name_simplest uses the simplest form that explains nearly the whole decrease of chi^2, if the form
-  /// passes the tests.
+  /// If the rows have no standard uncertainty u, an acceptance test counts any remaining structure as noise.
+  /// For rows without u, name_simplest uses the simplest form that explains nearly the whole decrease of
+  /// chi^2, if this form passes the tests.
   void name_simplest();
-  /// Returns the number of entries that contain a simpler form and additional terms.
+  /// Returns the number of candidates that contain the columns of the simpler form `simple` and additional
+  /// terms.
   double holders_of(std::size_t simple) const;
   void search();
-  /// Reduces the weight of readings with correlated errors: at one pose, in a run or in time.
+  /// Reduces the weight of readings whose errors are correlated at one pose, in a run or in time.
   void weigh_correlation();
   void share_poses();
-  /// The criterion of selection including the penalty of the noise model.
+  /// Returns the BIC of the accepted set, including the penalty of the noise model.
   double priced_criterion() const;
   void search_under(const fit::NoiseModel& noise);
-  /// Repeats search and noise estimate in turn until both converge. Returns the BIC, including the penalty of
-  /// the noise model.
+  /// Repeats the search for effects and the noise estimate in turn until both converge. The function
+  /// settle_noise_from() returns the BIC, including the penalty of the noise model.
   double settle_noise_from(fit::NoiseModel noise);
-  /// Returns the chosen items that change from row to row, and not only as slowly as an instrument
+  /// Returns the accepted effects whose contribution changes from row to row, faster than an instrument
   /// drifts.
   std::vector<std::size_t> quick_ones() const;
-  /// The measured object may have another position in each set-up, which affects every reading along a
-  /// normal. Returns this position as the instrument's part of an alternative, if it decreases the BIC.
-  /// explained: the residual beside all chosen items.
+  /// In each set-up the measured object may have another position, which affects every reading along a
+  /// normal. Returns the noise model with one shift of the measured object for each set-up, if these shifts
+  /// decrease the BIC enough; otherwise nullopt. `explained`: noise model of the residual of the model with
+  /// all accepted effects.
   std::optional<fit::NoiseModel> touched_anew(const fit::NoiseModel& explained) const;
-  /// True if the error that `noise` correlates by run or in time is one offset of all readings. One common
-  /// cause can have the effect of an offset of all readings. An instrument that is set up again or drifts
-  /// does not make one offset of all readings.
+  /// True if the error that `noise` correlates by run or in time is one common offset of all readings. One
+  /// cause in the machine can give all readings a common offset. An instrument that drifts, or that is set up
+  /// again, does not give all readings the same offset.
   bool is_one_offset(const fit::NoiseModel& noise) const;
-  /// Returns the unwhitened columns of several items side by side.
+  /// Returns the columns of several candidates side by side, before whitening.
   Eigen::MatrixXd raw_columns(const std::vector<std::size_t>& items) const;
-  /// Returns the decrease of chi^2 by an accepted item with its scanned unknowns at these values, beside the
-  /// other items.
+  /// Returns the decrease of chi^2 by an accepted effect whose scanned unknowns have the values `scanned`;
+  /// the other accepted effects are unchanged.
   double gain_at(std::size_t item, const std::vector<double>& scanned) const;
   std::vector<std::size_t> without(std::size_t item) const;
   Selection evaluate(const std::vector<std::size_t>& items) const;
-  /// Excludes products that would pass the tests by chance: products that depend on a few readings, and
-  /// products that repeat a failed effect of the catalogue.
+  /// Excludes products of recorded quantities that could pass the tests by chance. Chance products depend on
+  /// only a few readings, or repeat an effect of the catalogue that failed.
   void ban_hollow_products();
-  /// Returns the first acceptance test that an accepted item fails; empty if the item passes all tests.
+  /// Returns the name of the first acceptance test that an accepted effect fails; empty if the effect passes
+  /// all tests.
   std::string failed_test(std::size_t item) const;
   /// Returns the variance of a weighted reading beside the accepted set; at least 1 if u is given.
   double variance_of_reading() const;
@@ -159,24 +172,25 @@ class Finder {
   /// True if the accepted set with `alternative` in place of `item` predicts held-out runs or positions so
   /// much worse that the likelihood ratio is 20 to 1 against the alternative.
   bool predicts_worse(std::size_t alternative, std::size_t item) const;
-  /// has_input: true if the term of an item contains an input of a class. shows_in_one_block: true if
-  /// one run contains nearly all that an accepted item explains. In this case the other runs cannot confirm
-  /// the item.
+  /// has_input: true if the term of a candidate contains an input of the class `wanted`. shows_in_one_block:
+  /// true if one run contains nearly all that an accepted effect explains. If an effect acts in only one run,
+  /// the other runs cannot confirm the effect.
   bool has_input(std::size_t item, effects::InputClass wanted) const;
   bool shows_in_one_block(std::size_t item) const;
-  /// Returns the reason why a term is larger than on any real machine; empty if it is not.
+  /// Returns the reason why a term is larger than on any real machine; empty if the size is plausible.
   std::string too_large(std::size_t item) const;
-  /// Returns the reference for the size of a term. Angles: travel of the rotary axis that drives the angle,
-  /// deg (0: no such axis); lengths: reach of the machine, mm.
+  /// Returns the reference length or angle for the size of a term. For an angle the reference is the travel
+  /// of the rotary axis that drives the angle, deg (0: no such axis). For a length the reference is the reach
+  /// of the machine, mm.
   double extent_of(const effects::Candidate& candidate) const;
-  /// Returns the largest value of a term with its linear unknown at 1, over the fit rows and along the axis
-  /// that drives the term, mm or deg.
+  /// Returns the largest value of a term whose linear unknown is 1, mm or deg. The maximum is over the fit
+  /// rows and along the axis that drives the term.
   double typical_size(const effects::Candidate& candidate, std::size_t linear, std::size_t item) const;
   double largest_value(const effects::Candidate& candidate, std::size_t linear, std::size_t item,
                        const model::States& states) const;
   void accept();
-  /// Returns the probability that noise alone explains the decrease of a residual by columns, times the
-  /// number of candidates.
+  /// Returns the p-value of the decrease of a residual by these columns: the probability under noise alone,
+  /// times the number of candidates.
   double chance_of(std::size_t item, const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
                    double freedom) const;
 
@@ -184,7 +198,7 @@ class Finder {
   std::size_t most_effects_;
   std::function<void(double, const std::string&)> progress_;
   Evidence evidence_;
-  const AcceptanceThresholds& thresholds_;  // of the evidence
+  const AcceptanceThresholds& thresholds_;  // thresholds of the evidence
   std::vector<ScannedCandidate> list_;
   Scanner scanner_;
   Pool pool_;

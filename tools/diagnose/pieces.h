@@ -7,15 +7,16 @@
 
 namespace vernier::diagnose {
 
-/// Returns items that are more likely parts of one function outside the catalogue than separate causes; empty
-/// if there are no such items. A curve and a period of one axis may both be real. A third function of that
-/// axis at the same degree of freedom (or at locations with the same effect on the readings) is evidence of
-/// one function that the search did not find. If every row has only one reading, of one kind, functions of
-/// any axis count. The limit is then a fourth function of position, a third beside a curve (three
-/// coefficients or more), or a second curve. On a circle all such functions are functions of the angle, and
-/// two curves span every function of the angle. Periods that are harmonics of each other count once. Two
-/// periods that beat less than once over the measured range are one cyclic error that changes along the
-/// range, not two causes.
+/// Returns accepted effects that are likely parts of one function that the catalogue does not contain; empty
+/// if there are no such effects. A curve and a cyclic error of one axis may both be real causes. A third
+/// function of the same axis at the same degree of freedom is evidence of one function that the search did
+/// not find. Locations with the same effect on the readings count as the same degree of freedom. If every row
+/// has only one reading, of one kind, functions of any axis count together. For rows with one reading, the
+/// limit is a fourth function of position, a third function beside a curve (three coefficients or more), or a
+/// second curve. On a circular path every function of position is a function of the angle. Two curves can
+/// represent every function of the angle. Cyclic errors whose periods are harmonics of each other count as
+/// one function. Two periods with a beat of less than one cycle over the measured range are one cyclic error
+/// whose amplitude changes along the range.
 std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
                                                 const std::vector<std::size_t>& items);
 

@@ -8,22 +8,24 @@
 
 namespace vernier::diagnose {
 
-/// Evidence of held-out rows for a step from one model to another.
+/// Evidence of held-out rows for one step of the stepwise model, from one model to the next.
 struct Proof {
-  double evidence = 0;  // natural logarithm of the likelihood ratio (an e-value) of these rows, with the step
-                        // against without it
-  double expected = 0;  // its mean if the step is true; the opposite if the step is absent. In both cases its
-                        // variance is twice that value.
-  /// Returns the required evidence for the step from one model to the other. The required evidence is odds of
-  /// 20 to 1, or the odds that 99 of 100 true steps of this `expected` reach, if these odds are smaller. The
-  /// logarithm of the required evidence is at least zero. Exception: if these rows depend only weakly on the
-  /// step, the step must only not increase the error of these rows.
+  double evidence = 0;  // natural logarithm of the likelihood ratio (e-value) of the held-out rows: model
+                        // with the step against model without the step
+  double expected = 0;  // mean of the evidence if the step is true; its negative if the step is absent. The
+                        // variance of the evidence is twice this mean.
+  /// Returns the required evidence (natural logarithm) for accepting the step. The required evidence is odds
+  /// of 20 to 1. If 99 of 100 true steps with this `expected` reach only smaller odds, the smaller odds are
+  /// required. The logarithm of the required evidence is not negative, with one exception. Exception: if the
+  /// held-out rows depend only weakly on the step, the step must not make the error of these rows larger (by
+  /// more than `worse`).
   double asked(const ProofThresholds& thresholds) const;
 };
 
-/// Evaluates the check rows under two models. before, after: residuals (measured - model) of all
-/// observations; noise: correlation of the readings' errors. variance: variance of the independent noise of a
-/// weighted reading, if the stated u is too small, at least 1 (with u); without u its square in mm.
+/// Evaluates the check rows with the model before and after one step. `before`, `after`: residuals (measured
+/// - model) of all observations with the two models; `noise`: correlation of the errors of the readings.
+/// `variance`: variance of the independent noise of a weighted reading. With u it is at least 1, and exceeds
+/// 1 if the stated u is too small; without u it is in mm^2.
 Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
                           const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance);
 

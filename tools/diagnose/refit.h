@@ -10,31 +10,35 @@
 
 namespace vernier::diagnose {
 
-/// Returns the full fit of the machine with items of the pool.
+/// Function that fits the machine with the given candidates of the pool (their indices) and returns the
+/// result of this full fit.
 using FitOfItems = std::function<fit::FitResult(const std::vector<std::size_t>&)>;
 
-/// The fits that the decision compares.
+/// The fits that are compared when a cause is selected.
 struct DecisionFits {
-  const fit::FitResult& without;   // any effect
-  const fit::FitResult& accepted;  // the accepted set
+  const fit::FitResult& without;   // fit without any effect
+  const fit::FitResult& accepted;  // fit with the accepted set of effects
   FitOfItems of;
 };
 
-/// True if another fit leaves less of the fit rows, and predicts the check rows better too. Between two
-/// responses of found terms the number of terms is then no evidence: the search of the terms chose it.
-/// accepted, other: residuals (measured - model) of all observations; noise: correlation of the readings'
-/// errors. False without check rows.
+/// True if another fit has a smaller residual on the fit rows and also predicts the check rows better. If
+/// both effects are thermal responses with found terms, their numbers of terms are no evidence, because the
+/// search selected the terms. `accepted`, `other`: residuals (measured - model) of all observations with the
+/// two fits; `noise`: correlation of the errors of the readings. The function fits_and_predicts_better()
+/// returns false if there are no check rows.
 bool fits_and_predicts_better(const model::Measurement& rows, const Eigen::VectorXd& accepted,
                               const Eigen::VectorXd& other, const fit::NoiseModel& noise);
 
-/// Returns the alternatives to the first accepted item with the distances of their full fits: each fit has
-/// the alternative in place of the first item. The search uses a linear estimate of the distances; the
-/// distances of the full fits replace the estimate. Three kinds of alternatives have the distance of the
+/// Returns the alternatives to the first accepted effect, with their distances in BIC from full fits. Each
+/// fit has the alternative in place of the first effect. The search estimates the distances linearly; the
+/// distances of the full fits replace these estimates. Three kinds of alternatives have the distance of the
 /// estimate: alternatives beyond `distance_of_fits`, alternatives after the first `most`, and alternatives
-/// whose fit does not converge. A form with more unknowns is not an alternative if its fit predicts the same
-/// readings as the accepted form. A response of another structure (`thermal-response`) is fitted at any
-/// distance; its distance is at most 0 if it fits and predicts better. accepted: items, not empty. A negative
-/// distance means that the fit prefers the alternative. Cost: one fit for each alternative.
+/// whose fit does not converge. A form of an effect with more unknowns is not an alternative if its fit
+/// predicts the same readings as the accepted form. A thermal response of another structure
+/// (`thermal-response`) is fitted at any distance. The distance of a thermal response is at most 0 if it fits
+/// and predicts better than the accepted response. `accepted`: indices of the accepted effects, not empty. A
+/// negative distance means that the fit prefers the alternative. Computing time: one fit for each
+/// alternative.
 Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
                                   std::size_t most, const DecisionFits& fits);
 

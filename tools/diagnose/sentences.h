@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The texts of a diagnosis. They decide nothing.
+// Functions that write the texts of a diagnosis. The functions of this header only write text and make no
+// decision.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,34 +14,39 @@ namespace vernier::diagnose {
 /// Returns the name of a verdict in the JSON result: "missing-effect" ...
 const char* verdict_name(Verdict verdict);
 
-/// Returns "Z carriage: lag 0.137 +- 0.007 ms": cause and size for people
+/// Returns the name and size of a cause as text for people, for example "Z carriage: lag 0.137 +- 0.007 ms"
 /// (tools/effects/spoken.h).
 std::string said_of(const CandidateFinding& finding);
 
-/// Describes the tests that the residual fails, in up to three sentences, each after a blank.
+/// Describes the statistical tests that the residual fails, in up to three sentences. Each sentence begins
+/// with a blank.
 std::string where_left(const residual::FailurePicture& left);
 
-/// Describes the residual of the check rows after every step, and the steps that increase the residual. The
-/// text is empty without check rows. `accepted`: number of accepted effects.
+/// Describes the residual of the check rows after every step of the stepwise model, and names the steps that
+/// increase this residual. The text is empty if there are no check rows. `accepted`: number of accepted
+/// effects.
 std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_t accepted);
 
-/// Describes the error of all check rows if some of them were left out; else empty. Begins with a blank.
+/// Describes the error of all check rows if some check rows were excluded as outliers; otherwise the text is
+/// empty. The text begins with a blank.
 std::string all_check_rows_in_words(const ExcludedRows& left_out);
 
-/// Describes the cause with its coefficients, the next best other cause with the difference of their BIC, and
-/// the other steps. next_best: empty if there is no other cause. `steps` begins with the given model.
+/// Describes a cause with its coefficients, the next best other cause with the difference of the two BIC
+/// values, and the other steps of the stepwise model. `next_best`: name of the next best cause; empty if
+/// there is no other cause. The first element of `steps` is the given model.
 std::string cause_in_words(const CandidateFinding& cause, const std::string& next_best, double distance,
                            const std::vector<LadderStep>& steps, std::size_t accepted);
 
 /// Returns the sentence about a cyclic error whose period has aliases, with the positions to measure next.
-/// `name`: of the effect with its location; period and aliases in mm or deg of the axis.
+/// `candidate`: the cyclic error with its location; `period`, `aliases`: in mm or deg of the axis.
 std::string aliases_in_words(const effects::Candidate& candidate, double period,
                              const std::vector<double>& aliases, const model::Axis& axis);
 
 /// Returns the sentence about effects that are likely parts of one function of position.
 std::string pieces_in_words(const std::vector<std::string>& names);
 
-/// Returns "The check rows do not confirm A, B."; empty without names.
+/// Returns the sentence "The check rows do not confirm A, B." with the given names; empty if there are no
+/// names.
 std::string not_confirmed_in_words(const std::vector<std::string>& names);
 
 }  // namespace vernier::diagnose

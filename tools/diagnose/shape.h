@@ -8,42 +8,47 @@
 
 namespace vernier::diagnose {
 
-/// The error as a function of one axis at one degree of freedom, as the readings show it.
+/// The error as a function of one axis at one degree of freedom, estimated from the readings.
 struct AxisFunction {
-  double seen = 0;         // independent functions of the axis that the model's own parameters do not absorb
-  double fast_share = 0;   // share of the explained part that needs half-waves shorter than `resolved`
+  double seen = 0;         // number of independent functions of the axis that the free parameters of the
+                           // model do not absorb
+  double fast_share = 0;   // share of the decrease of chi^2 that half-waves shorter than `resolved` cause
   double resolved = 0;     // shortest half-wave that counts as smooth, unit of the axis
   double log_p = 0;        // logarithm of the probability that noise has such short half-waves
-  bool own_table = false;  // the model has free values of its own for such functions
+  bool own_table = false;  // true: the model has free parameters for functions of this axis (a table of its
+                           // own)
 };
 
-/// The part of the residual that columns explain.
+/// The decrease of chi^2 that a set of columns causes.
 struct Gain {
-  double chi_square = 0;  // in units of the noise that remains beside them
+  double chi_square = 0;  // decrease of chi^2, in units of the noise that remains with the columns in the
+                          // model
   double rank = 0;        // number of independent columns
 };
 
-/// Returns the part of the residual that the whitened columns `raw` explain beside the model's free
-/// parameters and the whitened columns `beside`.
+/// Returns the decrease of chi^2 by the whitened columns `raw`. The model's free parameters and the whitened
+/// columns `beside` are fitted too.
 Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside);
 
-/// function_of_axis uses the readings, not the selected form. The test compares half-waves down to an eighth
-/// of the measured range with half-waves of half that length. With fewer than 17 positions the half-waves are
-/// longer: two positions for each half-wave. `beside`: columns of other effects, after projection on the
-/// orthogonal complement of the model's free parameters.
+/// Estimates the error as a function of one axis. function_of_axis uses the readings, not the form that the
+/// search selected. The test compares half-waves down to an eighth of the measured range with half-waves of
+/// half this length. With fewer than 17 positions the half-waves are longer, with two positions for each
+/// half-wave. `beside`: columns of other effects, after projection on the orthogonal complement of the
+/// model's free parameters.
 AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,
                               const Eigen::MatrixXd& beside);
 
-/// Returns the logarithm of the probability that noise alone makes an accepted term appear to change along
-/// the axes. The test adds the term times the position of every axis, and times its square, beside all
-/// accepted items. A curve of one axis may change along that axis.
+/// Returns the natural logarithm of a p-value: the probability that noise alone makes an accepted term appear
+/// to change along the axes. The test adds two products to the model with all accepted effects: the term
+/// times the position of every axis, and times the square of the position. For a curve of one axis, a change
+/// along this axis is not tested.
 double log_p_of_change(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                        std::size_t item);
 
 /// Returns one sentence with the reason why an accepted effect cannot be what its name states; empty if there
-/// is no doubt. A curve of an axis must be smooth at the spacing of its stations. The readings must show more
-/// functions of the axis than the curve has coefficients. If the uncertainty is given, a term must not change
-/// along the axes in ways that its form does not contain.
+/// is no reason for doubt. A curve of an axis must be smooth at the distance of its stations. The readings
+/// must show more independent functions of the axis than the curve has coefficients. If the standard
+/// uncertainty u is given, a term must not change along the axes in ways that its form does not contain.
 std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                            std::size_t item);
 

@@ -20,88 +20,102 @@ enum class Verdict : std::uint8_t { kMissingEffect, kAmbiguous, kUnexplained, kI
 
 struct DiagnoseOptions {
   std::vector<effects::Effect> effects = effects::built_in_effects();
-  std::size_t most_effects = 5;  // steps of the stepwise model
-  std::size_t shown = 8;         // candidates that are fitted and listed
+  std::size_t most_effects = 5;  // largest number of steps of the stepwise model
+  std::size_t shown = 8;         // number of candidates that are fitted and listed
   DiagnoseThresholds thresholds;
   std::function<void(double, const std::string&)> progress = [](double, const std::string&) {};
 };
 
-/// The result of one candidate alone, by a full fit.
+/// Result of a full fit with one candidate alone.
 struct CandidateFinding {
   effects::Candidate candidate;
   std::string add;
-  std::optional<std::size_t> axis;  // axis that drives it, else the axis of the transform on which it acts
-  std::vector<fit::ParameterEstimate> parameters;  // of an accepted effect: beside all accepted effects
-  std::optional<double> rms_after_um, check_rms_before_um, check_rms_after_um;  // of lengths
-  std::optional<double> rms_after_urad, check_rms_after_urad;                   // of rotations
+  std::optional<std::size_t> axis;  // axis that drives the candidate; if there is no such axis, the axis of
+                                    // the transform on which the candidate acts
+  std::vector<fit::ParameterEstimate> parameters;  // parameters of the candidate; for an accepted effect,
+                                                   // fitted together with all accepted effects
+  std::optional<double> rms_after_um, check_rms_before_um, check_rms_after_um;  // rms residual of length
+                                                                                // readings, um
+  std::optional<double> rms_after_urad, check_rms_after_urad;                   // rms residual of rotation
+                                                                                // readings, urad
   double share = 0, p_value = 1;
   double score = 0;       // decrease of the extended BIC; above 6 is evidence
-  bool accepted = false;  // is in the stepwise model
-  std::string why_not;    // the test that it fails
+  bool accepted = false;  // true: the candidate is in the stepwise model
+  std::string why_not;    // name of the acceptance test that the candidate fails
   std::vector<std::string> confounded_with;
-  std::vector<double>
-      aliases;  // other periods that the positions cannot distinguish from its own, longest first
+  std::vector<double> aliases;  // other periods that the positions cannot distinguish from the candidate's
+                                // period, longest first
 };
 
-/// A cause that the data do not reject.
+/// A possible cause of the residual, which the data do not reject.
 struct Cause {
-  std::optional<effects::Candidate> candidate;  // no value: an error of the instrument
-  std::string kind;  // of an error of the instrument: drift, step, set-up, outliers, clock, readings
+  std::optional<effects::Candidate> candidate;  // no value: the cause is an error of the instrument
+  std::string kind;  // kind of an instrument error: drift, step, set-up, outliers, clock, readings
   std::string description, add;
-  std::optional<std::size_t> axis;  // as of CandidateFinding
-  std::optional<double> period;     // of a cyclic error, mm or deg of its axis
-  double evidence = 0;  // natural logarithm of the likelihood ratio against no cause (half a change of BIC)
+  std::optional<std::size_t> axis;  // axis with the meaning of CandidateFinding::axis
+  std::optional<double> period;     // period of a cyclic error, mm or deg of its axis
+  double evidence = 0;  // natural logarithm of the likelihood ratio of this cause against no cause (half the
+                        // change of the BIC)
 };
 
-/// The residual at the end of the stepwise model.
+/// The remaining residual at the end of the stepwise model.
 struct Remaining {
   double chi_square_per_freedom = 0;
   bool is_noise = false;
 };
 
-/// Rows that the diagnosis left out as outliers, and the error of all check rows beside the stepwise model.
+/// Number of rows that the diagnosis excluded as outliers, and the rms error of all check rows with the
+/// stepwise model.
 struct ExcludedRows {
   std::size_t rows = 0, check_rows = 0;
-  std::optional<double> check_rms_um, check_rms_urad;  // of all check rows, those left out included
+  std::optional<double> check_rms_um, check_rms_urad;  // rms error of all check rows, including the excluded
+                                                       // rows
 };
 
 struct LadderStep {
-  std::string effect, add, label;                  // empty: the model as given
-  std::string said;                                // "Z carriage: lag"
-  std::string text;                                // the machine file, fitted
-  std::optional<double> rms_um, check_rms_um;      // of lengths
-  std::optional<double> rms_urad, check_rms_urad;  // of rotations
+  std::string effect, add, label;                  // effect of this step; empty for the model as given
+  std::string said;                                // description of the effect for people: "Z carriage: lag"
+  std::string text;                                // text of the fitted machine file
+  std::optional<double> rms_um, check_rms_um;      // rms residual of length readings
+  std::optional<double> rms_urad, check_rms_urad;  // rms residual of rotation readings
   double chi_square_per_freedom = 0;
-  /// True if held-out rows confirm the candidate; the evidence is a likelihood ratio (natural logarithm).
-  /// Check rows are used for the confirmation if the step is large enough on them. Without check rows, each
-  /// run is held out in turn for the confirmation.
+  /// True if held-out rows confirm the effect of this step. The evidence is the natural logarithm of a
+  /// likelihood ratio. The check rows are used for this confirmation if the effect changes them enough. If
+  /// there are no check rows, or if their evidence is too small, each run is held out in turn for the
+  /// confirmation.
   std::optional<bool> confirmed;
   std::optional<double> evidence;
 };
 
-/// Result of a diagnosis. Locations of the candidates refer to base.machine, which may have an additional row
-/// (with_base_row).
+/// Result of a diagnosis of a machine. The locations of the candidates refer to base.machine, which may have
+/// one additional row (with_base_row).
 struct Diagnosis {
   Verdict verdict = Verdict::kConsistent;
   std::string explanation;
   fit::FitResult base;
   std::vector<CandidateFinding> candidates;
   std::vector<LadderStep> ladder;
-  std::vector<Cause> causes;  // of the first step: all that the data do not reject, most likely first
+  std::vector<Cause> causes;  // possible causes of the first step that the data do not reject, most likely
+                              // first
   Remaining remaining;
-  std::optional<ExcludedRows> left_out;  // no value: every row was used
-  std::string instrument;  // kind of the instrument's error (Cause::kind); empty unless it is a cause
+  std::optional<ExcludedRows> left_out;  // no value: the diagnosis used every row
+  std::string instrument;  // kind of the instrument's error (Cause::kind); empty if the instrument is not a
+                           // cause
   std::vector<std::string> next_measurement;
-  std::optional<std::size_t> runner_up;  // index into candidates
-  double runner_up_distance = 0;         // difference by which its criterion is worse
-  std::string machine_text;              // with all effects of the stepwise model, fitted
-  fit::FitResult end;                    // of that machine
-  residual::FailurePicture failure;      // where the fitted model fails, before any effect is added
-  residual::FailurePicture left;         // and at the end of the stepwise model
-  timebase::TimeBaseFinding time_base;   // `found` if the clock is the more likely cause
+  std::optional<std::size_t> runner_up;  // index of the second best cause in `candidates`
+  double runner_up_distance = 0;         // BIC of the second best cause minus BIC of the best cause
+  std::string machine_text;              // text of the machine file with all effects of the stepwise model,
+                                         // fitted
+  fit::FitResult end;                    // fit of the machine in `machine_text`
+  residual::FailurePicture failure;      // description of where the fitted model fails, before any effect is
+                                         // added
+  residual::FailurePicture left;         // description of where the model fails at the end of the stepwise
+                                         // model
+  timebase::TimeBaseFinding time_base;   // `found` is true if a time base error of the instrument is the more
+                                         // likely cause
   std::size_t searched = 0;              // number of tested candidates
   fit::NoiseModel noise;                 // correlation of the errors of the readings
-  fit::NoiseUnit noise_unit;             // unit of a weighted reading
+  fit::NoiseUnit noise_unit;             // unit of a weighted reading (residual / u)
 };
 
 }  // namespace vernier::diagnose

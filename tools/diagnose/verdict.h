@@ -9,28 +9,30 @@
 
 namespace vernier::diagnose {
 
-/// Results of the search and of the fits, as input of the verdict.
+/// Results of the search and of the fits, from which the verdict is determined.
 struct Findings {
   const DiagnoseOptions& options;
-  const model::Measurement& measurement;  // for the machine of the base fit
-  const model::Machine& machine;          // as given
+  const model::Measurement& measurement;  // measurement of the machine of the base fit
+  const model::Machine& machine;          // machine as the user gave it
   const Finder& finder;
-  const std::vector<std::size_t>& accepted;       // items of the stepwise model, the cause first
-  const std::set<std::size_t>& confirmed;         // items that the check rows confirm
-  const std::vector<std::string>& not_confirmed;  // names of steps that the check rows contradict
-  const Alternatives& alternatives;               // to the cause
-  const std::vector<std::size_t>& listed;         // items in the order of Diagnosis::candidates
+  const std::vector<std::size_t>& accepted;       // indices of the effects of the stepwise model; the cause
+                                                  // is first
+  const std::set<std::size_t>& confirmed;         // indices of the effects that the check rows confirm
+  const std::vector<std::string>& not_confirmed;  // names of the steps that the check rows contradict
+  const Alternatives& alternatives;               // alternatives to the cause
+  const std::vector<std::size_t>& listed;         // indices of the effects in the order of
+                                                  // Diagnosis::candidates
 
-  /// Returns the alternatives that the data do not reject.
+  /// Returns the alternatives to the cause that the data do not reject.
   std::vector<std::size_t> close() const {
     return alternatives.within(options.thresholds.acceptance.distance);
   }
 };
 
-/// Sets the verdict, its explanation and its details (`left`, `remaining`, `time_base`, `instrument`,
-/// `runner_up`, aliases and confusions of candidates). The first rule that applies determines the verdict;
-/// the table in the source gives the order of the rules. `answer`: with base, end, stepwise model and
-/// candidates.
+/// Sets the verdict, its explanation and its details in `answer`: `left`, `remaining`, `time_base`,
+/// `instrument`, `runner_up`, aliases and confusions of candidates. The first rule that applies determines
+/// the verdict. A table in the source file gives the order of the rules. `answer` must already contain the
+/// members `base` and `end`, the stepwise model and the candidates.
 void set_verdict(const Findings& found, Diagnosis& answer);
 
 }  // namespace vernier::diagnose

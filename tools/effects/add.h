@@ -6,8 +6,9 @@
 
 namespace vernier::effects {
 
-/// Returns the text of the machine file with the candidate's terms, statics (nominal 0) and inputs added. The
-/// rest of the text does not change. Throws InputError.
+/// Returns the text of the machine file to which the terms, statics (nominal 0) and inputs of a candidate
+/// effect are added. The rest of the machine file does not change. Throws InputError if the candidate cannot
+/// be added to the machine file.
 std::string add_to_machine_text(const std::string& text, const model::Machine& machine,
                                 const Candidate& candidate);
 

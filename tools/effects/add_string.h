@@ -7,9 +7,10 @@
 
 namespace vernier::effects {
 
-/// Converts a choice to its `add` string (FORMATS section 3), and back. If the string names no transform or
-/// form, the transform of the axis and the first form that fits are used. Throws InputError with the
-/// offending word.
+/// Convert a choice (an effect with its location and inputs) to its `add` string (FORMATS section 3), and an
+/// `add` string to a choice. If the `add` string names no transform or no form, parse_add_string uses the
+/// transform of the axis and the first form that fits. For a text that is not valid, throws InputError with
+/// the wrong word.
 std::string add_string(const model::Machine& machine, const Choice& choice);
 Choice parse_add_string(const std::string& text, const model::Machine& machine,
                         const std::vector<Effect>& effects);

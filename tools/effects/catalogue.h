@@ -13,33 +13,34 @@
 
 namespace vernier::effects {
 
-/// Rule for the locations where a form of an effect may act. In the rules, `q` is the axis that drives the
-/// effect.
+/// Rule for the locations in the chain where a form of an effect may act. In these rules, `q` is the axis
+/// that drives the effect.
 enum class PlaceRule : std::uint8_t {
   kOwn,       // the degree of freedom that the axis q itself moves
-  kCross,     // the other lengths of q's transform
-  kTurn,      // the other angles of q's transform
+  kCross,     // the other lengths of the transform that q moves
+  kTurn,      // the other angles of the transform that q moves
   kLength,    // every length of the chain
   kAngle,     // every angle of the chain
-  kBase,      // lengths of the transform that carries everything
-  kBaseTurn,  // angles of that transform
+  kBase,      // lengths of the transform that carries the whole machine
+  kBaseTurn,  // angles of the transform that carries the whole machine
   kSag,       // angles about a horizontal axis and lengths along gravity, of any transform
-  kJoint,     // the angle that a rotary axis moves, where gravity has a moment about it
-  kLink,      // an angle or a length of a link that several axes turn against gravity
-  kBend,      // both angles of such a link across one of its local axes, together
-  kEachAxis,  // own degrees of freedom of all axes, together, with one coefficient
-  kPair,      // own degrees of freedom of two linear axes, together
-  kNormal,    // the three lengths of the measuring frame, together, along nx ny nz
-  kSeveral,   // degrees of freedom of one transform, together; a search finds the term of each
+  kJoint,     // the angle that a rotary axis moves, if gravity has a moment about this axis
+  kLink,      // an angle or a length of a link that several axes rotate relative to gravity
+  kBend,      // both angles of such a link across one of its local axes, together with one cause
+  kEachAxis,  // the own degrees of freedom of all axes together, with one coefficient
+  kPair,      // the own degrees of freedom of two linear axes together
+  kNormal,    // the three lengths of the measuring frame together, along nx ny nz
+  kSeveral,   // degrees of freedom of one transform together; a search finds the term of each
 };
 
 /// Method that finds the values of a form's unknowns.
 enum class UnknownKind : std::uint8_t {
-  kLinear,  // the term is linear in it
-  kTime,    // a time constant: scanned from the spacing of the rows to a few times their duration, s
-  kTravel,  // a decay length: scanned from the spacing to the range of q
-  kPeriod,  // a period of q: scanned from 1/100 of the range (a plain sine: 1/1000) to most of it
-  kGrid,    // scanned over the values that the catalogue names
+  kLinear,  // the term is linear in this unknown
+  kTime,    // a time constant, s: searched from the interval between rows to a few times the duration of the
+            // rows
+  kTravel,  // a decay length: searched from the distance between positions to the range of q
+  kPeriod,  // a period of q: searched from 1/100 of the range (a plain sine: 1/1000) to most of the range
+  kGrid,    // searched over the values that the catalogue lists
 };
 
 /// Plausible values of a coefficient, in its unit.
@@ -49,12 +50,12 @@ struct PlausibleRange {
 };
 
 struct UnknownRule {
-  std::string name, unit;  // unit may hold {dof} {q} {T}
+  std::string name, unit;  // name and unit; the unit may contain {dof} {q} {T}
   UnknownKind kind = UnknownKind::kLinear;
-  double limit = 0;          // kLinear: largest plausible size of the whole term, mm or deg; 0: none
-  PlausibleRange plausible;  // kLinear: of the unknown itself
-  double low = 0, high = 0;  // kGrid
-  std::size_t count = 0;     // kGrid, logarithmic
+  double limit = 0;          // for kLinear: largest plausible size of the whole term, mm or deg; 0: no limit
+  PlausibleRange plausible;  // for kLinear: plausible range of the unknown itself
+  double low = 0, high = 0;  // for kGrid: lowest and highest value
+  std::size_t count = 0;     // for kGrid: number of values, on a logarithmic scale
 };
 
 /// One form of an effect: its term, its unknowns and its location rule. The term is an expression with
@@ -69,9 +70,9 @@ struct EffectForm {
   std::string label;
   PlaceRule place = PlaceRule::kOwn;
   std::string term;
-  bool rare = false;                  // less frequent than the effect's other forms
-  std::vector<model::ExprPtr> trees;  // the parsed term: one tree, two for a pair
-  std::set<std::string> marks;        // of its placeholders: q, T, hats ...
+  bool rare = false;                  // true: this form is less frequent than the other forms of the effect
+  std::vector<model::ExprPtr> trees;  // the parsed term: one tree, or two trees for a pair
+  std::set<std::string> marks;        // names of the placeholders: q, T, hats ...
   std::size_t hats = 0;               // N of {hats N}
 
   bool asks_for(const std::string& mark) const { return marks.contains(mark); }
@@ -84,50 +85,51 @@ struct EffectForm {
   }
 };
 
-/// Parses form.term and fills the other members of the form from it. Throws ExpressionError.
+/// Parses form.term, and sets the other members of the form from the term. Throws ExpressionError if the term
+/// is not valid.
 void read_term(EffectForm& form);
-/// Returns the placeholders in a name of a term: dir{q} has q, {hats 5} has "hats 5".
+/// Returns the placeholders in a name: q for dir{q}, "hats 5" for {hats 5}.
 std::vector<std::string> marks_in(const std::string& name);
 
-/// The number that describes an effect to a person. The size is the factor times one unknown, or times the
-/// root of the sum of the squares of several unknowns (the amplitude of a sine and a cosine).
+/// The number that states the size of an effect to a person. The size is the factor times one unknown, or
+/// times the root of the sum of the squares of several unknowns (the amplitude of a sine and a cosine).
 struct EffectSize {
   double factor = 1;
-  std::vector<std::string> unknowns;  // by their names in the catalogue
+  std::vector<std::string> unknowns;  // names of the unknowns in the catalogue
 };
 
 /// An entry of the catalogue: an effect that a report may name as missing.
 struct Effect {
   std::string id, title, formula, signature, exposed_by;
-  std::string short_name;          // follows the part of the machine: "Z carriage: lag"
-  std::optional<EffectSize> size;  // absent: no single number describes it
+  std::string short_name;          // follows the name of the machine part, as in "Z carriage: lag"
+  std::optional<EffectSize> size;  // no value if no single number describes the size of the effect
   std::vector<std::string> impostors;
-  bool rare = false;           // rare: needs more evidence than its alternatives
-  bool needs_touches = false;  // only readings along a surface's normal can show it
+  bool rare = false;           // true: the effect is rare and needs more evidence than its alternatives
+  bool needs_touches = false;  // true: only readings along the normal of a surface can show the effect
   std::string
-      of_instrument;  // caused by the instrument, not an error of the machine: the verdict in a sentence
-  std::string
-      cause;  // effects of one cause, axis and input differ in location or shape: they are no alternatives
+      of_instrument;  // sentence for the verdict if the instrument, and not the machine, causes the effect
+  std::string cause;  // effects with the same cause, axis and input differ only in location or shape and are
+                      // not alternatives
   std::vector<EffectForm> forms;
   std::vector<UnknownRule> unknowns;
 
   const UnknownRule* find_unknown(std::string_view name) const;
-  /// True if the terms are those of a search: each choice has its own (Choice::term).
+  /// True if a search finds the terms of this effect. Each choice then has its own term (Choice::term).
   bool has_found_terms() const { return !forms.empty() && forms.front().place == PlaceRule::kSeveral; }
 };
 
-/// Parses effects from a text in the format of tools/docs/effects.md. `file` is for messages.
-/// Throws InputError with file, line and word.
+/// Parses effects from a text in the format of tools/docs/effects.md. `file`: name of the file in messages.
+/// If the text is not valid, throws InputError with file, line and word.
 std::vector<Effect> parse_effects(const std::string& text, const std::string& file);
 
-/// Returns the catalogue that comes with the program.
+/// Returns the catalogue of effects that is part of the program.
 const std::vector<Effect>& built_in_effects();
 
-/// Returns the catalogue with the entries of users' files added. An entry with a known id replaces the
-/// catalogue entry.
+/// Returns the built-in catalogue with the effects of the users' files added. An effect in a user's file
+/// replaces the built-in effect with the same id.
 std::vector<Effect> effect_catalogue(const std::vector<std::string>& files);
 
-/// Returns the name of a location rule as the catalogue writes it.
+/// Returns the name of a location rule as it is in the catalogue.
 const char* place_name(PlaceRule rule);
 
 }  // namespace vernier::effects

@@ -7,11 +7,11 @@
 
 namespace vernier::effects {
 
-/// Returns the offset of an element's name in the text from which the element was read.
+/// Returns the position of an element's name in the text from which the element was read, in bytes from 0.
 std::size_t offset_of(const pugi::xml_node& node);
 
-/// Inserts `lines` at the end of an element's content. If the closing tag is on a separate line, the lines
-/// are inserted before that line. An empty element is opened.
+/// Inserts `lines` at the end of an element's content. If the closing tag of the element is on a separate
+/// line, the lines are inserted before this line. An empty element (<name/>) gets a separate closing tag.
 text::TextEdit at_end_of(const std::string& text, const pugi::xml_node& node, const std::string& lines);
 
 }  // namespace vernier::effects

@@ -6,8 +6,9 @@
 
 namespace vernier::evaluate {
 
-/// "A=10um" as a characteristic and a value in `unit`, mm or deg: a length is no limit of an angle. `names`:
-/// names of the known characteristics. Throws InputError with the option and its text.
+/// Reads a limit such as "A=10um": the characteristic, and its value in `unit` (mm or deg). A length is not
+/// permitted as the limit of an angle. `names`: names of the known characteristics. Throws InputError with
+/// the name of the option and its text.
 std::pair<std::string, double> limit_of(const std::string& words, const std::string& option,
                                         const std::vector<std::string>& names,
                                         const std::string& unit = "mm");

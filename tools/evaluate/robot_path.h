@@ -8,21 +8,23 @@
 
 namespace vernier::evaluate {
 
-/// ISO 9283:1998, 8.2 and 8.3: AT_P and RT_P, the largest at the stations.
+/// Results of ISO 9283:1998, 8.2 and 8.3: AT_P and RT_P, which are the largest values at the stations.
 struct PathResult {
   std::vector<PoseResult> stations;
-  std::size_t accuracy_at = 0, repeatability_at = 0;  // the station of the largest
+  std::size_t accuracy_at = 0, repeatability_at = 0;  // index of the station with the largest value
 };
 
-/// Evaluates a path that was followed in several cycles (runs). Samples are in time order and need not be at
-/// the same positions. Stations are equally spaced along the commanded path of the first cycle. A cycle is
-/// evaluated where its measured path crosses the plane perpendicular to the commanded path. Between samples
-/// the path is linear. The ends of the path are excluded, because no sample is beyond them. Throws
-/// InputError: fewer than two cycles, a path without length, a station that a cycle does not cross.
+/// Evaluates a path that a robot followed in several cycles (runs). The samples are in time order. The
+/// samples need not be at the same positions in each cycle. The stations have equal distances along the
+/// commanded path of the first cycle. At a station, a cycle is evaluated where its measured path crosses the
+/// plane perpendicular to the commanded path. Between samples, the path is interpolated linearly. The ends of
+/// the path are not evaluated, because there are no samples beyond them. Throws InputError if there are fewer
+/// than two cycles, if the path has no length, or if a cycle does not cross a station.
 PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations);
 
-/// Reads the rows of a measurement file with columns px py pz (commanded) and x y z (measured), mm; run, u, t
-/// if present. Check rows are included; a row without a reading is skipped. Throws InputError.
+/// Reads pose readings from a measurement file. The columns of the file are px py pz (commanded) and x y z
+/// (measured), mm, and optionally run, u, t. Check rows are used too. A row without a reading is ignored.
+/// Throws InputError if the file is not valid.
 std::vector<PoseReading> read_pose_readings(const std::string& text, const std::string& file);
 
 }  // namespace vernier::evaluate

@@ -4,7 +4,7 @@
 
 namespace vernier::exchange {
 
-/// A file of the folder that an export writes. name: relative to the folder.
+/// A file in the folder that an export command writes. `name`: path relative to this folder.
 struct ConfigurationFile {
   std::string name, text;
 };

@@ -7,28 +7,29 @@
 
 namespace vernier::exchange {
 
-/// An error of the machine that an exchange format cannot represent, and the size of the error.
+/// An error of the machine that an exchange format cannot represent, and the size of this error.
 struct LeftOut {
   std::string what;
   double um = 0;
-  bool other_axis = false;  // depends on the position or direction of another axis
+  bool other_axis = false;  // true: the error depends on the position or direction of another axis
 };
 
-/// Limit above which an error counts, um: a tenth of the finest digit in the tables of controllers.
+/// Limit below which an error is negligible, um. The limit is a tenth of the finest digit in the tables of
+/// controllers.
 inline constexpr double kNothing_um = 0.01;
 
 /// Finds the variables, other than the position and direction of `axis`, on which the first-order offset of
-/// `axis` depends. The result has one entry for each significant variable (other axes, inputs, speed, travel
-/// since reversal …): the largest change at random states (fixed seed) within the axis ranges. `at`: the
-/// fixed state (count 1).
+/// `axis` depends. The result of beyond_own_axis() has one entry for each significant variable (other axes,
+/// inputs, speed, travel since reversal …). The size is the largest change at random states (fixed seed)
+/// within the axis ranges. `at`: the fixed state (one state).
 std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t axis,
                                      const model::States& at);
 
-/// Deviations that stay when all tables are zero (position errors, scale factors, user terms): the largest at
-/// random states.
+/// Returns deviations that remain if all tables are zero (position errors, scale factors, terms of the user):
+/// the largest value at random states.
 std::vector<LeftOut> beyond_tables(const model::Machine& machine, const model::States& at);
 
-/// Throws with all reasons, unless `allowed` is true. Throws InputError.
+/// Throws InputError with a list of all errors in `left_out`, unless the list is empty or `allowed` is true.
 void refuse(const model::Machine& machine, const std::string& format, const std::vector<LeftOut>& left_out,
             bool allowed);
 

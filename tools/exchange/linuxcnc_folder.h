@@ -8,11 +8,12 @@
 
 namespace vernier::exchange {
 
-/// Returns the files that add the compensation to a working LinuxCNC configuration, in addition to the
-/// correction image. Files: INI lines (vernier.ini), a HAL file that is loaded last (vernier.hal), and
-/// instructions to install and remove them (README.md). The joints, from 0, are the axes of the machine in
-/// the order of its file. folder: its name beside the user's INI file. Throws InputError: more than eight
-/// axes, more than 24 inputs, or a name that HAL does not accept.
+/// Returns the files that add the compensation to an existing LinuxCNC configuration. The returned files are
+/// used together with the correction image. The files are INI lines (vernier.ini), a HAL file that is loaded
+/// last (vernier.hal), and instructions for installation and removal (README.md). The joints of LinuxCNC
+/// (numbers from 0) are the axes of the machine in the order of the machine file. `folder`: name of the
+/// folder next to the user's INI file. Throws InputError if the machine has more than eight axes or 24
+/// inputs, or a name that HAL does not accept.
 std::vector<ConfigurationFile> linuxcnc_folder(const model::Machine& machine, const std::string& folder);
 
 }  // namespace vernier::exchange

@@ -9,7 +9,7 @@
 
 namespace vernier::exchange {
 
-/// Names of the axes of a machine with three axes.
+/// Letters of the axes of a machine with three axes.
 inline constexpr std::array<const char*, 3> kLetters = {"X", "Y", "Z"};
 
 /// The axes X, Y and Z of a three-axis machine, and their working ranges, mm.
@@ -18,14 +18,15 @@ struct ThreeAxes {
   std::array<double, 3> low{}, high{};
 };
 
-/// Throws InputError if the machine lacks one of the three linear axes, has another axis that moves, or does
-/// not state their ranges.
+/// Throws InputError if the machine does not have the three linear axes, has another axis that moves, or does
+/// not state the ranges of the axes.
 ThreeAxes three_axes(const model::Machine& machine);
 
-/// Returns the states at commands of X, Y and Z, a column each, mm. `at` (count 1): everything else.
+/// Returns the states of the machine at commands of X, Y and Z (one column for each command, mm). `at` (one
+/// state): all other values of the states.
 model::States states_at(const ThreeAxes& axes, const Eigen::Matrix3Xd& commands, const model::States& at);
 
-/// Returns the rms length of errors, a column each in mm, um.
+/// Returns the rms length of error vectors, um. `error`: one column for each vector, mm.
 double rms_um(const Eigen::Matrix3Xd& error);
 
 }  // namespace vernier::exchange

@@ -8,19 +8,21 @@
 
 namespace vernier::exchange {
 
-/// A robot as URDF (wiki.ros.org/urdf/XML), and the difference between the URDF and the machine.
+/// A robot arm in the format URDF (wiki.ros.org/urdf/XML), and the difference between the URDF model and the
+/// machine.
 struct UrdfFile {
   std::string text;
-  double worst_um = 0, worst_urad = 0;  // of tool point and tool direction
-  std::size_t positions = 0;            // that were evaluated
+  double worst_um = 0, worst_urad = 0;  // largest difference of the tool point, and of the tool direction
+  std::size_t positions = 0;            // number of positions at which the difference was computed
 };
 
-/// Returns an arm with one joint for each axis. The origin and the axis of each joint are those about which
-/// (along which) the fitted chain really moves, with the other joints at zero, or in the middle of a range
-/// without zero. Links: base_link, then one for each axis, then tool. In this position each frame is parallel
-/// to the base. URDF has ideal joints: errors that change with the joints, inputs or direction remain;
-/// worst_um states their size at 1000 poses within the ranges (fixed seed). `at` (count 1): inputs, motion.
-/// Throws InputError if an axis moves the workpiece, or if an axis moves no transform.
+/// Returns the URDF model of an arm with one joint for each axis. Origin and axis of each joint are those
+/// about which (or along which) the fitted chain really moves. The other joints are at zero, or in the middle
+/// of their range if it does not contain zero. The links are base_link, one link for each axis, and tool. In
+/// this position of the joints, each frame is parallel to the base. URDF has ideal joints. Errors that depend
+/// on joints, inputs or direction therefore remain in a URDF model. The member worst_um states their size at
+/// 1000 poses within the ranges (fixed seed). `at` (one state): values of inputs and motion. Throws
+/// InputError if an axis moves the workpiece, or if an axis moves no transform.
 UrdfFile urdf_arm(const model::Machine& machine, const model::States& at);
 
 }  // namespace vernier::exchange

@@ -11,12 +11,13 @@ struct CeresOutcome {
   Eigen::VectorXd point;
   int iterations = 0;
   bool converged = false;
-  double scale = 1;  // weighted residual beyond which the loss reduces the weight
+  double scale = 1;  // weighted residual above which the robust loss reduces the weight of a reading
 };
 
-/// Returns the factors by which a robust loss weights readings with these weighted residuals. The factor is 1
-/// within the scale of the loss. The weighted square of an outlier is then the square of the scale: this is
-/// its influence on a robust fit (Huber 1981, 6.7).
+/// Returns the factors by which a robust loss weights readings with these weighted residuals. The weight
+/// factor is 1 if the weighted residual is within the scale of the loss. The weighted square of an outlier is
+/// then the square of the scale of the loss. The square of the scale of the loss is the influence of the
+/// outlier on a robust fit (Huber 1981, 6.7).
 Eigen::VectorXd robust_shares(const Eigen::VectorXd& residual, Loss loss, double scale);
 
 /// Solves the fit problem with Ceres, for robust losses and as a cross-check of the default solver. The Ceres

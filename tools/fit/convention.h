@@ -10,14 +10,17 @@
 
 namespace vernier::fit {
 
-/// Returns the precision matrix for these scales: (scale_i scale_j)^-1 precision_ij.
+/// Returns the precision matrix of a convention for the scales `scale`: the elements are (scale_i scale_j)^-1
+/// precision_ij.
 Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const Eigen::VectorXd& scale);
 
-/// Computes scales by kind. Lengths: 3 x misfit. Angles: 3 x misfit divided by the reach. Set-ups are free,
-/// because they contain the rigid motion. Scale of periods and time constants (in a divisor, an exponent or a
-/// lag): the nominal value of the parameter. Scale of coefficients with any other unit: the value that moves
-/// their degree of freedom by 3 x misfit. A `scale` of the machine file replaces the computed scale. The
-/// scales are evaluated at the nominal machine, so they do not depend on the start of the fit.
+/// Returns the convention of a fit: the scale (plausible difference from nominal) of each parameter, computed
+/// by kind of parameter. The scale of a length is 3 x misfit. The scale of an angle is 3 x misfit divided by
+/// the reach. Parameters of a set-up have no limit, because a set-up contains the rigid motion. The scale of
+/// a period or a time constant (in a divisor, an exponent or a lag) is the nominal value of the parameter.
+/// The scale of a coefficient with any other unit is the value that moves its degree of freedom by 3 x
+/// misfit. A `scale` in the machine file replaces the computed scale of a parameter. The scales are evaluated
+/// at the nominal machine. The scales therefore do not depend on the start of the fit.
 Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
                          const model::ParameterSet& parameters);
 

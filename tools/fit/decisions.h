@@ -8,22 +8,25 @@
 
 namespace vernier::fit {
 
-/// A parameter that the readings do not determine and that the convention sets.
+/// A parameter that the readings do not determine. The convention (a prior at nominal) sets its value.
 struct Decision {
-  std::vector<std::string> parameters;  // a table's column has one name: `table.Z.rX`
+  std::vector<std::string> parameters;  // names of the parameters; a column of a table has one name:
+                                        // `table.Z.rX`
   double reach_um =
       0;  // possible motion of the tool at the edge of the measured box, one standard uncertainty
   std::string sentence;
 };
 
-/// Returns the decisions of the convention, largest reach first, at most `most`. Set-ups are
-/// excluded, because the position of the measuring frame is not an error of the machine.
+/// Returns at most `most` parameters that the convention sets, the largest possible motion of the tool
+/// (`reach_um`) first. Set-ups are excluded from the result, because the position of the measuring frame is
+/// not an error of the machine.
 std::vector<Decision> decisions_of(const FitResult& result, std::size_t most = 10);
 
-/// Says why a fit did not converge: the number of readings and of parameters; the combination of parameters
-/// along which the last step still moved; the combinations that the readings do not determine; what to do.
-/// step: the last step in units of each scale, empty if it was small. readings: of the fit rows, without
-/// those that only determine touched objects. Parts are separated by semicolons, without a final point.
+/// Returns the reason why a fit did not converge: the number of readings and of parameters, the combination
+/// of parameters that still changed in the last step, the combinations that the readings do not determine,
+/// and what to do. `step`: the last step of the fit, in units of each parameter's scale; empty if this step
+/// was small. `readings`: number of readings of the fit rows. Readings that determine only touched objects
+/// are not counted. Semicolons separate the parts of the text, and the text has no point at the end.
 std::string blame_of(const FitResult& result, const Eigen::VectorXd& step, std::size_t readings);
 
 }  // namespace vernier::fit

@@ -7,8 +7,8 @@
 
 namespace vernier::fit {
 
-/// Returns position, direction and radius of every touched object (unknown point or artefact), with standard
-/// uncertainties from the readings and from the covariance of the machine.
+/// Returns position, direction and radius of every touched object (unknown point or artefact). The standard
+/// uncertainties of the estimates come from the readings and from the covariance of the machine.
 std::vector<ThingEstimate> estimates_of_things(const FitResult& result,
                                                const model::Measurement& measurement);
 

@@ -9,25 +9,26 @@
 
 namespace vernier::fit {
 
-/// Returns the discrepancy of the model, as far as the residual shows it. For each direction of workpiece
-/// coordinates, the discrepancy is the root of the mean squared residual beyond the noise (stated u; without
-/// u repeats), mm. The discrepancy is computed for fit rows (corrected for the share that the fit absorbed)
-/// and for check rows. The larger of both discrepancies is used. A direction is included only if chance
-/// explains its residual one time in a thousand at most. A direction without readings gets the mean of the
-/// other directions. A reading belongs to the axis direction that is nearest to its own direction. The result
-/// is zero if the noise is not known.
+/// Returns the discrepancy of the model: the standard deviation of errors that the model does not contain, as
+/// the residual shows them. For each direction of workpiece coordinates, the discrepancy is the root of the
+/// mean squared residual beyond the noise, mm. The noise is the stated u, or comes from repeats if u is
+/// absent. The discrepancy is computed separately for fit rows (corrected for the share that the fit
+/// absorbed) and for check rows. The larger of the discrepancies of fit rows and check rows is the result. A
+/// direction is included only if its residual is improbable by chance (a probability of at most one in a
+/// thousand). A direction without readings has the mean variance of the other directions. A reading belongs
+/// to the coordinate direction that is nearest to its own direction. The discrepancy is zero if the noise is
+/// not known.
 Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurement& measurement);
 
-/// Returns the findings that every later command repeats. Codes of the findings: `something-missing` (value:
-/// residual over noise), `noise-unknown` (the readings have neither u nor repeats), `no-gain` (check rows
-/// against the nominal machine), `disturbed` (size of a disturbance of the survey, such as a step of the
-/// instrument, divided by the residual of the nominal machine),
+/// Returns the findings of a fit that the machine file keeps and that every later command reports. Codes of
+/// the findings: `something-missing` (value: residual over noise), `noise-unknown` (the readings have neither
+/// u nor repeats), `no-gain` (check rows against the nominal machine), `disturbed` (size of a disturbance of
+/// the survey, such as a step of the instrument, divided by the residual of the nominal machine),
 /// `check-not-independent` (share of the check rows at poses of fit rows), `not-varied` (number of
-/// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`,
-/// `size-unknown` (no reading has a known length; value: the plausible share), `taken-as-exact` (a length
-/// that gives the machine its size, and whose own error no reading shows; value 0), `far-from-nominal` (a fit
-/// of touches gave another machine than that of the file). record: with all other
-/// entries filled.
+/// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`, `size-unknown` (no
+/// reading has a known length; value: the plausible share), `taken-as-exact` (a length that gives the machine
+/// its size, and whose own error no reading shows; value 0), `far-from-nominal` (a fit of touches gave
+/// another machine than that of the file). `record`: the fit record, complete except for the findings.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);
 

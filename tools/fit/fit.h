@@ -8,13 +8,14 @@ namespace vernier::fit {
 
 const char* origin_name(Origin origin);
 
-/// Fits the machine by weighted least squares on the fit rows with residual / u (1 if u is absent). By the
-/// convention of tools/fit/convention.h, parameters that the data do not determine are as near to nominal as
-/// possible, in units of each parameter's scale. The result does not depend on the start, the order of the
-/// rows or the stages. `observability` names the combinations that the data cannot distinguish. Standard
-/// uncertainty of a parameter: from u, times sqrt(chi^2 / dof) if that exceeds 1; without u from the residual
-/// (GUM 5.2); from the scale if the data give little information. Throws InputError if the fit has no
-/// parameter or no reading.
+/// Fits the parameters of the machine by weighted least squares to the fit rows. A weighted residual is
+/// residual / u (u = 1 if u is absent). Parameters that the data do not determine are as near to nominal as
+/// possible, in units of each parameter's scale (convention of tools/fit/convention.h). The result of the fit
+/// does not depend on its start, the order of the rows or the stages. The member `observability` of the
+/// result names the combinations of parameters that the data cannot distinguish. The standard uncertainty of
+/// a parameter comes from u, times sqrt(chi^2 / dof) if that exceeds 1. Without u it comes from the residual
+/// (GUM 5.2). If the data give little information, it comes from the scale of the parameter. Throws
+/// InputError if there is no parameter to fit or no reading.
 FitResult fit(const model::Machine& machine, const model::Measurement& measurement,
               const FitOptions& options = {});
 

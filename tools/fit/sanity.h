@@ -9,49 +9,52 @@
 
 namespace vernier::fit {
 
-/// Limit of the residual divided by the reach of the model: above this share, the readings do not belong to
-/// the machine. Machines have 1e-5, hand-made robots 1e-2.
+/// Limit for the residual divided by the reach of the machine. If residual divided by reach exceeds the
+/// limit, the readings do not belong to the machine. Typical values of residual divided by reach are 1e-5 for
+/// machine tools and 1e-2 for robots made by hand.
 inline constexpr double kAbsurdResidual = 0.02;
 
-/// Limit of the misfit as a share of the reach: above this limit, known mistakes are tried on the nominal
-/// machine.
+/// Limit for the misfit divided by the reach. If misfit divided by reach exceeds the limit, known mistakes
+/// (for example a wrong unit) are tested on the nominal machine.
 inline constexpr double kFarOff = 0.05;
 
-/// `check`: the role of the rows.
+/// Returns the reading with the largest residual. `check`: true selects the check rows; false selects the fit
+/// rows.
 WorstReading worst_reading(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                            bool check);
 
 struct LikelyMistake {
-  std::string sentence;      // empty: no mistake found
-  bool one_reading = false;  // a gross reading among good ones, not a mistake of all rows
+  std::string sentence;      // empty: no mistake was found
+  bool one_reading = false;  // true: one gross reading among good readings; false: a mistake of all rows
 };
 
-/// Returns the reason why readings do not belong to this machine, in one sentence: one gross reading, two
-/// columns swapped, a unit, a sign. Each of these mistakes is tried. A mistake is accepted if its correction
-/// reduces the misfit of the nominal machine fivefold. `plausible`: a machine may have a residual of this
-/// size. After the correction of the mistake the nominal machine must explain the readings: a unit that only
-/// makes a deflection small is not accepted.
+/// Returns one sentence with the reason why the readings do not belong to this machine: one gross reading,
+/// two swapped columns, a wrong unit or a wrong sign. likely_mistake tests each of these mistakes. A mistake
+/// is accepted if its correction reduces the misfit of the nominal machine by a factor of five. `plausible`:
+/// true if a real machine can have a residual of this size. After the correction of a mistake, the nominal
+/// machine must explain the readings. A unit that only makes a deflection small is therefore not accepted as
+/// a mistake.
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                              const WorstReading& worst, bool plausible);
 
-/// Returns the sentence for a machine file without a set-up whose nominal machine fits the readings much
-/// better with one (a fifth of misfit_mm, its misfit without); else empty. For fits that failed: free
-/// parameters of a machine can replace a set-up.
+/// Returns a sentence if the machine file has no set-up and a set-up reduces the misfit of the nominal
+/// machine to less than a fifth of `misfit_mm`; otherwise an empty text. `misfit_mm`: misfit without set-up.
+/// The test is for fits that failed, because free parameters of a machine can replace a set-up.
 std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows, double misfit_mm);
 
-/// Touches of unknown points agree best if the machine does not move at all. Returns the reason if a fit of
-/// such readings gave a machine that moves the tool much less than the nominal one, in any direction; else
-/// empty.
+/// Tests for a collapsed machine: touches of unknown points agree best if the machine does not move the tool
+/// at all. Returns the reason if the fitted machine moves the tool, in any direction, much less than the
+/// nominal machine does; otherwise an empty text.
 std::string collapse_of(const model::Machine& fitted, const model::ParameterSet& parameters,
                         const model::Measurement& measurement);
 
-/// Returns the sentence for a fit of touches whose machine is another one than that of the file: a constant
-/// that turned by more than 45 deg or moved by more than a quarter of the reach, or a linear axis whose
-/// motion is 5 % more or less over the travel of the axes; else empty.
+/// Returns a sentence if a fit of touches gave a machine far from the machine file; otherwise an empty text.
+/// Limits: a constant turned by more than 45 deg or moved by more than a quarter of the reach, or the motion
+/// of a linear axis over its travel changed by 5 %.
 std::string far_from_nominal(const model::Machine& fitted, const model::ParameterSet& parameters,
                              const model::Measurement& measurement, double reach_mm);
 
-/// Returns half of the diagonal of the declared ranges of the linear axes, mm; 0 without ranges.
+/// Returns half of the diagonal of the declared ranges of the linear axes, mm; 0 if no ranges are declared.
 double half_travel_mm(const model::Machine& machine);
 
 }  // namespace vernier::fit

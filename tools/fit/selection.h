@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which parameters and which set-ups a fit is about.
+// Functions that select the parameters and the set-ups of a fit.
 #pragma once
 #include <string>
 #include <string_view>
@@ -12,7 +12,7 @@ namespace vernier::fit {
 /// True if `name` matches `pattern` (* any letters, ? one letter).
 bool matches_pattern(std::string_view pattern, std::string_view name);
 
-/// Returns the set-ups that have an observation with role fit.
+/// Returns the names of the set-ups that have at least one observation in a fit row.
 std::vector<std::string> setups_of_fit_rows(const model::Measurement& measurement);
 
 }  // namespace vernier::fit

@@ -13,8 +13,8 @@
 
 namespace vernier::fit {
 
-/// The change of the parameters that makes the whole machine larger by one share, in parameter units per 1.
-/// A length changes by itself, an angle does not.
+/// Direction in the parameters that makes the whole machine larger: the change of each parameter per relative
+/// change 1 of the size. A length parameter changes in proportion to its value; an angle does not change.
 struct SizeDirection {
   Eigen::VectorXd start, at_start, power;
   Eigen::VectorXd at(const Eigen::VectorXd& point) const {
@@ -22,22 +22,21 @@ struct SizeDirection {
   }
 };
 
-/// Returns the direction at `point`; nullopt: the free parameters cannot change the size, because linear axes
-/// or fixed lengths determine the size.
+/// Returns the size direction at `point`; nullopt if linear axes or fixed lengths determine the size, so that
+/// the free parameters cannot change it.
 std::optional<SizeDirection> size_direction(const model::Machine& machine, const model::Measurement& rows,
                                             const model::ParameterSet& parameters,
                                             const Convention& convention, const Eigen::VectorXd& point);
 
-/// Finds the lengths that determine the size of the machine, from the readings at `point`, the scales of
-/// all other parameters, and their stated priors. If the readings give no more information on the size than
-/// the convention, the size is fixed: `problem` then does not depend on the size. Only for rows with `same`
-/// or `on`, or with readings of a board; nullopt if there are no such rows.
+/// Finds the lengths that determine the size of the machine. The inputs are the readings at `point`, the
+/// scales of all other parameters, and their stated priors. If the readings give no more information about
+/// the size than the convention does, the size is fixed. The cost of `problem` then does not depend on the
+/// size. Returns nullopt if there are no rows with `same` or `on` and no readings of a board.
 std::optional<SizeOfMachine> decide_size(FitProblem& problem, const model::Machine& machine,
                                          const model::ParameterSet& parameters, const Convention& convention,
                                          const StatedPriors& stated, const Eigen::VectorXd& point);
 
-/// Returns the sentence of the finding `size-unknown`, or the sentence about the lengths that determine the
-/// size.
+/// Returns the text of the finding `size-unknown`, or a sentence about the lengths that determine the size.
 std::string size_sentence(const SizeOfMachine& size);
 
 }  // namespace vernier::fit

@@ -8,11 +8,11 @@
 
 namespace vernier::fit {
 
-/// Starts from the values of the machine file, or from nominal if nominal has the lower cost, and goes
-/// through the stages to the minimum over all parameters. solve() uses the solver that `options` name. The
-/// convention's scales apply from the start. Fills iterations, converged and stages of `result`. Reads the
-/// parameters of `result` and its number of observations. Throws InputError for a stage that matches no
-/// parameter.
+/// Minimises the cost of a fit with the solver that `options` name, and returns the parameters at the
+/// minimum. The start is the machine file, or nominal if nominal has the lower cost. The fit goes through the
+/// stages and ends with all parameters. The scales of the convention are used from the start of the fit. Sets
+/// the members iterations, converged and stages of `result`. Uses the parameters of `result` and its number
+/// of observations as input. Throws InputError if a stage does not match any parameter.
 Eigen::VectorXd solve(FitProblem& problem, const model::Machine& machine, const Convention& convention,
                       const StatedPriors& stated, const FitOptions& options, FitResult& result);
 

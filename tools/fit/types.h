@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the units of this room hand to each other: what a fit is asked for, its convention, its result.
+// Types that the source files of tools/fit have in common: the options of a fit, its convention and its
+// result.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
@@ -22,57 +23,59 @@ namespace vernier::fit {
 enum class Loss : std::uint8_t { kSquared, kHuber, kCauchy };
 enum class Solver : std::uint8_t { kNormalEquations, kCeres };
 
-/// A parameter with a prior at its nominal value (at its start value, if the file has no nominal). A Prior
-/// acts like a measurement of the nominal value with this standard uncertainty.
+/// A prior at the nominal value of a parameter. If the file has no nominal value, the prior is at the start
+/// value. A Prior acts like a measurement of the nominal value with the standard uncertainty `std`.
 struct Prior {
-  std::string pattern;  // name, with * and ? as in file names
-  double std = 0;       // in the parameter's unit
+  std::string pattern;  // name of the parameters, with * and ? as in file names
+  double std = 0;       // standard uncertainty, in the unit of the parameter
 };
 
 struct FitOptions {
   Loss loss = Loss::kSquared;
-  double loss_scale = 3;  // in units of u (of the residual's standard deviation if u is absent)
+  double loss_scale = 3;  // in units of u; if u is absent, in units of the standard deviation of the residual
   Solver solver = Solver::kNormalEquations;
   int max_iterations = 100;
-  /// Stages that are fitted one after another before all parameters are fitted together. A stage is a list of
-  /// patterns of the parameters freed in it.
+  /// Stages of the fit, one after another, before all parameters are fitted together. A stage is a list of
+  /// patterns that select the free parameters of this stage.
   std::vector<std::vector<std::string>> stages;
-  std::vector<Prior> priors;  // in addition to the convention's own
-  /// Correlation of the errors of the readings, for the uncertainties; nullopt: estimated from the
-  /// residual.
+  std::vector<Prior> priors;  // priors in addition to the priors of the convention
+  /// Noise model (correlation of the errors of the readings) for the uncertainties; nullopt: the noise model
+  /// is estimated from the residual.
   std::optional<NoiseModel> noise;
-  /// The fit calls `progress` after every iteration with the number of the iteration and the weighted sum of
+  /// The fit calls `progress` after every iteration, with the number of the iteration and the weighted sum of
   /// squares.
   std::function<void(int, double)> progress;
 };
 
-/// The source of a value.
+/// The source of a parameter's value.
 enum class Origin : std::uint8_t {
-  kData,        // readings: the convention moves it by less than 1 % of its standard uncertainty
+  kData,        // the readings determine the value; the convention moves it by less than 1 % of its standard
+                // uncertainty
   kConvention,  // the parameter is part of a combination that the readings do not determine
-  kPrior,       // not measured: nominal ± its scale
+  kPrior,       // the parameter is not measured; its value is nominal ± its scale
 };
 
 struct ParameterEstimate {
   std::string name, unit;
   double value = 0;
-  double std = 0;    // of data and convention; finite
-  double scale = 0;  // plausible difference from nominal
+  double std = 0;    // standard uncertainty from data and convention; always finite
+  double scale = 0;  // plausible difference of the value from nominal
   Origin from = Origin::kData;
 };
 
-/// Agreement of the check rows with the stated uncertainty: residual divided by the uncertainty of
-/// reading and model together.
+/// Agreement of the check rows with the stated uncertainty. The normalised error of a reading is its residual
+/// divided by the uncertainty of reading and model together.
 struct NormalisedError {
-  double rms = 0;       // 1 if model and uncertainties are right
-  double within_3 = 0;  // share of the readings
+  double rms = 0;       // rms of the normalised errors; 1 if model and uncertainties are right
+  double within_3 = 0;  // share of the readings with a normalised error up to 3
   std::size_t count = 0;
-  /// Standard uncertainty of the square of `rms`, from blocks of successive rows. square_std includes tails
-  /// and correlated errors. square_std is infinite if there are too few blocks.
+  /// Standard uncertainty of the square of `rms`, from blocks of successive rows. The value square_std
+  /// includes the influence of outliers and correlated errors. The value square_std is infinite if there are
+  /// too few blocks.
   double square_std = std::numeric_limits<double>::infinity();
 };
 
-/// Two parameters whose estimates are correlated.
+/// Two parameters whose estimates are correlated, and their correlation coefficient.
 struct Correlation {
   std::size_t first = 0, second = 0;
   double value = 0;  // -1..1
@@ -80,60 +83,64 @@ struct Correlation {
 
 /// Statistics of a fit after one of its stages.
 struct StageFigures {
-  std::string patterns;  // of the parameters freed
+  std::string patterns;  // patterns of the parameters that this stage freed
   std::size_t parameters = 0;
   int iterations = 0;
   RoleStatistics fit, check;
 };
 
-/// Value of each parameter if the data do not determine it, and its plausible difference from this value. The
-/// convention makes the result of a fit unique. Among all machines that the data cannot distinguish, the fit
-/// selects the machine nearest to nominal in these units.
+/// The convention of a fit: the value of each parameter if the data do not determine it, and its plausible
+/// difference from this value. The convention makes the result of a fit unique. Among all machines that the
+/// data cannot distinguish, the fit selects the machine that is nearest to nominal in units of the scales.
 struct Convention {
-  /// Smaller kinds are of tables. The first kind of statics: this kind and larger kinds are statics.
+  /// Number of the first kind of statics. Kinds with smaller numbers are kinds of table entries.
   static constexpr int kFirstOfStatics = 5;
-  /// Residual of the nominal machine with the best set-up: rms, mm. A machine whose errors exceed misfit_mm
-  /// in total is not plausible.
+  /// Residual of the nominal machine with the best set-up: rms, mm. If the errors of a machine exceed
+  /// misfit_mm in total, the machine is not plausible.
   double misfit_mm = 0;
-  /// Half the diagonal of the box of the measured points, mm. An angle moves the points by the lever
-  /// reach_mm.
+  /// Half the diagonal of the box around the measured points, mm. An angle error moves the points by the
+  /// angle times the length reach_mm.
   double reach_mm = 0;
   Eigen::VectorXd centre, scale;  // in the parameters' units
-  /// Expected correlation of the values, in units of their scales. Neighbours of a table's column are
-  /// correlated (0.8 exp(-distance / 2 travels)); other values are independent. `precision` is the inverse of
-  /// `correlation`.
+  /// Expected correlation of the parameter values, in units of their scales. Neighbouring values in the
+  /// column of a table are correlated (0.8 exp(-distance / 2 travels)). Other values are independent.
+  /// `precision` is the inverse of `correlation`.
   Eigen::SparseMatrix<double> correlation, precision;
-  std::vector<char> declared;  // the machine file declares the scale
-  std::vector<char> shape;     // a period or a time constant: in a divisor, exponent or lag
-  /// Parameters of one kind share the information about their size. The fit lowers the scale of a kind to the
-  /// size of the parameters that the data determine. 0: the parameter has no kind; else the number of its
-  /// kind.
+  std::vector<char> declared;  // true: the machine file states the scale of the parameter
+  std::vector<char> shape;     // true: the parameter is a period or a time constant (in a divisor, exponent
+                               // or lag)
+  /// The parameters of one kind have a common size of their errors. The fit reduces the scale of a kind to
+  /// the size of those parameters that the data determine. `kind`: number of the kind of each parameter; 0:
+  /// the parameter has no kind.
   std::vector<int> kind;
-  std::vector<int> table;  // table of an entry; -1: no table
-  /// Statics that are a slope of an axis' straightness (squareness: k*Z in X). slope_of: the table of that
-  /// axis, else -1; the second list: the length at half its travel for one unit, mm.
+  std::vector<int> table;  // table of each parameter; -1: no table
+  /// Statics that are a slope in the straightness of an axis (squareness: k*Z in X). `slope_of`: index of
+  /// that axis' table; -1 for other parameters. `slope_mm`: straightness at half the travel of the axis for a
+  /// value 1 of the static, mm.
   std::vector<int> slope_of;
   Eigen::VectorXd slope_mm;
-  /// Rows that touch objects: upper limit of each scale, in the parameters' units; else empty.
+  /// Upper limit of each scale if the rows touch objects, in the units of the parameters; empty if no rows
+  /// touch objects.
   Eigen::VectorXd most;
-  /// Parameters that no reading shows: touched objects follow them, and what is left is noise. Empty without
-  /// such rows.
+  /// Flags of the parameters that no reading shows, because the fitted touched objects absorb their effect.
+  /// The remaining effect is noise. `unseen` is empty if no rows touch objects.
   std::vector<char> unseen;
-  std::vector<bool> unseen_turn;  // rotation of a set-up that the readings show in second order only
+  std::vector<bool> unseen_turn;  // true: rotation of a set-up that affects the readings only in second order
 };
 
 /// The reading with the largest residual after a fit.
 struct WorstReading {
-  double ratio = 0;     // its weighted residual divided by the spread of all (from their median)
-  double share = 0;     // of the sum of squares
-  std::string reading;  // "survey.csv:57 z"
+  double ratio = 0;     // weighted residual of the reading divided by the standard deviation of all residuals
+                        // (from their median)
+  double share = 0;     // share of this reading in the sum of squares
+  std::string reading;  // name of the reading: "survey.csv:57 z"
 };
 
 /// Position, direction and radius of a touched object (`same`, `on`).
 struct ThingEstimate {
-  std::string name, setup, type;    // type: `same`, or the type of the artefact
-  bool in_measuring_frame = false;  // else in workpiece coordinates
-  std::size_t touches = 0;          // rows of the fit
+  std::string name, setup, type;    // `type`: `same`, or the type of the artefact
+  bool in_measuring_frame = false;  // true: in the measuring frame; false: in workpiece coordinates
+  std::size_t touches = 0;          // number of fit rows that touch the object
   Eigen::Vector3d place_mm = Eigen::Vector3d::Zero(), u_place_mm = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> direction;
   double u_direction_deg = 0;
@@ -143,53 +150,62 @@ struct ThingEstimate {
 
 /// The lengths that determine the size of the machine.
 struct SizeOfMachine {
-  bool known = false;       // false: held at nominal
-  bool has_length = false;  // of a size at nominal: there are known lengths, and they do not determine it
-  double relative_std = 0;  // standard uncertainty of the size, as a share; of nominal: the plausible share
-  std::string from;         // "distances", "known radius", "board", "machine", "nominal" ...
-  /// Lengths that the fit does not change and that limit the size of the machine: names of constants, scales
-  /// of axes. Empty if the fit can change the size as a whole.
+  bool known = false;       // false: the size is fixed at nominal
+  bool has_length = false;  // for a size at nominal: true if there are known lengths that do not determine
+                            // the size
+  double relative_std = 0;  // relative standard uncertainty of the size; for a size at nominal, the plausible
+                            // relative difference
+  std::string from;         // source of the size: "distances", "known radius", "board", "machine", "nominal"
+                            // ...
+  /// Names of the lengths that limit the size of the machine and that the fit does not change: constants,
+  /// scales of axes. `fixed` is empty if the fit can change the size of the machine as a whole.
   std::vector<std::string> fixed;
 };
 
 struct FitResult {
-  model::Machine
-      machine;  // with the fitted values; a free static without `nominal` has its start value there
+  model::Machine machine;  // machine with the fitted values; the `nominal` of a free static without one is
+                           // its start value
   model::ParameterSet parameters;
   std::vector<ParameterEstimate> estimates;
   Observability observability;
   RoleStatistics before, after, check;
   std::optional<double> noise_um;
-  NoiseModel noise;                    // correlation of the errors of the readings, as the covariance uses it
-  double misfit_mm = 0, reach_mm = 0;  // basis of the scales (tools/fit/convention.h)
-  Eigen::MatrixXd covariance;          // of all parameters, including the convention
-  Eigen::MatrixXd open;                // part of it: what no reading determines
-  double chi_square = 0;               // weighted sum of squares at the end
-  double freedom = 0;                  // observations minus the number of fitted parameters
-  double variance_factor = 1;          // factor by which the covariance was multiplied
-  std::vector<Correlation> correlations;  // above 0.9 in magnitude, largest first
+  NoiseModel noise;                       // noise model (correlation of the errors of the readings) that the
+                                          // covariance uses
+  double misfit_mm = 0, reach_mm = 0;     // misfit and reach, from which the scales are computed
+                                          // (tools/fit/convention.h)
+  Eigen::MatrixXd covariance;             // covariance of all parameters, including the convention
+  Eigen::MatrixXd open;                   // part of the covariance from parameters that no reading determines
+  double chi_square = 0;                  // weighted sum of squares at the end of the fit
+  double freedom = 0;                     // observations minus the number of fitted parameters
+  double variance_factor = 1;             // factor that multiplies the covariance
+  std::vector<Correlation> correlations;  // correlations above 0.9 in magnitude, largest first
   std::optional<NormalisedError>
-      normalised_check;  // if there are check rows with an uncertainty of their readings
-  std::vector<std::pair<std::string, double>> priors;  // parameter, standard uncertainty
-  std::vector<ThingEstimate> things;                   // that rows met
-  std::optional<SizeOfMachine> size;                   // if rows met things or a board
-  std::vector<StageFigures> stages;                    // as requested, then one with all parameters
-  WorstReading worst, worst_check;                     // of the fit rows; of the check rows
-  /// rms of the fitted machine on check rows, divided by the rms of the nominal machine. The fitted machine
-  /// and the nominal machine both use the set-up of the fit rows. If there are enough check rows, a second
-  /// ratio uses a set-up of each machine that is fitted to the check rows. check_ratio is the larger of the
-  /// first and the second ratio; nullopt if there are too few check rows.
+      normalised_check;  // no value without check rows, or if no degree of freedom remains
+  std::vector<std::pair<std::string, double>> priors;  // name of a parameter and the standard uncertainty of
+                                                       // its prior
+  std::vector<ThingEstimate> things;                   // objects that the rows touch
+  std::optional<SizeOfMachine> size;                   // no value if the rows have no touched objects and no
+                                                       // board
+  std::vector<StageFigures> stages;                    // the stages as requested, then one stage with all
+                                                       // parameters
+  WorstReading worst, worst_check;                     // worst: of the fit rows; worst_check: of the check
+                                                       // rows
+  /// Ratio of two rms residuals on the check rows: fitted machine divided by nominal machine. For the first
+  /// ratio, both machines use the set-up of the fit rows. If there are enough check rows, a second ratio uses
+  /// a set-up of each machine that is fitted to the check rows. The result check_ratio is the larger of both
+  /// ratios; nullopt if there are too few check rows.
   std::optional<double> check_ratio;
-  /// Reason why the readings cannot be readings of this machine; empty if there is no such reason.
+  /// Reason why the readings do not belong to this machine; empty if there is no such reason.
   std::string absurd;
-  /// The part of `absurd` that names a mistake of all rows (a unit, a sign, columns swapped);
+  /// The part of `absurd` that names a mistake of all rows (a wrong unit, a wrong sign, swapped columns);
   /// empty if no such mistake was found.
   std::string mistake;
   int iterations = 0;
   bool converged = false;
-  Eigen::VectorXd residual;  // measured - model per observation, mm or deg
-  /// Variance of the prediction of each reading from the covariance (mm^2, deg^2); empty if no
-  /// degree of freedom remains.
+  Eigen::VectorXd residual;  // measured - model of each observation, mm or deg
+  /// Variance of the predicted value of each reading, from the covariance of the parameters (mm^2, deg^2);
+  /// empty if no degree of freedom remains.
   Eigen::VectorXd prediction_variance;
 };
 

@@ -12,13 +12,14 @@
 
 namespace vernier::fleet {
 
-/// Reads one board and returns its values as metrics.
+/// Reads the state of one board and returns its values as metrics.
 class BoardReader {
  public:
-  /// Opens the board. Throws InputError if the board is not available, LimitNotMet if it is not the requested
-  /// board.
+  /// Opens the connection to the board. Throws InputError if the board is not available, and LimitNotMet if
+  /// it is not the requested board.
   explicit BoardReader(const GatewayBoard& board);
-  /// Present state of the board: names of tools/docs/fleet.md. Throws as upload::Client.
+  /// Reads the present state of the board. The names of the metrics are in tools/docs/fleet.md. Throws the
+  /// exceptions of upload::Client.
   std::vector<Metric> read();
 
  private:
@@ -30,7 +31,8 @@ class BoardReader {
   std::vector<Metric> check_;
 };
 
-/// The metrics of a file that `vernier check --json` wrote at time_us; empty for another file.
+/// Returns the metrics of a file that `vernier check --json` wrote at the time `time_us`; empty if the file
+/// has other content.
 std::vector<Metric> check_metrics(const std::string& json, std::int64_t time_us);
 
 }  // namespace vernier::fleet

@@ -11,8 +11,8 @@ namespace vernier::fleet {
 /// A machine whose board a gateway reads.
 struct GatewayBoard {
   std::string machine, url;
-  std::string board;  // the name that the board must have; empty: any
-  std::string check;  // file of `vernier check --json`; empty: none
+  std::string board;  // name that the board must have; empty: any name
+  std::string check;  // file that `vernier check --json` writes; empty: no file
 };
 
 /// Settings of a gateway (TOML; tools/docs/fleet.md).
@@ -24,8 +24,8 @@ struct GatewayFile {
   std::vector<GatewayBoard> boards;
 };
 
-/// Throws InputError with file, line and word. Relative paths in the gateway file refer to the folder of the
-/// file.
+/// Reads the settings of a gateway. Throws InputError with file, line and word if they are not valid.
+/// Relative paths in the gateway file are relative to the folder of this file.
 GatewayFile parse_gateway_file(const std::string& text, const std::string& path);
 
 }  // namespace vernier::fleet

@@ -13,13 +13,15 @@ namespace vernier::fleet {
 struct RolloutOptions {
   std::string name;
   upload::SigningKey key;
-  double watch_s = 10;   // on trial and in effect without a break, before the image is judged
-  double settle_s = 10;  // until an image must be in effect
-  double lease_s = 60;   // of the lock of a machine; a killed caller's lock ends after it
-  std::string judge;     // a shell's command: 0 not worse, anything else worse or not known; empty: only the
-                         // board is watched
-  bool go_on = false;    // machines that were taken back are tried again
-  bool take_over_trial = false;  // a trial of another caller is reverted
+  double watch_s = 10;   // time for which the image must be on trial and in use without interruption before
+                         // it is evaluated
+  double settle_s = 10;  // longest time until an image must be in use
+  double lease_s = 60;   // duration of the lease (lock) of a machine; the lock of a killed program ends after
+                         // this time
+  std::string judge;     // shell command that evaluates a machine: exit status 0 means not worse, any other
+                         // status means worse or unknown; empty: only the board is monitored
+  bool go_on = false;    // true: machines whose image was reverted are tried again
+  bool take_over_trial = false;  // true: a trial that another caller started is reverted
 };
 
 /// Result of the rollout for one machine.
@@ -27,21 +29,22 @@ struct TrialEnd {
   enum class Kind : std::uint8_t { kKept, kTakenBack, kRefused, kNotInEffect, kAway, kInterrupted } kind;
   std::string why;
 };
-/// "kept", "taken-back", ...: the state in the registry.
+/// Returns the name of a result: "kept", "taken-back", ... The name of a result is its state in the registry.
 const char* name_of(TrialEnd::Kind kind);
 
-/// Steps of a rollout for one machine: start the trial of the correction image, check that the board uses the
-/// image, evaluate the machine, then confirm or revert the image. No data are signed or sent before the board
-/// has proved that it is the board of the machine. The board repeats this proof before each check, and before
-/// the correction image is confirmed or reverted.
+/// Steps of a rollout for one machine: start the trial of the image, check that the board uses the image,
+/// evaluate the machine, and then confirm or revert the image. Before data are signed or sent, the board must
+/// prove that it is the board of the machine. The board repeats this proof before each check, and before the
+/// image is confirmed or reverted.
 class ImageTrial {
  public:
-  /// Opens the board. Throws InputError if the board does not answer, LimitNotMet if it is another board. All
-  /// arguments outlive the trial.
+  /// Opens the connection to the board. Throws InputError if the board does not answer, and LimitNotMet if it
+  /// is another board. All arguments must exist longer than the ImageTrial.
   ImageTrial(const RolloutMachine& machine, const RolloutOptions& options, RolloutBook& book,
              registry::MachineLocks& locks, const std::atomic<bool>& stop);
-  /// Runs the trial. own_issued: RolloutState::issued; it distinguishes a trial of this rollout from a trial
-  /// of another caller. Throws LockLost if the lock was lost; the board is not changed after that.
+  /// Executes the trial of an image. `own_issued`: RolloutState::issued. The time own_issued distinguishes a
+  /// trial of this rollout from a trial of another caller. Throws LockLost if the lock of the machine was
+  /// lost. After that, the board is not changed.
   TrialEnd run(std::uint64_t own_issued);
 
  private:
@@ -69,14 +72,14 @@ class ImageTrial {
   std::uint64_t fingerprint_, issued_ = 0, faults_before_ = 0;
 };
 
-/// Result of a check of a machine with a confirmed image. The check is repeated until it passes or
-/// options.settle_s are over. To pass, the board must prove its identity, must have confirmed the correction
-/// image, and must use this image.
+/// Result of a check of a machine whose image was confirmed. The check is repeated until it passes, or until
+/// options.settle_s have passed. The check passes if the board proves its identity, has confirmed the image,
+/// and uses the image.
 struct KeptLook {
-  std::string why;  // why not; empty: it is
+  std::string why;  // reason why the check does not pass; empty: it passes
   bool away = false;
 };
-/// Throws LockLost.
+/// Checks a machine whose image was confirmed. Throws LockLost if the lock of the machine was lost.
 KeptLook look_at_kept(const RolloutMachine& machine, const RolloutOptions& options,
                       registry::MachineLocks& locks, const std::atomic<bool>& stop);
 

@@ -8,16 +8,16 @@
 
 namespace vernier::fleet {
 
-/// Options of the ingest from a broker into a registry.
+/// Options for storing the data from a broker in a registry.
 struct IngestOptions {
   std::string registry, group = "vernier", host = "vernier";
   Broker broker;
 };
 
-/// The host application, which runs until `stop`. run_ingest receives the messages of all edge nodes of a
-/// group and writes their data into the registry, each sample once. run_ingest reports to the gateways which
-/// samples are stored. Broker and database may be unavailable at any time. Throws InputError if the registry
-/// is not valid at the beginning.
+/// Runs the Sparkplug host application until `stop`. The function run_ingest receives the messages of all
+/// edge nodes of a group and writes their data to the registry, each sample once. The function run_ingest
+/// reports to the gateways which samples are stored. The broker and the database may be unavailable at any
+/// time. Throws InputError if the registry is not valid at the beginning.
 void run_ingest(const IngestOptions& options, const std::atomic<bool>& stop, const Say& say);
 
 }  // namespace vernier::fleet

@@ -10,37 +10,39 @@
 
 namespace vernier::fleet {
 
-/// A machine of a rollout; the machines are in the order of the rollout.
+/// A machine of a rollout. The machines are in the order of the rollout.
 struct RolloutMachine {
   std::string name, url;
-  upload::BoardClaim claim;  // required identity of its board; a name at least
+  upload::BoardClaim claim;  // required identity of the board; at least a name
   std::vector<std::uint8_t> image;
   std::int64_t stage = 0;
 };
-/// Returns the fingerprint of the image of a machine.
+/// Returns the fingerprint of the image for a machine.
 std::uint64_t fingerprint_of(const RolloutMachine& machine);
 
-/// State of a machine in a rollout.
+/// State of one machine in a rollout.
 struct RolloutState {
   std::string machine;
-  std::string state;  // "waiting", "trial", "kept", "taken-back", "refused", "not-in-effect", "away"
-  std::string said;   // why
-  std::string image;  // fingerprint, 16 hexadecimal digits
+  std::string state;  // "waiting", "trial", "kept", "taken-back", "refused", "not-in-effect" or "away"
+  std::string said;   // reason for this state
+  std::string image;  // fingerprint of the image, 16 hexadecimal digits
   std::int64_t stage = 0, at_us = 0;
-  std::uint64_t issued = 0;  // time of signing of the last trial of this rollout; 0: no trial
+  std::uint64_t issued = 0;  // signing time of the last trial in this rollout; 0: no trial
 };
 
-/// A rollout's rows of the registry. The rows are written only while the caller has the lock of the machine.
-/// All calls of RolloutBook throw DatabaseError; calls that write throw LockLost.
+/// The rows of one rollout in the registry. The rows are written only while the caller has the lock of the
+/// machine. All functions of RolloutBook can throw DatabaseError; functions that write can also throw
+/// LockLost.
 class RolloutBook {
  public:
   RolloutBook(registry::Registry& registry, std::string name, const registry::MachineLocks& locks)
       : registry_(registry), name_(std::move(name)), locks_(locks) {}
   void enter(const std::vector<RolloutMachine>& machines);
   void write(const RolloutMachine& machine, const char* state, const std::string& said);
-  /// Records that a trial begins. issued: time of signing, by which the board identifies the trial.
+  /// Records that the trial of a machine begins. `issued`: signing time, by which the board identifies the
+  /// trial.
   void begin_trial(const RolloutMachine& machine, std::uint64_t issued);
-  /// Machines whose image was reverted are tried again.
+  /// Records that machines whose image was reverted are tried again.
   void allow();
 
  private:
@@ -50,7 +52,8 @@ class RolloutBook {
   const registry::MachineLocks& locks_;
 };
 
-/// Returns the states of the machines in the order of the rollout; empty if no rollout has this name.
+/// Returns the states of the machines in the order of the rollout. The list is empty if no rollout has this
+/// name.
 std::vector<RolloutState> rollout_states(registry::Registry& registry, const std::string& name);
 
 }  // namespace vernier::fleet

@@ -11,35 +11,38 @@
 
 namespace vernier::fleet {
 
-/// A device's data as received: the machine, the gateway and the data.
+/// Data of a device as received: the machine, the gateway and the payload.
 struct DeviceData {
   std::string gateway, machine;
   SparkplugPayload payload;
 };
 
-/// The last number of a gateway's spool that is in the registry; the registry reports it to the gateway.
+/// Receipt for a gateway: the last number of its spool that is stored in the registry.
 struct Receipt {
   std::string spool;
   std::uint64_t stored = 0;
-  bool resend = false;  // a record is missing: begin behind `stored`
+  bool resend = false;  // true: a record is missing, and the gateway must send again from the record after
+                        // `stored`
 };
 
-/// Writes samples into the registry, each once. Records of a spool are stored in the order of their numbers.
-/// The last number is updated in the same transaction as the records, and earlier records are ignored. Two
-/// writers may run at the same time. Only samples of machines that are in the registry are stored. The
-/// samples of another machine are counted (Registry::not_entered), and the gateway may forget them.
+/// Writes samples to the registry, each sample once. The records of a spool are stored in the order of their
+/// numbers. The last number is updated in the same transaction as the records. Records with an earlier number
+/// are ignored. Two writers may run at the same time. Only samples of machines that are in the registry are
+/// stored. The samples of an unknown machine are counted (Registry::not_entered), and the gateway may delete
+/// them.
 class SampleWriter {
  public:
   explicit SampleWriter(registry::Registry& registry) : registry_(registry) {}
-  /// Receipts by gateway, for all data that were written or must be sent again. Throws DatabaseError: no data
-  /// were written.
+  /// Writes data and returns the receipts by gateway, for all data that were written or must be sent again.
+  /// If the function throws DatabaseError, no data were written.
   std::map<std::string, Receipt> write(const std::vector<DeviceData>& data);
-  /// A machine, or all of a gateway's (machine empty), can be heard or not.
+  /// Records whether a machine is connected. If `machine` is empty, this applies to all machines of the
+  /// gateway.
   void online(const std::string& gateway, const std::string& machine, bool online);
-  /// Returns the number of samples written so far.
+  /// Returns the number of samples that were written.
   std::uint64_t written() const { return written_; }
-  /// Machines that are not in the registry and whose samples write() got, each name once. The list is empty
-  /// afterwards.
+  /// Returns the machines that are not in the registry and for which write() received samples, each name
+  /// once. The call of take_not_entered() empties the list of machines that are not in the registry.
   std::vector<std::string> take_not_entered();
 
  private:
@@ -58,8 +61,8 @@ class SampleWriter {
   registry::Registry& registry_;
   std::map<std::string, Cursor> cursors_;
   std::set<std::string> shapes_, reported_, to_report_;
-  std::map<std::string, std::string> faults_;    // by machine: the last one
-  std::map<std::string, std::uint64_t> checks_;  // by machine: time of the last one
+  std::map<std::string, std::string> faults_;    // last fault of each machine
+  std::map<std::string, std::uint64_t> checks_;  // time of the last check of each machine
   std::uint64_t written_ = 0;
 };
 

@@ -9,58 +9,62 @@
 
 namespace vernier::fleet {
 
-/// A value of a metric; the alternative decides Sparkplug's datatype: Double, Int64, UInt64, Boolean, String.
+/// Value of a metric. The C++ type of the metric determines the datatype of Sparkplug: Double, Int64, UInt64,
+/// Boolean, String.
 using MetricValue = std::variant<double, std::int64_t, std::uint64_t, bool, std::string>;
 
 /// A named value of a Sparkplug message.
 struct Metric {
   std::string name;
   MetricValue value;
-  std::uint64_t time_ms = 0;  // since 1970; 0: as its payload
-  bool historical = false;    // it waited for the broker or the host
+  std::uint64_t time_ms = 0;  // time since 1970; 0: the time of the payload
+  bool historical = false;    // true: the value had to wait for the broker or the host
   bool operator==(const Metric&) const = default;
 };
 
-/// Contents of a message (Sparkplug 3.0.0, 6.4).
+/// Content of a Sparkplug message (Sparkplug 3.0.0, 6.4).
 struct SparkplugPayload {
   std::uint64_t time_ms = 0;
-  std::optional<std::uint64_t> seq;  // 0..255; absent in NDEATH and commands
+  std::optional<std::uint64_t> seq;  // sequence number 0..255; no value in NDEATH and commands
   std::vector<Metric> metrics;
-  /// Returns the metric of this name; null if no metric has the name.
+  /// Returns the metric with the name `name`; null if there is no such metric.
   const Metric* find(std::string_view name) const;
 };
 
-/// Converts a payload to bytes, and back; `nullopt` if the bytes are not a payload. A metric is skipped if
-/// its type is not supported here, if it is null, or if its text is not UTF-8 without NUL.
+/// Convert a payload to bytes and bytes to a payload. decode() returns nullopt if the bytes are not a
+/// payload. decode() omits a metric with an unsupported type, a null metric, and a text that is not UTF-8
+/// without NUL.
 std::string encode(const SparkplugPayload& payload);
 std::optional<SparkplugPayload> decode(std::string_view bytes);
 
-/// A whole number of any integer type; `nullopt` for other values.
+/// Returns the value of a metric of any integer type as a whole number; nullopt for other values.
 std::optional<std::uint64_t> count_of(const Metric* metric);
-/// A text; `nullopt` for other values.
+/// Returns the value of a metric that is a text; nullopt for other values.
 std::optional<std::string> text_of(const Metric* metric);
 
 enum class SparkplugKind : std::uint8_t { kNBirth, kNDeath, kNData, kNCmd, kDBirth, kDDeath, kDData, kDCmd };
 
-/// "spBv1.0/GROUP/KIND/NODE[/DEVICE]".
+/// Parts of a Sparkplug topic "spBv1.0/GROUP/KIND/NODE[/DEVICE]".
 struct SparkplugTopic {
   std::string group, node, device;
   SparkplugKind kind = SparkplugKind::kNData;
 };
 std::string topic_text(const SparkplugTopic& topic);
-/// Parses the topic of an edge node; `nullopt` if the text is no such topic.
+/// Parses the topic of an edge node; nullopt if the text is not such a topic.
 std::optional<SparkplugTopic> parse_topic(std::string_view text);
 /// Returns the topic on which a host application publishes its state.
 std::string state_topic(const std::string& host);
-/// The state message: JSON of Sparkplug 3.0.0, 6.4.24.
+/// Returns the state message of a host application: JSON of Sparkplug 3.0.0, 6.4.24.
 std::string state_text(bool online, std::uint64_t time_ms);
-/// True if the text reports that the host is online; `nullopt` for any other text.
+/// Returns true if the state message reports that the host is online, and false if it is offline; nullopt for
+/// any other text.
 std::optional<bool> online_of(std::string_view state);
 
-/// True if a topic can contain this name: not empty, no + / #, printable.
+/// True if a topic can contain this name. The name must not be empty, must not contain + / #, and must be
+/// printable.
 bool fits_a_topic(std::string_view name);
 
-/// Names of the metrics with which a gateway and the registry agree on the stored records
+/// Names of the metrics with which a gateway and the registry exchange the numbers of stored records
 /// (tools/docs/fleet.md).
 inline constexpr std::string_view kSpoolMetric = "Vernier/Spool", kNumberMetric = "Vernier/Number",
                                   kAfterMetric = "Vernier/After", kStoredMetric = "Vernier/Stored",

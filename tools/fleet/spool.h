@@ -10,57 +10,63 @@
 
 namespace vernier::fleet {
 
-/// A sample of a machine that waits to be stored; payload as encode() made it.
+/// A sample of a machine that waits to be stored in the registry. The payload of a record is the result of
+/// encode().
 struct SpoolRecord {
-  std::uint64_t number = 0;  // 1, 2, 3 … in this spool
+  std::uint64_t number = 0;  // number of the record in this spool: 1, 2, 3 …
   std::string machine;
   std::uint64_t time_ms = 0;
   std::string payload;
 };
 
-/// A file with the data that a gateway has read and no registry has confirmed yet: bounded, durable,
-/// numbered. A record leaves the spool when the registry has stored it. A record is also removed, and
-/// counted, when the file is full.
+/// A file with the data that a gateway has read and that no registry has confirmed yet. The spool file has a
+/// limited size, survives a power failure, and numbers its records. A record is removed from the spool after
+/// the registry has stored it. If the file is full, a record is also removed, and the removal is counted.
 class Spool {
  public:
-  /// owner: the gateway; the file of another gateway (a copied medium) gets a new id. most: number of records
-  /// that fit. Throws InputError if the file cannot be opened or created.
+  /// `owner`: name of the gateway. If the file belongs to another gateway (a copied medium), the spool gets a
+  /// new id. `most`: largest number of records. Throws InputError if the file cannot be opened or created.
   Spool(const std::string& file, const std::string& owner, std::uint64_t most);
 
-  /// Returns the unique id of this spool. A new file gets a new id, so that a number never has two meanings.
+  /// Returns the unique id of this spool. A new file gets a new id. A record number together with the id of
+  /// the spool therefore always has only one meaning.
   const std::string& id() const { return id_; }
-  /// Writes records with numbers, and removes the records up to stored(), in one transaction. Throws
-  /// DatabaseError.
+  /// Writes records with their numbers, and removes the records up to stored(), in one transaction. Throws
+  /// DatabaseError if the file cannot be written.
   void take(std::vector<SpoolRecord>& records);
-  /// The records after `number`, at most `most`, in order. Damaged records are set aside (set_aside()).
+  /// Returns the records after `number` in their order, at most `most`. Damaged records are moved to another
+  /// file (set_aside()).
   std::vector<SpoolRecord> after(std::uint64_t number, std::size_t most);
   /// Moves records that cannot be read to the file aside(), so that they do not stop later records. Throws
-  /// InputError if that file cannot be written; the records then stay. Throws DatabaseError.
+  /// InputError if the file aside() cannot be written. The records then stay in the spool. Throws
+  /// DatabaseError if the spool itself cannot be written.
   void set_aside(const std::vector<std::uint64_t>& numbers);
-  /// Returns the number of records that were set aside since the spool was opened, and their file (one JSON
-  /// object a line, with the cells as they were).
+  /// count_aside() returns the number of records that were moved since the spool was opened. aside() returns
+  /// their file (one JSON object per line, with the original cells).
   std::uint64_t count_aside() const { return count_aside_; }
   const std::string& aside() const { return aside_; }
-  /// The registry has all records up to this number.
+  /// Records that the registry has stored all records up to `number`.
   void stored(std::uint64_t number);
   std::uint64_t stored() const { return stored_; }
-  /// The last number of a record; the number of records that were discarded before sending, because the spool
-  /// was full.
+  /// last() returns the number of the last record. dropped() returns the number of records that were removed
+  /// before they were sent, because the spool was full.
   std::uint64_t last() const { return last_; }
   std::uint64_t dropped() const { return dropped_; }
-  /// The last number of a record that the spool no longer contains.
+  /// Returns the number of the last record that the spool no longer contains.
   std::uint64_t gone() const { return gone_; }
-  /// Call begin_anew if the registry has numbers that this spool never gave: the file is an older, restored
-  /// file. The records then get new numbers under a new id.
+  /// Call begin_anew() if the registry has numbers that this spool never gave. If the registry has numbers
+  /// that this spool never gave, the spool file is an older, restored file. After that, the records get new
+  /// numbers under a new id.
   void begin_anew();
-  /// Returns the number of the next birth; increases by one at each call (Sparkplug's bdSeq, 0..255).
+  /// Returns the number of the next birth. The number of the birth message increases by one at each call
+  /// (bdSeq of Sparkplug, 0..255).
   std::uint64_t next_birth();
 
  private:
-  /// Lock of a file beside the spool (flock(2)): other processes may still read the spool.
+  /// Lock of a file beside the spool (flock(2)). Other processes may still read the spool.
   class Lock {
    public:
-    /// Throws InputError if another process, or this process, has the lock.
+    /// Throws InputError if another process, or this process, already has the lock.
     explicit Lock(const std::string& file);
     ~Lock();
     Lock(const Lock&) = delete;

@@ -14,7 +14,7 @@
 
 namespace vernier::format {
 
-/// Names of columns, for code that reads or writes a column.
+/// Names of the columns of a measurement file, for code that reads or writes a column.
 namespace columns {
 inline constexpr std::array kPoint = {"x", "y", "z"};
 inline constexpr std::array kRotation = {"rx", "ry", "rz"};
@@ -47,51 +47,53 @@ inline constexpr const char* kBlock = "block";
 
 /// Purpose of a column.
 enum class ColumnUse : std::uint8_t {
-  kReading,      // holds a reading
-  kBeside,       // needed by a reading in its row: a centre, a normal
-  kUncertainty,  // of the readings of the row
+  kReading,      // the column contains a reading
+  kBeside,       // a value that a reading in the same row needs: a centre, a normal
+  kUncertainty,  // uncertainty of the readings in the row
   kMotion,       // state of the machine along its path
-  kLabel         // groups the rows
+  kLabel         // label that assigns the row to a group
 };
 
-/// Columns with one meaning: "x y z", or a single column.
+/// A group of columns with one meaning: "x y z", or a single column.
 struct ColumnGroup {
   std::array<const char*, 3> names;
   std::size_t count;
-  const char* unit;  // in which files are written; "": a pure number or a word
+  const char* unit;  // unit in which files are written; "": a number without unit, or a word
   ColumnUse use;
-  const char* meaning;                     // a phrase; of one column and of several
-  ReadingForm form = ReadingForm::kPoint;  // of kReading and kBeside
-  bool words = false;                      // words, not numbers
-  /// Column of a later version of the format: a machine file may use the name for an input. If a machine file
-  /// uses the name, or with another unit, the column is a user's column.
+  const char* meaning;                     // description of one column and of several columns
+  ReadingForm form = ReadingForm::kPoint;  // form of the reading, for kReading and kBeside
+  bool words = false;                      // true: the column contains words, not numbers
+  /// True if a later version of the format added the column, so that a machine file may use its name for an
+  /// input. If a machine file uses the name, or the column has another unit, the column is a column of the
+  /// user.
   bool later = false;
-  bool filled = false;              // no cell may be empty
-  bool in_terms = false;            // expressions read it by this name: the name is reserved
-  const char* or_unit = nullptr;    // a second dimension that it may have
-  const char* if_absent = nullptr;  // what holds without the column
+  bool filled = false;              // true: no cell may be empty
+  bool in_terms = false;            // true: expressions use this name, so that it is reserved
+  const char* or_unit = nullptr;    // unit of a second dimension that the column may have
+  const char* if_absent = nullptr;  // meaning if the column is absent
 
   std::span<const char* const> list() const { return std::span(names).first(count); }
 };
 
-/// Returns all columns that have a meaning for every machine.
+/// Returns all columns whose meaning is the same for every machine.
 std::span<const ColumnGroup> column_groups();
 
-/// Finds a column of the format by its name; nullptr: the format has no such column. Names are
+/// Returns the column of the format with the name `name`; nullptr if the format has no such column. Names are
 /// case-sensitive.
 const ColumnGroup* find_column(std::string_view name);
-/// reading_columns: the columns that contain readings of a form. columns_beside: the columns that belong to
-/// these readings.
+/// reading_columns returns the columns with the readings of a form. columns_beside returns the columns that
+/// these readings need in the same row.
 const ColumnGroup& reading_columns(ReadingForm form);
 std::vector<const ColumnGroup*> columns_beside(ReadingForm form);
 
-/// dimension_of: the dimension that a column needs. other_dimension_of: the second dimension of `u`, else
-/// nullopt.
+/// dimension_of returns the dimension that a column must have. other_dimension_of returns the second
+/// dimension of the column `u`; nullopt for other columns.
 Dimension dimension_of(const ColumnGroup& group);
 std::optional<Dimension> other_dimension_of(const ColumnGroup& group);
-/// The unit in which files give a column; "": a pure number, a word, or no column of the format.
+/// Returns the unit of a column in files; "" for a number without unit, a word, or a column that the format
+/// does not have.
 const char* column_unit(std::string_view name);
-/// "x[mm]", "nx".
+/// Returns the heading of a column: "x[mm]", "nx".
 std::string heading(std::string_view name, std::string_view unit);
 /// Returns the name of a column with the unit of the table: "feed[mm/min]".
 std::string heading(std::string_view name);
@@ -99,15 +101,15 @@ std::string heading(std::string_view name);
 /// Returns the headings of several columns as one header: "x[mm],y[mm],z[mm]".
 std::string headings(std::span<const char* const> names);
 
-/// A quantity that has a column for each axis.
+/// A quantity that has one column for each axis.
 enum class AxisQuantity : std::uint8_t { kPosition, kSense, kSince, kSpeed, kAcceleration, kCorrection };
 
 struct AxisColumnEntry {
   AxisQuantity quantity;
-  const char* prefix;  // before the name of the axis
+  const char* prefix;  // text before the name of the axis
   Dimension linear, rotary;
-  const char* unit;  // in which files give it for a linear axis
-  bool in_terms;     // expressions read it by this name
+  const char* unit;  // unit in files for a linear axis
+  bool in_terms;     // true: expressions use this name
   const char* meaning;
   const char* if_absent;
 };
@@ -133,48 +135,49 @@ inline constexpr std::array kAxisColumns = {
 constexpr const AxisColumnEntry& entry_of(AxisQuantity quantity) {
   return kAxisColumns[static_cast<std::size_t>(quantity)];
 }
-/// "dirX": the column of a quantity of an axis.
+/// Returns the name of the column for a quantity of an axis: "dirX".
 std::string axis_column(AxisQuantity quantity, std::string_view axis);
 constexpr Dimension dimension_of(AxisQuantity quantity, bool rotary) {
   return rotary ? entry_of(quantity).rotary : entry_of(quantity).linear;
 }
-/// "mm/s", "deg/s"; "": a pure number.
+/// Returns the unit of a quantity: "mm/s", "deg/s"; "" for a number without unit.
 const char* unit_of(AxisQuantity quantity, bool rotary);
 
-/// "vX[mm/s]", "vC[deg/s]".
+/// Returns the heading of the column for a quantity of an axis: "vX[mm/s]", "vC[deg/s]".
 std::string axis_heading(AxisQuantity quantity, std::string_view axis, bool rotary);
 
-/// Parts of the name of a column of an axis.
+/// Parts of the name of an axis column: the quantity and the axis.
 struct AxisColumnName {
   AxisQuantity quantity;
   std::string axis;
 };
-/// Axis and quantity of a name; nullopt: no axis. An axis whose name is exactly the column name has
-/// precedence.
+/// Returns the axis and the quantity of a column name; nullopt if the column does not belong to an axis. An
+/// axis whose name is exactly the column name has precedence.
 std::optional<AxisColumnName> axis_column_named(std::string_view name,
                                                 const std::function<bool(const std::string&)>& is_axis);
 
 /// Returns names of columns in one text, for messages: "nx ny nz".
 std::string words_of(std::span<const char* const> names);
-/// "x y z rx …": the columns of all readings, for messages.
+/// Returns the columns of all readings as text for messages: "x y z rx …".
 std::string reading_column_names();
 
-/// True if a column is a reading in a file with this header. A column of the first version of the format is a
-/// reading by its name. A column of a later version is a reading only with its companions: `from` with
-/// `distance`, an angle's unit for `ix` and `iy`, all of `ax ay az` without a unit. `find`: finds a column of
-/// the header by name; nullptr: the header has no such column, or the machine file uses the name for an
-/// input.
+/// True if a column contains a reading in a file with this header. A column of the first version of the
+/// format is identified as a reading by its name. A column of a later version is a reading only if the header
+/// has the columns and units that belong to it: `from` with `distance`; the unit of an angle for `ix` and
+/// `iy`; all of `ax ay az` without a unit. `find`: function that finds a column of the header by its name.
+/// The function `find` returns nullptr if the header has no such column, or if the machine file uses the name
+/// for an input.
 bool is_reading(const CsvColumn& column, const std::function<const CsvColumn*(std::string_view)>& find);
 
-/// True if an expression reads a quantity of this name (t, feed, nx …). An axis or input must not have such a
-/// name.
+/// True if expressions use a quantity with this name (t, feed, nx …). The name of a quantity that expressions
+/// use is not permitted for an axis or input.
 bool is_name_of_terms(std::string_view name);
 
-/// Returns the name of the reading of a rotary axis' angle: rx, ry, rz for A, B, C (ISO 841); nullopt for
-/// other axes.
+/// Returns the name of the reading for the angle of a rotary axis: rx, ry, rz for A, B, C (ISO 841); nullopt
+/// for other axes.
 std::optional<std::string> angle_about(std::string_view axis);
 
-/// Words of the column `role`. An empty cell is `fit`.
+/// Permitted words in the column `role`. An empty cell in the column `role` means `fit`.
 inline constexpr const char* kFitRole = "fit";
 inline constexpr const char* kCheckRole = "check";
 inline constexpr std::array kRoles = {kFitRole, kCheckRole};

@@ -7,23 +7,24 @@
 
 namespace vernier::format {
 
-/// A column of a measurement file's header: `name[unit]`.
+/// A column in the header of a measurement file: `name[unit]`.
 struct CsvColumn {
   std::string name, unit;
 };
 
-/// A CSV file of the project's dialect: comma, `#` comment lines, one header line, fields as text.
+/// A CSV file in the form of this project: comma as separator, comment lines beginning with `#`, one header
+/// line. The fields are stored as text.
 struct CsvFile {
   std::string file;
   std::size_t header_line = 0;
   std::vector<CsvColumn> columns;
   std::vector<std::vector<std::string>> rows;
-  std::vector<std::size_t> line;  // 1-based line of each row
+  std::vector<std::size_t> line;  // line of each row in the file, from 1
 };
 
-/// Splits `text`; every row has as many fields as the header has columns. Fields may be in double quotes.
-/// Throws InputError: wrong number of fields, a name that occurs twice or is not valid, an unknown unit, no
-/// header.
+/// Parses the text of a CSV file. Every row must have as many fields as the header has columns. A field may
+/// be in double quotes. Throws InputError for: a wrong number of fields, a column name that occurs twice or
+/// is not valid, an unknown unit, a missing header.
 CsvFile parse_csv(const std::string& text, const std::string& file);
 
 }  // namespace vernier::format

@@ -11,7 +11,7 @@
 
 namespace vernier::format {
 
-/// Kind of one measured number. The numbers of the kinds index every table by kind.
+/// Kind of one measured number in a row. The numbers of the kinds are indices of all tables by kind.
 enum class ReadingKind : std::uint8_t {
   kX,
   kY,
@@ -40,8 +40,8 @@ enum class ReadingKind : std::uint8_t {
   kBoardRz
 };
 
-/// Form of a reading: the quantity that the instrument reads. Readings of one form share their columns and
-/// their formula.
+/// Form of a reading: the quantity that the instrument measures. Readings of one form have the same columns
+/// and the same formula.
 enum class ReadingForm : std::uint8_t {
   kPoint,
   kRotation,
@@ -56,19 +56,19 @@ enum class ReadingForm : std::uint8_t {
   kBoardRotation
 };
 
-/// One form of reading. The columns of the form are in columns.h: the columns with the reading, and the
-/// columns that belong to it.
+/// One form of reading. The columns of a form are in columns.h: the columns with the reading, and the columns
+/// that the reading needs.
 struct ReadingFormEntry {
   ReadingForm form;
-  bool rotation;        // the reading is an angle, deg; else a length, mm
-  bool free_of_set_up;  // the set-up of the instrument (BaseShift) does not change it
-  /// True if a reading requires all columns of the form; a row without one of these columns then has no
+  bool rotation;        // true: the reading is an angle, deg; false: a length, mm
+  bool free_of_set_up;  // true: the set-up of the instrument (BaseShift) does not affect the reading
+  /// True if a reading requires all columns of the form. A row without one of these columns then has no
   /// reading of this form.
   bool together;
-  /// The reading is the length of an arm: never below 0.
+  /// True if the reading is a distance, which is never negative.
   bool never_negative;
-  const char* subject;  // "length error": how a sentence names its residual; "%": the axis in capitals
-  const char* meaning;  // one plain sentence
+  const char* subject;  // name of its residual in a sentence: "length error"; "%": the axis in capitals
+  const char* meaning;  // description in one sentence
 };
 
 inline constexpr std::array kReadingForms = {
@@ -104,14 +104,15 @@ constexpr const ReadingFormEntry& entry_of(ReadingForm form) {
 /// Properties of one kind of reading.
 struct ReadingKindEntry {
   ReadingKind kind;
-  const char* name;  // in results and messages; also its column, except for the two angles of a direction
+  const char* name;  // name in results and messages; also the name of its column, except for the two angles
+                     // of a direction
   ReadingForm form;
-  std::size_t component;  // within its form, from 0
-  const char* meaning;    // one plain sentence
+  std::size_t component;  // component within its form, from 0
+  const char* meaning;    // description in one sentence
 };
 
-/// All kinds of readings, in the order of ReadingKind. A direction counts as two angles a1 and a2 across the
-/// direction.
+/// All kinds of readings, in the order of ReadingKind. A direction has two angles as readings, a1 and a2,
+/// which are perpendicular to the direction.
 inline constexpr std::array kReadingKinds = {
     ReadingKindEntry{ReadingKind::kX, "x", ReadingForm::kPoint, 0,
                      "The x coordinate of the tool point in the measuring frame."},
@@ -172,41 +173,41 @@ constexpr const ReadingKindEntry& entry_of(ReadingKind kind) {
 constexpr ReadingForm form_of(ReadingKind kind) { return entry_of(kind).form; }
 /// Returns the component of a kind within its form, from 0.
 constexpr std::size_t component_of(ReadingKind kind) { return entry_of(kind).component; }
-/// "x", "a1": in results and messages.
+/// Returns the name of a kind in results and messages: "x", "a1".
 constexpr const char* name_of(ReadingKind kind) { return entry_of(kind).name; }
-/// True for a kind that is an angle, deg; other kinds are lengths, mm.
+/// True if the readings of this kind are angles, deg. Other kinds are lengths, mm.
 constexpr bool is_rotation(ReadingKind kind) { return entry_of(form_of(kind)).rotation; }
-/// "mm" or "deg".
+/// Returns the unit of a kind: "mm" or "deg".
 constexpr const char* unit_of(ReadingKind kind) { return is_rotation(kind) ? "deg" : "mm"; }
 /// Returns the unit of a residual in results: "um" or "urad".
 constexpr const char* report_unit_of(ReadingKind kind) { return is_rotation(kind) ? "urad" : "um"; }
-/// The set-up of the instrument does not change the reading.
+/// True if the set-up of the instrument does not affect a reading of this kind.
 constexpr bool is_free_of_setup(ReadingKind kind) { return entry_of(form_of(kind)).free_of_set_up; }
 constexpr bool is_direction(ReadingKind kind) { return form_of(kind) == ReadingForm::kDirection; }
-/// The reading is the place of a board (the measuring frame) as a camera on the tool sees it.
+/// True if the reading is the pose of a board (the measuring frame) that a camera on the tool measures.
 constexpr bool is_of_board(ReadingKind kind) {
   return form_of(kind) == ReadingForm::kBoard || form_of(kind) == ReadingForm::kBoardRotation;
 }
 constexpr bool is_inclination(ReadingKind kind) { return form_of(kind) == ReadingForm::kInclination; }
-/// The reading is 0: the tool point touched an object (an unknown point or an artefact) whose unknown values
-/// a fit eliminates.
+/// True if the value of the reading is 0 because the tool point touched an object. The object is an unknown
+/// point or an artefact whose unknown values a fit eliminates.
 constexpr bool is_of_thing(ReadingKind kind) {
   return form_of(kind) == ReadingForm::kSame || form_of(kind) == ReadingForm::kOn;
 }
 
-/// Returns the kind of this name; nullopt: no kind has the name.
+/// Returns the kind with the name `name`; nullopt if no kind has this name.
 std::optional<ReadingKind> kind_named(std::string_view name);
-/// Returns the names of a set of kinds: bit n is kind n.
+/// Returns the names of a set of kinds. Bit n of `kinds` is kind n.
 std::vector<std::string> names_of_kinds(std::uint32_t kinds);
-/// Returns the unit in results of the kind of this name; "um" if no kind has the name.
+/// Returns the unit of a kind in results, by the name of the kind; "um" if no kind has this name.
 const char* report_unit_of(std::string_view name);
 
 /// Returns the name of the residual of a kind in a sentence: "X error", "rotation error about Z", "length
 /// error".
 std::string subject_of(ReadingKind kind);
 
-/// A reading as `vernier new --reading` names it: one form, or several forms that one instrument reads
-/// together.
+/// A reading with the name that `vernier new --reading` uses. A reading kind has one form, or several forms
+/// that one instrument measures together.
 struct SurveyReading {
   const char* word;
   std::array<ReadingForm, 2> forms;
@@ -235,9 +236,10 @@ inline constexpr std::array kSurveyReadings = {
                   "camera on the tool, place and rotation of a board (hand-eye calibration)"},
 };
 
-/// Finds a survey reading by its word; nullptr: no survey reading has the word.
+/// Returns the survey reading with the name `word`; nullptr if there is no such reading.
 const SurveyReading* survey_reading(std::string_view word);
-/// Lists the words of all survey readings, with `last` before the last word: "point, length, touch …".
+/// Returns the names of all survey readings as text, with `last` before the last name: "point, length, touch
+/// …".
 std::string survey_words(const std::string& last);
 
 }  // namespace vernier::format

@@ -9,36 +9,37 @@ namespace vernier::http {
 
 using Clock = std::chrono::steady_clock;
 
-/// A client's connection and the received bytes that no request has used.
+/// Connection of a client, with the received bytes that no request has used yet.
 struct Connection {
   explicit Connection(int socket);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Reads the bytes that have arrived, without waiting. Returns false if the client has closed the
+  /// Reads the bytes that have arrived, without waiting for more. Returns false if the client has closed the
   /// connection.
   bool take_bytes();
-  /// True if the header has arrived completely: request_bytes is then the size of the request.
+  /// True if the header has arrived completely. After the header has arrived completely, header_bytes and
+  /// body_bytes are the sizes of the header and the body of the request.
   bool has_header();
-  /// True if the header and the body have arrived completely. A body above `most_body`, or of a length that
-  /// the header does not state, is not waited for.
+  /// True if the header and the body have arrived completely. The function does not wait for a body larger
+  /// than `most_body`, or for a body whose length the header does not state.
   bool has_request(std::size_t most_body);
 
   int fd;
-  std::string peer;  // address of the client
+  std::string peer;  // IP address of the client
   std::string bytes;
-  std::size_t header_bytes = 0, body_bytes = 0;  // of the first request in `bytes`; 0: not known yet
+  std::size_t header_bytes = 0, body_bytes = 0;  // sizes for the first request in `bytes`; 0: not yet known
   Clock::time_point due;
 };
 
-/// Stream for the library during one request: no wait is longer than `pause`, and no wait ends later than
-/// `end`.
+/// Stream that the HTTP library uses during one request. A single wait is not longer than `pause`, and no
+/// wait ends later than `end`.
 class RequestStream : public httplib::Stream {
  public:
   RequestStream(Connection& connection, Clock::duration pause, Clock::time_point end)
       : connection_(connection), pause_(pause), end_(end) {}
-  /// Removes the bytes that the request used.
+  /// The destructor removes the bytes that the request used.
   ~RequestStream() override {
     connection_.bytes.erase(0, at_);
     connection_.header_bytes = connection_.body_bytes = 0;
@@ -60,7 +61,7 @@ class RequestStream : public httplib::Stream {
   Connection& connection_;
   Clock::duration pause_;
   Clock::time_point end_;
-  std::size_t at_ = 0;  // used bytes of the connection
+  std::size_t at_ = 0;  // number of bytes of the connection that were used
 };
 
 }  // namespace vernier::http

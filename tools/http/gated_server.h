@@ -8,10 +8,11 @@ namespace vernier::http {
 
 class WaitingRoom;
 
-/// An HTTP server that assigns a thread to a connection only when a complete request header has arrived.
-/// Connections without a complete header wait together. If more than `most_waiting` wait, the server closes
-/// the oldest connection of the peer (address) that has the most. Therefore half-open connections cannot keep
-/// out a new request. Handlers and addresses are set as in httplib::Server.
+/// An HTTP server that assigns a thread to a connection only after a complete request header has arrived.
+/// Connections without a complete header wait together in one thread. If more than `most_waiting` connections
+/// wait, the server closes the oldest connection of the IP address that has the most connections. Half-open
+/// connections cannot block a new request, because the server closes the oldest of too many waiting
+/// connections. Handlers and addresses are set in the same way as for httplib::Server.
 class GatedServer : public httplib::Server {
  public:
   explicit GatedServer(const ServerLimits& limits = {});
@@ -19,7 +20,8 @@ class GatedServer : public httplib::Server {
  private:
   bool process_and_close_socket(socket_t socket) override;
 
-  WaitingRoom* room_ = nullptr;  // owned by the library while it listens; used by the listening thread
+  WaitingRoom* room_ = nullptr;  // owned by the HTTP library while the server listens; used by the listening
+                                 // thread
 };
 
 }  // namespace vernier::http

@@ -17,12 +17,13 @@
 
 namespace vernier::http {
 
-/// Answers one request. last: the connection is closed after it. Returns false if the connection cannot be
-/// used again.
+/// Function that answers one request. `last`: true if the connection is closed after this request. The
+/// function returns false if the connection cannot be used again.
 using Answer = std::function<bool(httplib::Stream& stream, bool last)>;
 
-/// The connections of a GatedServer: one thread waits for headers, several threads answer. As the library's
-/// task queue it runs a task immediately, because a task only brings a connection (`enter`).
+/// The connections of a GatedServer. One thread waits for headers, and several threads answer requests.
+/// WaitingRoom is also the task queue of the HTTP library. The task queue executes a task immediately,
+/// because a task only adds a connection (`enter`).
 class WaitingRoom : public httplib::TaskQueue {
  public:
   WaitingRoom(const ServerLimits& limits, Answer answer);
@@ -31,9 +32,9 @@ class WaitingRoom : public httplib::TaskQueue {
   WaitingRoom& operator=(const WaitingRoom&) = delete;
 
   void enqueue(std::function<void()> task) override { task(); }
-  /// Closes the connections; returns after the last handler has returned.
+  /// Closes the connections, and returns after the last handler has returned.
   void shutdown() override;
-  /// Takes a connection that was just accepted.
+  /// Adds a connection that was just accepted.
   void enter(int socket);
 
  private:
@@ -52,7 +53,7 @@ class WaitingRoom : public httplib::TaskQueue {
   std::mutex guard_;
   std::condition_variable something_ready_;
   std::deque<Kept> entered_, ready_;
-  std::set<int> answered_;  // sockets of the requests that are answered now
+  std::set<int> answered_;  // sockets whose requests are being answered
   bool ended_ = false;
   std::vector<std::thread> threads_;
 };

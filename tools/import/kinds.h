@@ -5,16 +5,18 @@
 
 namespace vernier::importer {
 
-/// A kind of `vernier import` (kinds.inc).
+/// A kind of file that `vernier import` can read (kinds.inc).
 struct ImportKind {
   const char* name;
-  const char* reads;   // for the help
-  const char* ending;  // of files that this kind reads without further options; "": none
+  const char* reads;   // description of the files, for the help text
+  const char* ending;  // ending of the file names that this kind reads without further options; "": there is
+                       // no such ending
 };
 
-/// All kinds, in the order of the help.
+/// Returns all kinds of import, in the order of the help text.
 std::span<const ImportKind> import_kinds();
-/// The kind that reads a file by the ending of its name, in small or capital letters; null: no kind.
+/// Returns the kind that reads files with the ending of this name; null if no kind has this ending. Capital
+/// and small letters are equal.
 const ImportKind* import_kind_of(std::string_view file);
 
 }  // namespace vernier::importer

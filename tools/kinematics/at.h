@@ -9,24 +9,25 @@
 
 namespace vernier::kinematics {
 
-/// Reads one state from a user's text: "X=100,Y=-20,dirX=1,T=25,feed=1000". Names: axes, inputs,
-/// v/a/dir/since of an axis, feed, curv, t, nx ny nz, run (a label). Base units (mm, deg, mm/s ...).
-/// Quantities without a value are 0. Inputs without a value are at their reference. Throws InputError with
-/// the word.
+/// Reads one state of the machine from a text: "X=100,Y=-20,dirX=1,T=25,feed=1000". The permitted names are
+/// axes, inputs, v/a/dir/since of an axis, feed, curv, t, nx ny nz, and run (a label). The values are in base
+/// units (mm, deg, mm/s ...). A quantity that the text does not contain is 0. An input that the text does not
+/// contain has its reference value. If the text is not valid, throws InputError with the wrong word.
 model::States state_at(const model::Machine& machine, const std::string& words);
 
-/// Returns the machine with one of its tools by name, or with a tool given as "X,Y,Z" (mm, beyond the end of
-/// the chain). An empty text returns the machine unchanged. Throws InputError.
+/// Returns the machine with one of its named tools, or with a tool given as "X,Y,Z" (mm, from the end of the
+/// chain). If the text is empty, the machine is not changed. Throws InputError if the text is neither the
+/// name of a tool nor three numbers.
 model::Machine tooled(const model::Machine& machine, const std::string& tool);
 
-/// Parses numbers separated by commas. `counts` lists the allowed numbers of values. Throws
-/// InputError.
+/// Reads numbers that are separated by commas. `counts`: the permitted numbers of values. Throws InputError
+/// if the text is not valid.
 std::vector<double> number_list(const std::string& text, const std::vector<std::size_t>& counts,
                                 const std::string& what);
 
-/// Parses the position of a part or program in workpiece coordinates, mm and deg: "X,Y,Z", "X,Y,Z,TURN"
-/// (about z), or "X,Y,Z,rX,rY,rZ" (T Rx Ry Rz, as a sixdof transform of a machine file). An empty text is the
-/// identity. Throws InputError.
+/// Reads the position of a part or program in workpiece coordinates, mm and deg. The forms are "X,Y,Z",
+/// "X,Y,Z,TURN" (rotation about z), and "X,Y,Z,rX,rY,rZ" (T Rx Ry Rz, as a sixdof transform of a machine
+/// file). An empty text means the identity. Throws InputError if the text has another form.
 Eigen::Isometry3d placement(const std::string& text, const std::string& what);
 
 }  // namespace vernier::kinematics

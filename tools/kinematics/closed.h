@@ -7,24 +7,27 @@
 
 namespace vernier::kinematics {
 
-/// Closed solution of a chain whose tool point is an affine function of its linear axes: p = origin +
-/// jacobian * q. The solution is exact for the motion and inputs of the state from which it was made.
+/// Closed-form inverse solution for a chain whose tool point is an affine function of its linear axes: p =
+/// origin + jacobian * q. The closed-form solution is exact for the motion and the inputs of the state for
+/// which it was made.
 struct ClosedSolution {
-  std::vector<std::size_t> axes;  // the linear axes, columns of the Jacobian
-  Eigen::Vector3d origin;         // mm, with those axes at 0
-  Eigen::Matrix3Xd jacobian;      // mm per mm, the same at every position
-  double condition = 0;           // of the Jacobian
+  std::vector<std::size_t> axes;  // the linear axes, which are the columns of the Jacobian
+  Eigen::Vector3d origin;         // tool point with the linear axes at 0, mm
+  Eigen::Matrix3Xd jacobian;      // mm per mm, equal at every position
+  double condition = 0;           // condition number of the Jacobian
 };
 
-/// Returns the closed solution, or nullopt if the chain has no closed solution. The decision uses the
-/// expressions, not samples. Condition 1: every rotation is independent of the linear axes. Condition 2:
-/// every length is at most of first degree in the linear axes. Condition 3: the tables of the linear axes are
-/// zero. Condition 4: there are one to three linear axes, and they are independent. `at`: one state (count 1)
-/// that gives the other axes, motion and inputs.
+/// Returns the closed-form solution, or nullopt if the chain has no such solution. The function decides this
+/// from the expressions of the chain, not from samples. First condition for a closed-form solution: every
+/// rotation is independent of the linear axes. Second condition for a closed-form solution: every length is
+/// at most of first degree in the linear axes. Third condition for a closed-form solution: the tables of the
+/// linear axes are zero. Fourth condition for a closed-form solution: there are one to three linear axes, and
+/// their directions are independent. `at`: one state with the positions of the other axes, the motion and the
+/// inputs.
 std::optional<ClosedSolution> closed_solution(const model::Machine& machine, const model::States& at);
 
-/// Returns linear axis positions for tool points (3 x N, mm), as columns. With fewer than three linear axes,
-/// solve_closed returns the nearest positions.
+/// Returns the positions of the linear axes for tool points (3 x N, mm), one column for each point. With
+/// fewer than three linear axes, the result is the positions with the nearest tool points.
 Eigen::MatrixXd solve_closed(const ClosedSolution& solution, const Eigen::Matrix3Xd& points);
 
 }  // namespace vernier::kinematics

@@ -12,22 +12,24 @@ namespace vernier::kinematics {
 
 const char* name_of(InverseFault fault);
 
-/// Newton iteration with damping (Levenberg-Marquardt, Marquardt 1963) on the forward kinematics, for all
-/// states together. A rotary axis is moved by whole turns into its range. The verification applies to the
-/// returned values. `target`: one pose per state, workpiece coordinates (rotation unused for kPosition).
-/// `start`: first guess, and unchanged motion, inputs, runs and time. The Jacobian is computed by central
-/// differences and therefore includes every expression of the chain. Throws InputError if the chain is not
-/// finite.
+/// Solves the inverse kinematics of all states together by Newton iteration with damping
+/// (Levenberg-Marquardt, Marquardt 1963) on the forward kinematics. The position of a rotary axis is changed
+/// by whole turns into its range. The returned positions themselves are verified. `target`: one pose for each
+/// state, in workpiece coordinates (for kPosition the rotation is not used). `start`: start values of the
+/// axes, and the motion, inputs, runs and time, which are not changed. The Jacobian is computed by central
+/// differences. The Jacobian therefore includes every expression of the chain. Throws InputError if the value
+/// of the chain is not finite.
 InverseResult solve(const model::Machine& machine, const model::Poses& target, const model::States& start,
                     const InverseOptions& options);
 
-/// Solves for one pose from many starts: `start` first, then up to `restarts` starts distributed over the
-/// axis ranges (Halton sequence, equal in every call). solve_anywhere returns the first solution within the
-/// ranges, else the best failure. Axes without min and max keep their start value.
+/// Solves the inverse kinematics for one pose from several starts: first from `start`, then from up to
+/// `restarts` starts over the axis ranges (Halton sequence, equal in every call). The function solve_anywhere
+/// returns the first solution within the ranges, or the best attempt if there is no solution. Axes without
+/// min and max always begin at their value in `start`.
 InverseResult solve_anywhere(const model::Machine& machine, const model::Poses& target,
                              const model::States& start, const InverseOptions& options, int restarts);
 
-/// Returns the linear axes of `machine`, in order.
+/// Returns the indices of the linear axes of the machine, in their order.
 std::vector<std::size_t> linear_axes(const model::Machine& machine);
 
 }  // namespace vernier::kinematics

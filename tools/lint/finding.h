@@ -9,28 +9,28 @@ namespace vernier::lint {
 /// Severity of a lint finding.
 enum class LintWeight {
   kError,    // the file cannot be used
-  kWarning,  // it can be used, but its meaning probably differs from the intention
-  kRemark,   // good to know
+  kWarning,  // the file can be used, but its meaning probably differs from the intention
+  kRemark,   // information for the user
 };
 
-/// "error", "warning", "remark".
+/// Returns the name of a severity: "error", "warning", "remark".
 const char* weight_name(LintWeight weight);
 
-/// One error or doubtful entry that lint found.
+/// One error or doubtful entry that lint found in a file.
 struct LintFinding {
   std::string file;
-  std::size_t line = 0;  // 0: the file as a whole
+  std::size_t line = 0;  // line number; 0: the finding is about the whole file
   LintWeight weight = LintWeight::kError;
-  std::string word;     // the offending one, or empty
-  std::string what;     // the problem
-  std::string meaning;  // probable meaning, and what to do; may be empty
+  std::string word;     // the wrong word; may be empty
+  std::string what;     // description of the problem
+  std::string meaning;  // probable meaning, and what the user can do; may be empty
 };
 
-/// Formats a finding as one line: "file:12: error: "word": what (meaning)".
+/// Returns a finding as one line of text: "file:12: error: "word": what (meaning)".
 std::string in_one_line(const LintFinding& finding);
 
-/// Lint findings in the order of files and lines. If many rows have the same finding, only the first finding
-/// is reported, with the number of rows.
+/// List of lint findings, in the order of files and lines. If many rows have the same finding, only the first
+/// finding is reported, with the number of rows.
 class LintFindings {
  public:
   explicit LintFindings(std::string file) : file_(std::move(file)) {}
@@ -48,7 +48,7 @@ class LintFindings {
               const std::string& meaning = "") {
     add(LintWeight::kRemark, line, word, what, meaning);
   }
-  /// Adds a finding like add(); a further finding with the same `kind` is only counted.
+  /// Adds a finding like add(). Further findings with the same `kind` are only counted.
   void add_of_kind(const std::string& kind, LintWeight weight, std::size_t line, const std::string& word,
                    const std::string& what, const std::string& meaning = "");
   bool any(LintWeight weight) const;

@@ -7,10 +7,10 @@
 
 namespace vernier::lint {
 
-/// Kind of a file by its contents.
+/// Kind of a file, which is determined from its content.
 enum class LintedKind { kMachine, kMeasurement, kSpreadsheet, kOther };
 LintedKind linted_kind_of(const std::string& bytes, const std::string& file);
-/// "machine", "measurement", "spreadsheet", "other".
+/// Returns the name of a kind of file: "machine", "measurement", "spreadsheet", "other".
 const char* linted_kind_name(LintedKind kind);
 
 struct LintedFile {
@@ -20,8 +20,9 @@ struct LintedFile {
   std::vector<LintFinding> findings;
 };
 
-/// Tests machine and measurement files in any order: first the machines, then each measurement against the
-/// first machine that could be read. Throws InputError for a file that cannot be opened.
+/// Tests machine files and measurement files, given in any order. The machine files are tested first. Each
+/// measurement file is then tested with the first machine that could be read. Throws InputError if a file
+/// cannot be opened.
 std::vector<LintedFile> lint_files(const std::vector<std::string>& paths);
 
 }  // namespace vernier::lint

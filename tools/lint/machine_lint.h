@@ -11,12 +11,13 @@ namespace vernier::lint {
 
 struct MachineLint {
   std::vector<LintFinding> findings;
-  std::optional<model::Machine> machine;  // if the file has no error
+  std::optional<model::Machine> machine;  // the machine, if the file has no error
 };
 
-/// Reads a machine file to its end, past its errors: a wrong word is removed and the rest is read again. Then
-/// lint_machine reports parts that are valid in form but doubtful in meaning: a unit that is unknown or that
-/// does not scale, an axis, static, input or table that no transform uses, a missing range or nominal.
+/// Reads a machine file to its end, also if it contains errors: a wrong word is removed, and the rest is read
+/// again. After it has read the machine file to its end, lint_machine reports entries that are valid but
+/// doubtful. Examples are a unit that is unknown or does not scale, an axis, static, input or table that no
+/// transform uses, and a missing range or nominal.
 MachineLint lint_machine(const std::string& text, const std::string& file);
 
 }  // namespace vernier::lint

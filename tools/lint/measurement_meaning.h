@@ -7,13 +7,14 @@
 
 namespace vernier::lint {
 
-/// Tests the numbers of a readable measurement file: axes that never move or leave their travel, units that
-/// do not match, decreasing time, rows that occur twice, roles, normals. machine may be null.
+/// Tests the numbers of a measurement file that can be read. The test finds axes that never move or leave
+/// their travel, units that do not match, decreasing time, rows that occur twice, and wrong roles or normals.
+/// `machine` may be null.
 void look_at_meaning(const LintTable& table, const std::string& file, const model::Machine* machine,
                      LintFindings& findings);
 
-/// Tests whether readings of a temperature input, from least to most degC, are plausible in a workshop.
-/// Returns the probable unit ("degF?"); empty: plausible.
+/// Tests whether readings of a temperature input, from least_degC to most_degC, are plausible in a workshop.
+/// Returns the probable unit of the readings ("degF?"); empty if the readings are plausible.
 std::string temperature_doubt(double least_degC, double most_degC);
 
 }  // namespace vernier::lint

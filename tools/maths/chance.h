@@ -3,26 +3,26 @@
 
 namespace vernier::maths {
 
-/// Returns the natural logarithm of the upper tail of an F distribution: log P(F >= f). f >= 0, d1 > 0, d2 >
-/// 0; d1 and d2 need not be integers. The logarithm is used because p-values of a good survey are far below
-/// the smallest double. If d2 <= 0, the variance is unknown: the result is 0 (p = 1). Relative accuracy of p
-/// about 1e-10. NIST DLMF 8.17.
+/// Returns the natural logarithm of the upper tail probability of an F distribution: log P(F >= f). f >= 0,
+/// d1 > 0, d2 > 0; d1 and d2 need not be integers. The logarithm is returned because the p-values of an
+/// accurate survey are far below the smallest double. If d2 <= 0, the variance is unknown, and the result is
+/// 0 (p = 1). The relative accuracy of p is about 1e-10. The formula is that of NIST DLMF 8.17.
 double log_f_tail(double f, double d1, double d2);
 
-/// Returns the natural logarithm of the upper tail of chi square: log P(X >= x), k > 0 degrees of freedom.
-/// NIST DLMF 8.2, 8.9.
+/// Returns the natural logarithm of the upper tail probability of a chi-square distribution: log P(X >= x),
+/// with k > 0 degrees of freedom. The formulas are those of NIST DLMF 8.2 and 8.9.
 double log_chi_square_tail(double x, double k);
 
-/// Returns the upper tail probability of a chi square distribution with k degrees of freedom; 1 for x <= 0, 0
-/// below the smallest double.
+/// Returns the upper tail probability of a chi-square distribution with k degrees of freedom: 1 for x <= 0,
+/// and 0 below the smallest double.
 double chi_square_tail(double x, double k);
 
-/// Returns the x that chi square of k > 0 degrees of freedom exceeds with probability p, 0 < p <
-/// 1; to 1e-15 of 10 k + 100.
+/// Returns the value x that a chi-square variable with k > 0 degrees of freedom exceeds with the probability
+/// p, 0 < p < 1. The accuracy is 1e-15 of 10 k + 100.
 double chi_square_point(double p, double k);
 
-/// Returns log P(R >= r) for the correlation coefficient R of `pairs` independent pairs of normal numbers
-/// (one-sided).
+/// Returns log P(R >= r) for the correlation coefficient R of `pairs` independent pairs of normal random
+/// numbers (one-sided).
 double log_correlation_tail(double r, double pairs);
 
 }  // namespace vernier::maths

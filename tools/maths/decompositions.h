@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Systems of equations and decompositions of matrices of dynamic size. They are compiled once
-// here, because each instantiation in another folder would need seconds of compile time.
+// Solvers for systems of equations, and decompositions of matrices of dynamic size. The solvers are compiled
+// once in this folder, because each instantiation in another folder would need seconds of compile time.
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -22,39 +22,43 @@ VectorXd solve_symmetric(const MatrixXd& a, const VectorXd& b);
 MatrixXd solve_symmetric(const MatrixXd& a, const MatrixXd& b);
 }  // namespace compiled
 
-/// The result is a vector for a vector, a matrix for a matrix.
+/// Type of a solution: a vector if the right side is a vector, and a matrix if it is a matrix.
 template <class Right>
 using Solution = Eigen::Matrix<double, Eigen::Dynamic, Right::ColsAtCompileTime == 1 ? 1 : Eigen::Dynamic>;
 
-/// Returns x of least |a x - b|; a: n x p of rank p. Householder QR with column pivoting.
+/// Returns the x that minimises |a x - b|. `a`: n x p, of rank p. The method is Householder QR with column
+/// pivoting.
 template <class Right>
 Solution<Right> least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::least_squares(a, Solution<Right>(b));
 }
-/// Returns the shortest x of least |a x - b|; a of any rank. Complete orthogonal decomposition.
+/// Returns the shortest x that minimises |a x - b|. `a`: any rank. The method is a complete orthogonal
+/// decomposition.
 template <class Right>
 Solution<Right> least_norm(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::least_norm(a, Solution<Right>(b));
 }
-/// Returns x of a x = b; a symmetric, positive definite. Cholesky.
+/// Returns the solution x of a x = b for a symmetric, positive definite matrix a. The method is a Cholesky
+/// decomposition.
 template <class Right>
 Solution<Right> solve_positive(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::solve_positive(a, Solution<Right>(b));
 }
-/// Returns x of a x = b; a symmetric and, except for rounding, positive semidefinite. Cholesky
-/// with pivots.
+/// Returns the solution x of a x = b for a symmetric matrix a that is positive semidefinite except for
+/// rounding. The method is a Cholesky decomposition with pivots.
 template <class Right>
 Solution<Right> solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixBase<Right>& b) {
   return compiled::solve_symmetric(a, Solution<Right>(b));
 }
-/// Returns x of a x = b; a square and regular. Gauss with row pivots.
+/// Returns the solution x of a x = b for a square, regular matrix a. The method is Gauss elimination with row
+/// pivots.
 Eigen::MatrixXd solve_square(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Returns an orthonormal basis, n x rank, of the range of a. Columns that depend on other columns to
-/// `threshold` of the largest pivot are excluded (0: the limit of the library, rounding). Householder QR with
-/// column pivoting.
+/// Returns an orthonormal basis, n x rank, of the column space of a. A column that depends on other columns,
+/// within `threshold` of the largest pivot, is excluded (0: the rounding limit of the library). The method is
+/// Householder QR with column pivoting.
 Eigen::MatrixXd range_of(const Eigen::MatrixXd& a, double threshold = 0);
-/// Returns n x p, orthonormal: the first p <= n columns of Q of a = Q R, for any rank.
+/// Returns the first p <= n columns of Q in a = Q R, for any rank: n x p, orthonormal.
 Eigen::MatrixXd thin_q(const Eigen::MatrixXd& a);
 
 }  // namespace vernier::maths

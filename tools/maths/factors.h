@@ -2,8 +2,8 @@
 #pragma once
 #include <numbers>
 
-/// Factors between the units that tools write. All factors between units are defined only here. Files use mm,
-/// deg, degC and s. Radians occur only inside functions that need radians.
+/// Factors between the units in the output of the tools. All factors between units are defined only here.
+/// Files use the units mm, deg, degC and s. Radians occur only inside functions that need radians.
 namespace vernier::maths {
 
 inline constexpr double kRadPerDeg = std::numbers::pi / 180;
@@ -12,8 +12,8 @@ inline constexpr double kUmPerMm = 1e3;
 inline constexpr double kArcsecPerDeg = 3600;
 inline constexpr double kUradPerDeg = kRadPerDeg * 1e6;
 inline constexpr double kSecondsPerMinute = 60;
-inline constexpr double kMmPerInch = 25.4;  // exact by definition
-/// ISO 1: the temperature at which dimensions are specified.
+inline constexpr double kMmPerInch = 25.4;  // exact, by the definition of the inch
+/// Temperature at which dimensions are specified (ISO 1).
 inline constexpr double kReferenceDegC = 20;
 
 }  // namespace vernier::maths

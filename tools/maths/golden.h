@@ -7,8 +7,9 @@ struct Peak {
   double at = 0, value = 0;
 };
 
-/// Returns the position and value of the maximum of a function between two points, by golden sections: the
-/// better of the last two points. If the function has several peaks, golden_peak finds one of them.
+/// Returns the position and the value of the maximum of a function between two points, by golden section
+/// search. The result is the better of the last two points. If the function has several peaks, golden_peak
+/// finds one of them.
 template <typename Function>
 Peak golden_peak(const Function& value, double low, double high, int sections) {
   constexpr double kGolden = 0.381966011250105;  // 2 - (1 + sqrt 5)/2

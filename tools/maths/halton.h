@@ -4,8 +4,9 @@
 
 namespace vernier::maths {
 
-/// Returns the element of van der Corput's sequence in a prime base, 0..1. With one base per dimension, the
-/// sequences together are Halton's sequence, evenly distributed over all dimensions (Halton 1960).
+/// Returns the element `index` of van der Corput's sequence in a prime base, 0..1. If each dimension has its
+/// own base, these sequences together are Halton's sequence, which is evenly distributed over all dimensions
+/// (Halton 1960).
 double radical_inverse(std::size_t index, std::size_t base);
 
 }  // namespace vernier::maths

@@ -4,15 +4,16 @@
 
 namespace vernier::maths {
 
-/// Returns the median of `values`, of an even count the upper of the two; 0 for an empty list.
+/// Returns the median of `values`. For an even number of values it is the upper of the two middle values; for
+/// an empty list it is 0.
 double median(std::vector<double> values);
 
-/// Returns the standard deviation of a normal distribution with this median size: 1.4826 of the median size
-/// (Hampel 1974).
+/// Returns the standard deviation of a normal distribution whose median absolute value is `median_size`:
+/// 1.4826 times `median_size` (Hampel 1974).
 double spread_of_median(double median_size);
 
-/// Returns the standard deviation of deviations from 0, computed from their median size: outliers do not
-/// change the result. 0 for an empty list.
+/// Returns the standard deviation of deviations from 0, computed from their median absolute value. Because
+/// the function uses the median, outliers hardly change the result. For an empty list the result is 0.
 double robust_spread(std::vector<double> deviations);
 
 }  // namespace vernier::maths

@@ -6,8 +6,8 @@
 
 namespace vernier::maths {
 
-/// Returns the columns, made orthonormal one after another. Columns with less than `least` of their length
-/// remaining are dropped. `kept`: indices of the linearly independent columns.
+/// Returns the columns after orthonormalisation, one after another. A column is removed if less than the
+/// share `least` of its length remains. `kept`: receives the indices of the linearly independent columns.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::vector<std::size_t>* kept);
 
 }  // namespace vernier::maths

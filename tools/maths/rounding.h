@@ -4,14 +4,15 @@
 
 namespace vernier::maths {
 
-/// Returns the multiple of `digit` (a power of ten) that is nearest to a value. The result is the double that
-/// prints shortest: 242.1, not 242.10000000000002. A multiplication by 0.1 does not have this property.
+/// Returns the multiple of `digit` (a power of ten) that is nearest to a value. The function rounded_to()
+/// returns the double number with the shortest decimal text: 242.1, not 242.10000000000002. A multiplication
+/// by 0.1 does not give this result.
 inline double rounded_to(double value, double digit) {
   const double inverse = std::round(1 / digit);
   return inverse >= 1 ? std::round(value * inverse) / inverse : std::round(value / digit) * digit;
 }
 
-/// Returns the largest power of ten that is not above a value > 0.
+/// Returns the largest power of ten that is at most the value (value > 0).
 inline double decade(double value) { return std::pow(10, std::floor(std::log10(value))); }
 
 /// Returns a value (not 0) rounded to two significant digits.

@@ -11,28 +11,29 @@
 
 namespace vernier::model {
 
-/// The columns of one measurement file as numbers in their base units. NaN: an empty cell. Every reader of
-/// measurement files uses this class for its numbers. ColumnReader keeps a reference to the file. Except for
-/// has(), the requested names must be in the file.
+/// The columns of one measurement file as numbers in their base units. An empty cell has the value NaN. Every
+/// reader of measurement files uses this class for its numbers. A ColumnReader keeps a reference to the CSV
+/// file. A column whose name is requested must be in the file, except for has().
 class ColumnReader {
  public:
   explicit ColumnReader(const format::CsvFile& csv);
 
   bool has(const std::string& name) const { return index_.contains(name); }
-  /// Throws InputError if the file does not have the column. `why` is the message.
+  /// Throws InputError with the message `why` if the file does not have the column `name`.
   void require(const std::string& name, const std::string& why) const;
 
-  /// Returns a column that must have this dimension. `filled`: an empty cell is an error. Throws
-  /// InputError with file, line and word.
+  /// Returns a column of numbers. The unit of the column must have the dimension `dimension`. `filled`: true
+  /// if an empty cell is an error. For a wrong cell, throws InputError with file, line and word.
   Column numbers(const std::string& name, format::Dimension dimension, bool filled);
-  /// Returns a column without conversion, as the file has it.
+  /// Returns a column as it is in the file, without conversion of units.
   Column raw(const std::string& name);
   std::vector<std::string> words(const std::string& name);
-  /// Returns a column that belongs to another reading, without conversion. The column is not marked as read.
+  /// Returns a column that belongs to another reading, without conversion of units. peek() does not mark the
+  /// column as read.
   std::vector<std::string> peek(const std::string& name) const;
 
-  /// True if a column contains words in most of its filled cells. Fewer words are errors in a column of
-  /// numbers.
+  /// True if most of the filled cells of a column contain words. If only a few cells contain words, these
+  /// words are errors in a column of numbers.
   bool is_text(const std::string& name) const;
   format::Dimension dimension(const std::string& name) const;
   const std::string& unit(const std::string& name) const { return column(name).unit; }
@@ -42,7 +43,7 @@ class ColumnReader {
   }
   std::size_t rows() const { return csv_.rows.size(); }
 
-  /// Returns the columns that are not yet read.
+  /// Returns the columns of the file that no function has read yet.
   std::vector<format::CsvColumn> unused() const;
 
   text::Place header() const { return {csv_.file, csv_.header_line}; }

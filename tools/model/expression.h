@@ -11,7 +11,7 @@
 
 namespace vernier::model {
 
-/// Operation of a node of an expression. Angles are degrees throughout (`sin cos tan` take
+/// Operation of a node in an expression tree. All angles in expressions are in degrees (`sin cos tan` take
 /// degrees, `atan2` returns degrees).
 enum class Op : std::uint8_t {
   kNumber,
@@ -37,10 +37,11 @@ enum class Op : std::uint8_t {
   kSign,
   kMin,
   kMax,
-  kLag,  // lag(u, tau): first-order lag over t, state starts at u's first value in each run
+  kLag,  // lag(u, tau): first-order lag of u over the time t; in each run the state starts at the first value
+         // of u
 };
 
-/// The quantity that a name in an expression refers to, after the name is resolved against a machine.
+/// Kind of quantity to which a name in an expression refers, after the name is resolved for a machine.
 enum class SymbolKind : std::uint8_t {
   kUnresolved,
   kStatic,        // index: Machine::statics
@@ -50,12 +51,12 @@ enum class SymbolKind : std::uint8_t {
   kVelocity,      // index: axis; mm/s or deg/s
   kAcceleration,  // index: axis; mm/s^2 or deg/s^2
   kDirection,     // index: axis; -1, 0, +1
-  kSince,         // index: axis; travel since the last reversal, mm or deg
-  kFeed,          // mm/min
-  kCurvature,     // 1/mm
+  kSince,         // index: axis; travel since the last reversal of direction, mm or deg
+  kFeed,          // feed, mm/min
+  kCurvature,     // curvature of the path, 1/mm
   kNormal,        // index 0..2: nx ny nz of the row
-  kTime,          // s
-  kVisit,         // rows since the start of the run
+  kTime,          // time, s
+  kVisit,         // number of rows since the start of the run
 };
 
 struct Symbol {
@@ -70,10 +71,10 @@ using ExprPtr = std::shared_ptr<const Expr>;
 /// A node of an immutable expression tree.
 struct Expr {
   Op op = Op::kNumber;
-  double number = 0;          // kNumber
-  std::string name;           // kSymbol: as written; kRunIs: the label
-  Symbol symbol;              // kSymbol, after resolution
-  std::vector<ExprPtr> args;  // operands in order
+  double number = 0;          // for kNumber: the value
+  std::string name;           // for kSymbol: the name as written; for kRunIs: the label of the run
+  Symbol symbol;              // for kSymbol, after the name is resolved
+  std::vector<ExprPtr> args;  // operands in their order
 };
 
 /// An error in the text of an expression, with the position and the word of the error.
@@ -85,52 +86,55 @@ class ExpressionError : public std::runtime_error {
   std::string word;
 };
 
-/// Parses an expression of FORMATS (tools/docs/formats.md). Names stay unresolved. Throws ExpressionError.
+/// Parses an expression in the syntax of FORMATS (tools/docs/formats.md). Names in the parsed expression stay
+/// unresolved. Throws ExpressionError if the text is not an expression.
 ExprPtr parse_expression(std::string_view text);
 
-/// Parses a term with placeholders. Names may contain text in braces ({q}, dir{q}, {hats 5}). The braces are
-/// a part of the name until substitute() replaces the name.
+/// Parses a template: an expression with placeholders. Names in a template may contain text in braces ({q},
+/// dir{q}, {hats 5}). The braces are a part of a name until substitute() replaces the name.
 ExprPtr parse_template(std::string_view text);
 
-/// Returns the expression with some of its names replaced. `replace` is called for every name. `replace`
-/// returns the replacement, or null if the name stays.
+/// Returns the expression with some of its names replaced. The function `replace` is called for every name of
+/// the expression. `replace` returns the replacement, or null if the name is not changed.
 ExprPtr substitute(const ExprPtr& expr, const std::function<ExprPtr(const std::string&)>& replace);
 
-/// Returns a text that parses back to the same expression, with the fewest parentheses.
+/// Returns the expression as text with the fewest parentheses. The parser reads this text back to the same
+/// expression.
 std::string to_text(const Expr& expr);
 
 ExprPtr make_number(double value);
-/// Returns a symbol with an unresolved name.
+/// Returns a symbol node with a name that is not resolved.
 ExprPtr make_symbol(std::string name);
-/// Returns an expression that is 1 in the rows of one run and 0 in other rows.
+/// Returns an expression with the value 1 in the rows of one run and 0 in all other rows.
 ExprPtr make_run(std::string label);
-/// Returns left - value in its simplest form: "x", "x-3", "x+3".
+/// Returns the difference left - value as the simplest expression: "x", "x-3", "x+3".
 ExprPtr subtract_number(ExprPtr left, double value);
 ExprPtr make_node(Op op, std::vector<ExprPtr> args);
 
-/// Returns true if the expression contains only numbers, and sets `value` to its value. Returns false if the
-/// expression contains a symbol; `value` is then not used.
+/// Returns true if the expression contains only numbers. If the expression contains only numbers, `value` is
+/// set to the value of the expression. Returns false if the expression contains a symbol. If the expression
+/// contains a symbol, the content of `value` has no meaning.
 bool is_constant(const Expr& expr, double& value);
 
-/// Returns the function's name in expressions ("sin"), or nullptr for operators and leaves.
+/// Returns the name of a function in expressions ("sin"); nullptr if the operation is an operator or a leaf.
 const char* function_name(Op op);
-/// Returns the names of all functions: sin, cos …
+/// Returns the names of all functions of the expression language: sin, cos …
 std::vector<std::string> function_names();
 /// True if `name` is a function or a fixed quantity of the expression language (t, feed, run, sin ...).
 bool is_reserved_word(std::string_view name);
 
-/// Returns the value of one operation on plain numbers. Comparisons give 1 or 0. apply() must not be called
-/// for leaves and kLag.
+/// Returns the result of one operation on plain numbers. A comparison returns 1 or 0. Do not call apply() for
+/// a leaf or for kLag.
 double apply(Op op, double a, double b);
 
-/// Calls visit(node) for every node, children first.
+/// Calls visit(node) for every node of the expression; the children of a node come before the node.
 template <class Visit>
 void walk(const Expr& expr, const Visit& visit) {
   for (const ExprPtr& arg : expr.args) walk(*arg, visit);
   visit(expr);
 }
 
-/// Returns true if `is(node)` is true for any node of the expression.
+/// True if `is(node)` is true for at least one node of the expression.
 template <class Is>
 bool any_node(const Expr& expr, const Is& is) {
   bool found = false;
@@ -138,7 +142,7 @@ bool any_node(const Expr& expr, const Is& is) {
   return found;
 }
 
-/// True if the node is a symbol with this name.
+/// True if the node is a symbol with the name `name`.
 inline bool is_symbol(const Expr& node, std::string_view name) {
   return node.op == Op::kSymbol && node.name == name;
 }

@@ -15,7 +15,7 @@
 
 namespace vernier::model {
 
-/// X Y Z rX rY rZ in mm and deg: the columns of a table, of BaseShift, of a sixdof transform.
+/// Names of the six components in tables, BaseShifts and sixdof transforms: X Y Z in mm, rX rY rZ in deg.
 inline constexpr std::array<const char*, 6> kSixDofNames = {"X", "Y", "Z", "rX", "rY", "rZ"};
 /// The attributes of a DH transform in the order of Transform::dof.
 inline constexpr std::array<const char*, 4> kDhNames = {"theta", "d", "a", "alpha"};
@@ -25,28 +25,32 @@ struct Static {
   double value = 0;
   std::optional<double> nominal;
   std::string unit, note;
-  bool hidden = false;          // not free in a fit
-  std::optional<double> scale;  // plausible size of value - nominal, own unit: the prior of a fit
+  bool hidden = false;          // true: a fit does not change this static
+  std::optional<double> scale;  // plausible size of (value - nominal), in the unit of the static: the prior
+                                // of a fit
   std::size_t line = 0;
 };
 
 struct Axis {
   std::string name;
   bool rotary = false;
-  std::optional<double> min, max;                  // mm or deg
-  std::optional<double> max_correction, max_slew;  // axis unit; axis unit per s
+  std::optional<double> min, max;                  // limits of the position, mm or deg
+  std::optional<double> max_correction, max_slew;  // max_correction: unit of the axis; max_slew: unit of the
+                                                   // axis per s
   bool rollover = false;
   double scale_factor = 0;
-  bool scale_free = false;  // the scale factor is a parameter of a fit (set by a caller, not by an attribute)
+  bool scale_free = false;  // true: the scale factor is a parameter of a fit (a caller sets this flag, not an
+                            // attribute of the file)
   std::size_t line = 0;
 };
 
-/// A measured quantity that is no axis. An axis with Hide is an input too (`hidden_axis`). Role of a logged
-/// column. kGuessed: the role follows from the unit, or from the name if there is no unit.
+/// An input is a measured quantity that is not an axis. An axis with the attribute Hide is an input too
+/// (`hidden_axis`). Role of a logged column, for example a temperature. kGuessed: the role follows from the
+/// unit of the column, or from its name if the column has no unit.
 enum class InputRole : std::uint8_t { kGuessed, kTemperature, kLoad, kVibration, kSetpoint, kOther };
 inline constexpr std::array<const char*, 6> kInputRoleNames = {"",          "temperature", "load",
                                                                "vibration", "set-point",   "other"};
-/// Returns the role of that name, or nullopt for another word.
+/// Returns the input role with the name `name`; nullopt if no role has this name.
 std::optional<InputRole> input_role_named(std::string_view name);
 
 struct Input {
@@ -60,7 +64,7 @@ struct Input {
 
 struct Station {
   double loc = 0;
-  std::string loc_text;  // as written, for parameter names
+  std::string loc_text;  // text of `loc` in the machine file, for the names of parameters
   std::array<double, 6> value{};
 };
 
@@ -69,25 +73,27 @@ enum class Interpolation : std::uint8_t { kLinear, kCubic };
 struct Table {
   std::size_t axis = 0;
   Interpolation interpolation = Interpolation::kLinear;
-  bool periodic = false;                         // the axis has rollover: periodic over first..last station
-  std::array<bool, 6> free{};                    // columns freed in a fit
-  std::array<std::optional<double>, 6> scale{};  // as of a static, one per column; mm or deg
-  std::vector<Station> stations;                 // loc strictly increasing
+  bool periodic = false;                         // true: the axis has rollover, so that the table repeats
+                                                 // after its last station
+  std::array<bool, 6> free{};                    // true for each column that a fit may change
+  std::array<std::optional<double>, 6> scale{};  // scale of each column, as for a static; mm or deg
+  std::vector<Station> stations;                 // `loc` of the stations is strictly increasing
   std::size_t line = 0;
 };
 
-/// Place of an instrument. In Machine::base_shifts: chain base in the measuring frame. In
-/// Machine::tool_shifts: the measured object or the camera, in the frame of the tool.
+/// Position and orientation of an instrument or of its target. A BaseShift in Machine::base_shifts is the
+/// base of the chain in the measuring frame. A BaseShift in Machine::tool_shifts is the measured object or
+/// the camera in the frame of the tool.
 struct BaseShift {
-  std::optional<std::string> run;  // label of its set-up; no value: the plain BaseShift
-  bool of_setup = false;           // the file says setup=, not run=
+  std::optional<std::string> run;  // label of the run or set-up; no value: a BaseShift without label
+  bool of_setup = false;           // true: the machine file has the attribute setup=, not run=
   std::array<double, 6> value{};   // mm, deg
   bool hidden = false;
   std::size_t line = 0;
 };
 
-/// A tool with a name. `point` is the position of the tool in the frame at the end of the tool branch. The
-/// tool of the file is at the origin of that frame and has no name.
+/// A named tool of the machine. `point` is the position of the tool in the frame at the end of the tool
+/// branch. The default tool of the machine file is at the origin of that frame and has no name.
 struct Tool {
   std::string name;
   std::array<double, 3> point{};  // mm
@@ -105,8 +111,9 @@ enum class TransformKind : std::uint8_t { kSixDof, kDh };
 struct Transform {
   TransformKind kind = TransformKind::kSixDof;
   int n = 0;
-  std::array<ExprPtr, 6> dof{};  // six for sixdof, the first four for DH (kDhNames); never null for those
-  std::array<std::string, 6> text{};  // as written ("0" where absent)
+  /// Six expressions for sixdof, four for DH (kDhNames); these pointers are never null
+  std::array<ExprPtr, 6> dof{};
+  std::array<std::string, 6> text{};  // text of each expression as written; "0" if it is absent
   std::size_t line = 0;
   std::size_t dof_count() const { return kind == TransformKind::kSixDof ? 6 : 4; }
   const char* dof_name(std::size_t i) const {
@@ -116,8 +123,8 @@ struct Transform {
 
 struct FitRecord;
 
-/// A machine file: chain, statics, axes, inputs, tables. Machine is a value type. Expressions are resolved
-/// against the machine that contains them.
+/// The content of a machine file: chain, statics, axes, inputs, tables. Machine is a value type, which can be
+/// copied. The expressions of a Machine are resolved for this Machine.
 struct Machine {
   std::string name, file;
   std::array<double, 3> gravity{0, 0, -1};  // unit vector in the chain's base frame
@@ -126,18 +133,20 @@ struct Machine {
   std::vector<Input> inputs;
   std::vector<Table> tables;
   std::vector<BaseShift> base_shifts;
-  /// Mounting of what the tool carries for a measurement: a camera, a board, a reflector. It is part of the
-  /// set-up of the instrument and not of the chain.
+  /// Mountings of the objects that the tool carries for a measurement: a camera, a board, a reflector. A
+  /// mounting is a part of the instrument's set-up and not a part of the chain.
   std::vector<BaseShift> tool_shifts;
   std::vector<Transform> tool, workpiece;
-  std::vector<Tool> tools;                       // in addition to the tool of the file
-  std::vector<Artefact> artefacts;               // what a tool point may touch: column `on`
-  std::vector<WorkRange> volume;                 // of the axes that <volume> names
-  std::optional<ReadingUncertainty> instrument;  // for files that state no u
+  std::vector<Tool> tools;                       // named tools, in addition to the default tool of the file
+  std::vector<Artefact> artefacts;               // objects that a tool point may touch (column `on`)
+  std::vector<WorkRange> volume;                 // working ranges of the axes that <volume> names
+  std::optional<ReadingUncertainty> instrument;  // uncertainty of the instrument, for measurement files
+                                                 // without u
   bool correct_orientation =
-      false;  // correct="position orientation": the direction of the tool is corrected too
-  std::shared_ptr<const FitRecord> fitted;  // result of its last fit; null: never fitted
-  std::vector<std::string> notes;           // what was read but ignored (`multiply` and the like)
+      false;  // true: the direction of the tool is corrected too (correct="position orientation")
+  std::shared_ptr<const FitRecord> fitted;  // record of the last fit; null if the machine was never fitted
+  std::vector<std::string> notes;           // parts of the file that were read but ignored (`multiply` and
+                                            // others)
 
   std::optional<std::size_t> find_static(std::string_view n) const;
   std::optional<std::size_t> find_axis(std::string_view n) const;
@@ -145,25 +154,28 @@ struct Machine {
   const Table* table_of(std::size_t axis) const;
 };
 
-/// Returns the machine with another tool: the tool branch gets one more shift at its end, by `point` (mm, in
-/// its last frame).
+/// Returns a copy of the machine with another tool. The tool branch has one more shift at its end, by `point`
+/// (mm, in its last frame).
 Machine with_tool(const Machine& machine, const std::array<double, 3>& point);
 
-/// Returns the working range of an axis: <volume>, else its min and max. work_range returns nullopt if the
-/// file has neither.
+/// Returns the working range of an axis: its range in <volume>, otherwise its min and max. The function
+/// work_range() returns nullopt if the file has neither.
 std::optional<std::array<double, 2>> work_range(const Machine& machine, std::size_t axis);
 
-/// Returns the meaning of a name in expressions of this machine; kUnresolved if the name has no meaning.
+/// Returns the meaning of a name in the expressions of a machine; kUnresolved if the name is unknown.
 Symbol resolve_name(const Machine& machine, std::string_view name);
-/// Parses and resolves an expression for this machine. Throws ExpressionError with the unknown name.
+/// Parses an expression and resolves its names for a machine. Throws ExpressionError with the unknown name if
+/// a name is unknown.
 ExprPtr parse_expression_for(const Machine& machine, std::string_view text);
-/// Returns the name of a symbol as expressions write it.
+/// Returns the name of a symbol as it is written in expressions.
 std::string symbol_name(const Machine& machine, const Symbol& symbol);
 /// Returns the unit of a symbol ("mm", "deg/s", ...), for reports and unit checks.
 std::string symbol_unit(const Machine& machine, const Symbol& symbol);
 
-/// Returns the machine of the nominal chain. Statics are at `nominal` (a hidden static without `nominal` at
-/// its value); tables and scalefactor are 0. Inputs and motion are unchanged. BaseShift is the identity.
+/// Returns the machine of the nominal chain (the chain without errors). In the nominal chain, statics have
+/// the value `nominal`, and tables and scale factors are 0. A hidden static without `nominal` keeps its
+/// value. Inputs and motion are the same as in the given machine. Every BaseShift of the nominal chain is the
+/// identity.
 Machine nominal_machine(const Machine& machine);
 
 }  // namespace vernier::model

@@ -11,7 +11,7 @@
 
 namespace vernier::model {
 
-/// Kind of an observation: the kinds of reading of the measurement format.
+/// Kind of an observation. The kinds are the kinds of reading in the measurement format.
 using ObservationKind = format::ReadingKind;
 using format::is_direction;
 using format::is_free_of_setup;
@@ -19,36 +19,38 @@ using format::is_inclination;
 using format::is_of_thing;
 using format::is_rotation;
 
-/// One measured number: mm, or deg for rotations.
+/// One measured value of a row: mm, or deg for rotations.
 struct Observation {
   ObservationKind kind = ObservationKind::kX;
   std::size_t row = 0;
   double value = 0;
 };
 
-/// A column that the machine file does not declare. A missing effect may depend on such a column. NaN: the
+/// A column of a measurement file that the machine file does not declare as an input. A physical effect that
+/// is missing in the model may depend on a column that is not declared as an input. The value is NaN if the
 /// cell is empty.
 struct CandidateInput {
   std::string name, unit;
   Column value;
 };
 
-/// A column of words, unchanged.
+/// A column of words in a measurement file, without any change.
 struct LabelColumn {
   std::string name;
   std::vector<std::string> value;
 };
 
-/// `other_end` of a row without a distance.
+/// Value of `other_end` in a row without a distance reading.
 inline constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
 
-/// An object that the tool point touched: an unknown point (`same`; an artefact of type point without known
-/// values), or an artefact of the machine file. Each touched object has separate unknown values in each
-/// set-up. An exception is an artefact with a stated position and without a stated set-up: it is one body
-/// that stands in several set-ups, each with its own BaseShift, and it has the same values in all of them.
+/// An object that the tool point touched: an unknown point (`same`), or an artefact of the machine file
+/// (`on`). An artefact of type point without known values is an unknown point too. A touched object has
+/// separate unknown values in each set-up, with one exception. Exception: an artefact with a stated position
+/// and without a stated set-up is one body in several set-ups, each with its own BaseShift. An artefact that
+/// is one body in several set-ups has the same values in all set-ups.
 struct Thing {
   format::ReadingForm form = format::ReadingForm::kSame;
-  std::string label, setup;  // setup: empty if rows state none
+  std::string label, setup;  // setup: empty if the rows state no set-up
   Artefact artefact;
 
   bool is_unknown_point() const { return form == format::ReadingForm::kSame; }
@@ -57,96 +59,109 @@ struct Thing {
   bool in_measuring_frame() const { return artefact.place.has_value(); }
   /// True if the object has the same values in all set-ups.
   bool is_in_every_set_up() const { return in_measuring_frame() && !artefact.setup; }
-  /// True if both are the same object, in two measurements of one machine.
+  /// True if `other` is the same object in another measurement of the same machine.
   bool is(const Thing& other) const {
     return form == other.form && label == other.label && setup == other.setup;
   }
 };
 
-/// Value of `thing` in a row that touched no object.
+/// Value of `thing` in a row that touches no object.
 inline constexpr std::size_t kNoThing = static_cast<std::size_t>(-1);
 
-/// The rows of one or several measurement files, bound to a machine (FORMATS section 2). Rows with an empty
-/// input cell are not included; the measurement contains only their number.
+/// The rows of one or several measurement files, read for a machine (FORMATS section 2). A row with an empty
+/// cell in an input column is not included. The member `excluded` is the number of rows that are not included
+/// because an input cell is empty.
 struct Measurement {
   std::vector<std::string> files;
   States states;
-  std::vector<Observation> observations;  // by row, in the order of their kinds
+  std::vector<Observation> observations;  // sorted by row, and in each row by kind
   std::vector<CandidateInput> candidates;
   std::vector<LabelColumn> labels;
-  Column uncertainty;                   // u of the row, mm (deg for its rotations); 0 where not given
-  Column angle_uncertainty;             // ua: of its rotations, deg; 0 if not given; empty: given in no row
-  std::vector<char> check;              // role of the row
-  std::vector<std::size_t> file, line;  // file and line of the row
-  /// Correction that a board added in each row, one entry per axis, mm or deg. Empty: no
-  /// correction. states.axis is the actual position of the machine: the commanded position plus
-  /// the correction.
+  Column uncertainty;                   // standard uncertainty u of the row, mm (deg for its rotations); 0 if
+                                        // not given
+  Column angle_uncertainty;             // standard uncertainty ua of the row's rotations, deg; 0 if not
+                                        // given; empty if no row has ua
+  std::vector<char> check;              // true if the row is a check row
+  std::vector<std::size_t> file, line;  // measurement file and line of each row
+  /// Correction that a board added to each axis in each row, mm or deg. `correction` is empty if no row has a
+  /// correction. states.axis is the actual position of the machine: the commanded position plus the
+  /// correction.
   std::vector<Column> correction;
+  std::vector<std::string> corrected;  // fingerprint of the active image in each row; empty if no row has an
+                                       // image
+  Eigen::Matrix3Xd centre;             // centre point of the reading `length`, measuring frame, mm
+  Eigen::Matrix3Xd nominal_point;      // nominal point of the reading `d`, workpiece coordinates, mm
+  Eigen::Matrix3Xd direction;  // unit vector for the readings a1 and a2, measuring frame; empty if no row
+                               // has it
+  std::vector<std::size_t> other_end;  // row at the other end of a distance, otherwise kNoRow; empty if there
+                                       // are no distances
+  std::vector<Thing> things;           // the touched objects of `same` and `on`
+  std::vector<std::size_t> thing;      // index of the touched object of each row, otherwise kNoThing; empty
+                                       // if no row touches an object
+  std::size_t excluded = 0;            // number of rows that were excluded because an input cell is empty
   std::vector<std::string>
-      corrected;                   // fingerprint of the active image in each row; empty: no image in any row
-  Eigen::Matrix3Xd centre;         // of `length`, measuring frame, mm
-  Eigen::Matrix3Xd nominal_point;  // of `d`, workpiece coordinates, mm
-  Eigen::Matrix3Xd direction;      // of a1 a2, unit vectors, measuring frame; empty: in no row
-  std::vector<std::size_t> other_end;  // row at the other end of a distance, else kNoRow; empty: no distances
-  std::vector<Thing> things;           // of `same` and `on`
-  std::vector<std::size_t> thing;      // of the row, else kNoThing; empty: in no row
-  std::size_t excluded = 0;            // rows with an empty input cell
-  std::vector<std::string>
-      recorded;  // names of the columns of motion that at least one file has (vX, feed, t ...)
+      recorded;  // names of the motion columns (vX, feed, t ...) that at least one file has
 
   std::size_t rows() const { return states.count; }
   bool has_recorded(std::string_view name) const;
   std::size_t thing_of(std::size_t row) const { return thing.empty() ? kNoThing : thing[row]; }
-  /// The distance of this row is between two unknown points (`same` at both ends), not between tool points.
+  /// True if the distance reading of a row is between two unknown points (`same` at both ends), not between
+  /// two tool points.
   bool is_between_things(std::size_t row) const;
 };
 
-/// Name of the set-up of a measurement file: the file name without folder and ending; with_folder: with the
-/// name of the folder ("b/survey"), for two files of one name. The rows of a file without a column `setup`
-/// belong to `<BaseShift setup="NAME">` of the machine file, if there is one.
+/// Returns the name of the set-up of a measurement file: the file name without folder and ending.
+/// `with_folder`: true adds the name of the folder ("b/survey"), if two files have the same name. If a file
+/// has no column `setup`, its rows belong to `<BaseShift setup="NAME">` of the machine file, if such a
+/// BaseShift exists.
 std::string set_up_of_file(const std::string& path, bool with_folder = false);
 
-/// Returns the standard uncertainty of a reading. For a rotation the result is ua of its row if given, else
-/// u. The result is 0 if the row has no uncertainty. mm or deg.
+/// Returns the standard uncertainty of a reading. For a rotation, the standard uncertainty is ua of its row;
+/// if ua is not given, it is u. The unit is mm or deg. The function uncertainty_of() returns 0 if the row has
+/// no uncertainty.
 double uncertainty_of(const Measurement& measurement, const Observation& observation);
 
-/// True if the set-up of the instrument does not change the reading. An object without a known position is in
-/// workpiece coordinates.
+/// True if the set-up of the instrument has no influence on the reading. A touched object without a known
+/// position is in workpiece coordinates.
 bool is_free_of_set_up(const Measurement& measurement, const Observation& observation);
 
-/// Returns the commanded position of an axis in each row (the read position, if it was logged), mm or deg.
-/// Two rows with the same commanded positions are at one pose. The commanded position is states.axis minus
-/// the correction, rounded to 1e-9 as it was written.
+/// Returns the commanded position of an axis in each row, mm or deg. If the position was logged, it is the
+/// read position. Two rows with the same commanded positions are at one pose. The commanded position is
+/// states.axis minus the correction, rounded to 1e-9.
 Column commanded(const Measurement& measurement, std::size_t axis);
 double commanded(const Measurement& measurement, std::size_t axis, Eigen::Index row);
-/// Returns the rows at their commanded positions, without a correction.
+/// Returns the states of the rows at their commanded positions, without the correction.
 States commanded_states(const Measurement& measurement);
 
-/// Computes `correction` in the rows of one file where `corrected` names an image. `correction` is 0 in all
-/// rows before the call. states.axis is the commanded position. text: the text of the file.
+/// Function that computes `correction` in the rows of one file in which the column `corrected` names an
+/// image. Before the call, `correction` is 0 in all rows, and states.axis is the commanded position. `text`:
+/// the text of the measurement file.
 using ImageCorrection =
     std::function<void(Measurement& rows, const Machine& machine, const std::string& text)>;
 
-/// Reads measurement files for a machine. Columns may be in any order. Units are converted to the base units
-/// (an input to the unit that the machine declares). images: for files that name an image but have no
-/// correction column. Without `images` a file that names an image is refused. Throws InputError with file,
-/// line and word.
+/// Reads one or several measurement files for a machine. The columns of a measurement file may be in any
+/// order. Values are converted to the base units. An input is converted to the unit that the machine
+/// declares. `images`: function for files that name an image but have no correction column. If `images` is
+/// empty, a file that names an image is an error. For an invalid file, throws InputError with file, line and
+/// word.
 Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine,
                              const ImageCorrection& images = {});
 
-/// Throws InputError with file and line if `t` decreases from one row of a run to the next. In rows without
-/// time order, time-dependent terms and lags have no meaning.
+/// Throws InputError with file and line if the time `t` decreases from one row of a run to the next row. In
+/// rows that are not in time order, time-dependent terms and lags have no meaning.
 void require_time_order(const Measurement& measurement);
 
-/// Returns the rows `keep` of a measurement with their observations. `keep` may contain a row several times.
-/// A distance is included only if the rows of both its ends are included.
+/// Returns the measurement that contains only the rows `keep` with their observations. The list `keep` may
+/// contain a row several times. A distance reading is included only if the rows of both its ends are
+/// included.
 Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& keep);
 
-/// Appends rows that are bound to the same machine. Runs (and set-ups ...) with the same name are merged. If
-/// `apart`, a run of `next` is never merged with a run of `all`. Throws InputError if a column has two units.
+/// Appends the rows of another measurement of the same machine. Runs and set-ups with the same name in both
+/// measurements are merged. `apart`: true keeps the runs of `next` separate from the runs of `all`, also if
+/// they have the same name. Throws InputError if a column has different units in the two measurements.
 void append_measurement(Measurement& all, Measurement next, bool apart = false);
 
-/// Reads one measurement file from a text, for tests and imports.
+/// Reads one measurement file from its text; used by tests and imports.
 Measurement parse_measurement(const std::string& text, const std::string& file, const Machine& machine,
                               const ImageCorrection& images = {});
 

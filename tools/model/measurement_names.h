@@ -7,15 +7,15 @@
 
 namespace vernier::model {
 
-/// True if an axis must not have this name, because a column of the measurement format has the name.
-/// `machine`: its axes have columns "correctionX" and so on.
+/// True if `name` is not permitted as the name of an axis, because a column of the measurement format has
+/// this name. `machine`: the machine whose axes have the columns "correctionX" and so on.
 bool is_no_axis_name(const Machine& machine, std::string_view name);
-/// True if an input must not have this name, because a column of the measurement format has the name. An
-/// input may have the name of a column of a later version of the format.
+/// True if `name` is not permitted as the name of an input, because a column of the measurement format has
+/// this name. The names of columns of a later version of the format are permitted for inputs.
 bool is_no_input_name(const Machine& machine, std::string_view name);
-/// Returns the option that adds the constant position of an axis: --set "Y[mm]=POSITION".
+/// Returns the command-line option that adds a constant position of an axis: --set "Y[mm]=POSITION".
 std::string set_of_axis(const Axis& axis);
-/// The message about a name that a measured column has.
+/// Error message for a name of an axis or input that is also the name of a measured column.
 inline constexpr const char* kMeasuredName = "measurement files use this name for a measured column";
 
 }  // namespace vernier::model

@@ -10,19 +10,20 @@ namespace vernier::model {
 
 enum class ParameterKind : std::uint8_t { kStatic, kScaleFactor, kStation, kBaseShift, kToolShift };
 
-/// True for parameters of the set-up of an instrument: they are no errors of the machine.
+/// True for the parameters of an instrument's set-up. Parameters of an instrument's set-up are not errors of
+/// the machine.
 constexpr bool is_set_up(ParameterKind kind) {
   return kind == ParameterKind::kBaseShift || kind == ParameterKind::kToolShift;
 }
 
-/// One number of a machine that a fit may change.
+/// A number in the machine file that a fit may change.
 struct Parameter {
   std::string name,
-      unit;  // as in the JSON result: `alpha`, `scalefactor.X`, `table.X[100].rY`, `BaseShift[s2].rZ`
+      unit;  // name as in the JSON result: `alpha`, `scalefactor.X`, `table.X[100].rY`, `BaseShift[s2].rZ`
   ParameterKind kind = ParameterKind::kStatic;
   std::size_t item = 0;     // index of the static, axis, table, BaseShift or ToolShift
-  std::size_t station = 0;  // kStation
-  std::size_t column = 0;   // kStation, kBaseShift, kToolShift: 0..5 = X Y Z rX rY rZ
+  std::size_t station = 0;  // index of the station, for kStation
+  std::size_t column = 0;   // for kStation, kBaseShift and kToolShift: 0..5 = X Y Z rX rY rZ
 };
 
 /// A group of parameters that a fit frees or fixes together: a constant (static), a scale factor, a column of
@@ -33,9 +34,11 @@ class Freedom {
       : kind_(kind), name_(std::move(name)), flag_(flag) {}
 
   ParameterKind kind() const { return kind_; }
-  /// `alpha`, `scalefactor.X`, `table.X.rY`, `BaseShift`, `BaseShift[s2]`, `ToolShift`.
+  /// Returns the name of the group: `alpha`, `scalefactor.X`, `table.X.rY`, `BaseShift`, `BaseShift[s2]`,
+  /// `ToolShift`.
   const std::string& name() const { return name_; }
-  /// Statics and BaseShifts store whether they are hidden; the other units store whether they are free.
+  /// Returns true if a fit may change this group. The flag of statics, BaseShifts and ToolShifts has the
+  /// meaning "hidden"; the flag of other groups has the meaning "free".
   bool is_free() const { return flag_ != says_hidden(); }
   void set_free(bool free) { flag_ = free != says_hidden(); }
 
@@ -47,8 +50,8 @@ class Freedom {
   bool& flag_;
 };
 
-/// Returns all units that a fit could free, in the order of ParameterSet. freedoms_of is the only list of
-/// such units. The entries point into the machine.
+/// Returns all groups of parameters that a fit could free, in the order of ParameterSet. No other code has a
+/// list of these groups. The returned objects contain references to the machine.
 std::vector<Freedom> freedoms_of(Machine& machine);
 
 /// The free parameters of a machine, in a fixed order: statics, scale factors, stations, BaseShifts,
@@ -56,10 +59,10 @@ std::vector<Freedom> freedoms_of(Machine& machine);
 class ParameterSet {
  public:
   ParameterSet() = default;
-  /// Contains all parameters that are free by FORMATS: statics and BaseShifts without Hide, table columns
-  /// named by `fit`. A BaseShift whose run is not in `runs` is excluded. The BaseShift without `run` and
-  /// `setup` is excluded if every run has a separate BaseShift. In a periodic table the last station repeats
-  /// the first station and is not a parameter.
+  /// Constructs the set of all parameters that are free by the rules of FORMATS: statics and BaseShifts
+  /// without Hide, and table columns that the attribute `fit` names. A BaseShift for a run that is not in
+  /// `runs` is excluded. A BaseShift without `run` and `setup` is excluded if every run has its own
+  /// BaseShift. The last station of a periodic table repeats the first station and is not a parameter.
   ParameterSet(const Machine& machine, const std::vector<std::string>& runs);
 
   std::size_t size() const { return list_.size(); }
@@ -74,18 +77,19 @@ class ParameterSet {
   std::vector<Parameter> list_;
 };
 
-/// Returns the BaseShift of a run: the BaseShift for this run, or else the BaseShift without `run` and
-/// `setup`, or else nullopt (identity).
+/// Returns the index of the BaseShift of a run: its own BaseShift, otherwise the BaseShift without `run` and
+/// `setup`. If there is neither, the result is nullopt (identity).
 std::optional<std::size_t> base_shift_of(const Machine& machine, const std::string& run);
-/// Returns the ToolShift of a set-up, as base_shift_of() returns its BaseShift.
+/// Returns the index of the ToolShift of a set-up, by the same rule as base_shift_of().
 std::optional<std::size_t> tool_shift_of(const Machine& machine, const std::string& run);
 
-/// The two places of an instrument in the set-up of a row; null: identity.
+/// BaseShift and ToolShift of the set-up of a row; null means identity.
 struct SetUpOfRow {
   const BaseShift* base = nullptr;
   const BaseShift* tool = nullptr;
 };
-/// Returns the places for each set-up name. The pointers point into the machine.
+/// Returns the BaseShift and the ToolShift for each set-up name. The returned pointers are valid while the
+/// machine exists.
 std::vector<SetUpOfRow> set_ups_of(const Machine& machine, const std::vector<std::string>& names);
 
 }  // namespace vernier::model

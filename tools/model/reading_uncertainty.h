@@ -5,8 +5,8 @@
 
 namespace vernier::model {
 
-/// Standard uncertainty of a reading that grows with the length from the instrument. The data sheet of a
-/// tracker, a distance meter or a coordinate measuring machine states it.
+/// Standard uncertainty of a length reading that increases with the distance from the instrument. Data sheets
+/// of laser trackers, distance meters and coordinate measuring machines state this uncertainty.
 struct ReadingUncertainty {
   double constant_mm = 0, per_mm = 0;
   std::array<double, 3> at{0, 0, 0};  // position of the instrument in the measuring frame, mm
@@ -14,9 +14,9 @@ struct ReadingUncertainty {
   double of_length(double length_mm) const { return constant_mm + per_mm * length_mm; }
 };
 
-/// Parses "15um + 6um/m", or the form of ISO 10360-2 "2.5 + L/300" (um; L in mm). The terms are
-/// joined by +. Each term is a length, a length per metre, or L/K. Throws InputError with the
-/// offending word.
+/// Parses an uncertainty in the form "15um + 6um/m", or in the form of ISO 10360-2 "2.5 + L/300" (um; L in
+/// mm). The character + separates the terms of the text. Each term is a length, a length per metre, or L/K (K
+/// a number). If the text is not valid, throws InputError with the wrong word.
 ReadingUncertainty parse_reading_uncertainty(const std::string& text);
 
 }  // namespace vernier::model

@@ -5,8 +5,8 @@
 
 namespace vernier::model {
 
-/// Returns the same rows for a machine that declares more of their columns as inputs. Rows with an
-/// empty cell in a new input column are excluded and counted.
+/// Returns the rows of a measurement for a machine that declares more of the columns as inputs. Rows with an
+/// empty cell in a new input column are excluded, and their number is counted.
 Measurement rebind(const Measurement& measurement, const Machine& from, const Machine& to);
 
 }  // namespace vernier::model

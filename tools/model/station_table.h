@@ -9,19 +9,21 @@
 
 namespace vernier::model {
 
-/// Interpolation in a station table: linear or cubic (natural, or periodic). Beyond both ends of the table
-/// the last value is used. If the axis rolls over, the table is periodic. The result is linear in the values
-/// at the stations; weights() gives the weight of each station.
+/// Interpolation in a station table: linear, cubic (natural spline), or cubic periodic. Outside the range of
+/// the stations, the value of the first or last station is used. The table is periodic if the axis has
+/// rollover. The interpolated value is linear in the values at the stations. The function weights() returns
+/// the weight of each station.
 class StationTable {
  public:
   explicit StationTable(const Table& table);
 
-  /// Returns the six values (mm, deg) at a raw axis position.
+  /// Returns the six table values (mm, deg) at a position of the axis without scale factor.
   std::array<double, 6> values(double raw) const;
-  /// Returns d value / d raw of the six columns; 0 beyond the ends.
+  /// Returns the slopes of the six columns, d value / d raw; 0 outside the range of the stations.
   std::array<double, 6> slopes(double raw) const;
-  /// Appends index and weight of every station that contributes to the value at this position. In a periodic
-  /// table the last station repeats the first station; its weight is added to index 0.
+  /// Appends the index and the weight of every station that contributes to the value at the position `raw`.
+  /// In a periodic table the last station repeats the first station. The weight of the last station is added
+  /// to index 0.
   void weights(double raw, std::vector<std::pair<std::size_t, double>>& result) const;
 
  private:
@@ -34,12 +36,14 @@ class StationTable {
 
   const Table& table_;
   std::vector<double> loc_;
-  Eigen::MatrixXd curvature_;                // cubic: second derivatives = curvature_ * station values
-  std::vector<std::array<double, 6>> bend_;  // cubic: second derivative of the six columns at every station
+  Eigen::MatrixXd curvature_;                // for cubic interpolation: second derivatives = curvature_ *
+                                             // station values
+  std::vector<std::array<double, 6>> bend_;  // for cubic interpolation: second derivative of the six columns
+                                             // at every station
 };
 
-/// Returns the values of a table at a raw axis position, mm and deg; node, edge and periodic rules of
-/// FORMATS.
+/// Returns the six values of a table (mm, deg) at the axis position `raw`, by the rules of FORMATS for
+/// stations, ends and periodic tables.
 std::array<double, 6> table_values(const Table& table, double raw);
 
 }  // namespace vernier::model

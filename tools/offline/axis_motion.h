@@ -11,43 +11,46 @@
 
 namespace vernier::offline {
 
-/// A move of all axes together from one position to another: straight, or along an arc.
+/// A motion of all axes together from one position to another, along a straight line or an arc.
 struct ProgramMove {
-  Eigen::VectorXd from, to;  // mm and deg
+  Eigen::VectorXd from, to;  // positions in mm and deg
   std::optional<ProgramArc> arc;
-  double feed = 0;  // of the linear axes together, mm/min; 0: not known (rapid, inverse time)
+  double feed = 0;  // feed of the linear axes together, mm/min; 0: unknown (rapid, inverse time)
 
   Eigen::VectorXd at(double share) const;
 };
 
-/// The motion at the positions of a program's moves: speeds, directions, and the travel of each axis since
-/// its last reversal.
+/// Computes the motion of the axes at positions of a program's moves: speeds, directions, and the travel of
+/// each axis since its last reversal.
 class AxisMotion {
  public:
-  /// at: one row, with the inputs.
+  /// `at`: one state with the values of the inputs.
   AxisMotion(const model::Machine& machine, const model::States& at);
 
-  /// Shares between which the directions of all axes do not change: 0, reversals, 1.
+  /// Returns the shares of a move between which no axis changes its direction: 0, the reversals, 1.
   std::vector<double> stretches(const ProgramMove& move) const;
   /// Records that the axes move from one position to another without a reversal in between.
   void set_out(const Eigen::VectorXd& from, const Eigen::VectorXd& to);
-  /// Returns the positions with the motion at shares of a move, all within the planned range.
+  /// Returns the states of the machine at the given shares of a move. All positions are within the planned
+  /// range.
   model::States along(const ProgramMove& move, const std::vector<double>& shares) const;
-  /// Returns the shares of a part of a move at which the correction is evaluated, including its first and
-  /// last. The shares are those of even_looks, with smaller intervals where an expression of the chain
-  /// changes quickly (model::Detail::Sharp).
+  /// Returns the shares at which the correction is evaluated in a part of a move, including its first and
+  /// last share. The shares of a part of a move are those of even_looks. The intervals are smaller where an
+  /// expression of the chain changes quickly (model::Detail::Sharp).
   std::vector<double> looks(const ProgramMove& move, double from, double to, double deviation_mm) const;
 
  private:
-  /// Returns the number of equal parts that are evaluated. A part is at most a millimetre or a tenth of a
-  /// degree. Each period of a cyclic error of the chain has 32 parts, each interval between stations
-  /// 4. Parts of an arc are so short that their chords stay within an eighth of the deviation.
+  /// Returns the number of equal parts in which a move is evaluated. Each part is at most one millimetre or a
+  /// tenth of a degree. Each period of a cyclic error has 32 parts, and each interval between stations has 4
+  /// parts. The parts of an arc are so short that their chords differ from the arc by at most an eighth of
+  /// `deviation_mm`.
   int even_looks(const ProgramMove& move, double from, double to, double deviation_mm) const;
 
   const model::Machine& machine_;
   const model::States& at_;
-  std::vector<double> turn_, sense_;   // where an axis last turned round, and how it moves
-  std::vector<model::Detail> detail_;  // of each axis
+  std::vector<double> turn_, sense_;   // position of the last reversal of each axis, and direction of its
+                                       // motion
+  std::vector<model::Detail> detail_;  // one Detail for each axis
 };
 
 }  // namespace vernier::offline

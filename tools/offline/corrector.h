@@ -10,19 +10,20 @@
 namespace vernier::offline {
 
 struct CorrectorOptions {
-  bool with_rotary =
-      false;  // all axes put point and tool direction right, not the linear ones the point alone
-  /// If true, the positions of the machine with its errors are given, and the commands of an ideal machine at
-  /// the same tool point are computed.
+  bool with_rotary = false;  // true: all axes correct the tool point and the tool direction; false: the
+                             // linear axes correct the tool point
+  /// If true, the input contains positions of the machine with its errors. The output is then the commands of
+  /// an ideal machine with the same tool point.
   bool back = false;
 };
 
-/// Changes of the positions of a list or program.
+/// Statistics of the changes to the positions of a list or a program.
 struct CorrectionSummary {
-  std::size_t positions = 0;      // of a list; of a program those that were looked at
-  std::size_t not_converged = 0;  // of these
-  std::vector<double> largest;    // by axis, mm or deg
-  double left_mm = 0;             // largest distance between the corrected tool point and the ideal one
+  std::size_t positions = 0;      // number of positions in a list; for a program, number of evaluated
+                                  // positions
+  std::size_t not_converged = 0;  // number of these positions at which the solution did not converge
+  std::vector<double> largest;    // largest correction of each axis, mm or deg
+  double left_mm = 0;             // largest distance between the corrected and the ideal tool point
 
   /// Returns the largest correction of the linear axes together, um.
   double largest_um(const model::Machine& machine) const;
@@ -30,17 +31,18 @@ struct CorrectionSummary {
   double largest_deg(const model::Machine& machine) const;
 };
 
-/// Computes commands with the correction: axis positions that bring the tool of the machine with errors to
-/// the tool point of its nominal chain.
+/// Computes corrected commands: axis positions at which the tool point of the machine with errors is the tool
+/// point of its nominal chain.
 class Corrector {
  public:
   explicit Corrector(const model::Machine& machine, CorrectorOptions options = {});
 
   const model::Machine& machine() const { return machine_; }
-  /// Axis positions (axes x states) to command for states of an ideal machine; motion and inputs are used as
-  /// given. Throws InputError if the chain is not finite.
+  /// Returns the axis positions (axes x states) to command, for states of an ideal machine. The motion and
+  /// the inputs of the states are used without change. Throws InputError if the value of the chain is not
+  /// finite.
   Eigen::MatrixXd commands(const model::States& states);
-  /// Adds positions to the summary.
+  /// Adds positions to the statistics of summary().
   void count(const model::States& states, const Eigen::MatrixXd& commands);
   const CorrectionSummary& summary() const { return summary_; }
   bool back() const { return options_.back; }
@@ -52,13 +54,13 @@ class Corrector {
   CorrectionSummary summary_;
 };
 
-/// First words of the output, by which a file that was corrected before is recognised, and a file that was
-/// converted back.
+/// First words of an output file. The first words identify a file that was corrected before, and a file that
+/// was converted back before.
 inline constexpr const char* kCorrectedMark = "corrected by vernier";
 inline constexpr const char* kBackMark = "converted back by vernier";
 
-/// Throws InputError with the line if a text states that the same was already done with it: corrected, or
-/// with `back` converted back.
+/// Throws InputError with the line if a text states that the same conversion was already done: correction, or
+/// conversion back if `back` is true.
 void refuse_done(const std::string& text, const std::string& file, bool back);
 
 }  // namespace vernier::offline

@@ -8,16 +8,17 @@
 
 namespace vernier::offline {
 
-/// Corrects the axis columns of a CSV of positions; all other cells, columns and comments are not changed.
-/// The first line states whether the positions are corrected or converted back; a line that states the
-/// opposite is omitted. The columns are those of a measurement or path file (axes, inputs, motion; direction
-/// and speed are used as given). A file without axis columns may contain targets in workpiece coordinates: x
-/// y z, optionally with rx ry rz (rotation vector) or i j k (tool direction). For such targets the inverse
-/// kinematics of the nominal chain gives the axes; their columns are written first. Throws InputError with
-/// file, line and word; LimitNotMet if a target cannot be reached.
+/// Corrects the axis columns of a CSV file with positions. All other cells, columns and comments are not
+/// changed. The first line of the output states whether the positions are corrected or converted back. An
+/// existing line with the opposite statement is removed. The columns are those of a measurement or path file
+/// (axes, inputs, motion). Direction and speed are used without change. A file without axis columns may
+/// contain targets in workpiece coordinates: x y z, optionally with rx ry rz (rotation vector) or i j k (tool
+/// direction). For targets in workpiece coordinates, the inverse kinematics of the nominal chain gives the
+/// axis positions, and the axis columns are written first. Throws InputError with file, line and word if the
+/// file is not valid. Throws LimitNotMet if the machine cannot reach a target.
 ///
-/// place: of the targets' coordinates in workpiece coordinates, mm. Throws InputError if a workpiece position
-/// is given and the file has axis columns.
+/// `place`: position of the targets' coordinate system in workpiece coordinates, mm. Throws InputError if
+/// `place` is given although the file has axis columns.
 std::string corrected_positions(const std::string& text, const std::string& file, const model::States& at,
                                 Corrector& corrector, const std::optional<Eigen::Isometry3d>& place = {});
 

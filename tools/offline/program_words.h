@@ -8,18 +8,18 @@
 
 namespace vernier::offline {
 
-/// One word of a block: X12.5, G1, (a remark), ;a remark.
+/// One word of a block of a part program: X12.5, G1, (a comment), ;a comment.
 struct Word {
-  char letter = 0;  // upper case; ( for remarks, % and / for themselves
+  char letter = 0;  // upper case letter; ( for comments; % and / for themselves
   double value = 0;
-  std::string text;  // unchanged
+  std::string text;  // text of the word without change
 };
 
-/// Returns the words of a block. Throws InputError for a remark without an end, and for text that is neither
-/// a word nor a remark: parameters, expressions, loops.
+/// Returns the words of a block of a part program. Throws InputError for a comment without an end, and for
+/// text that is neither a word nor a comment: parameters, expressions, loops.
 std::vector<Word> words_of(const std::string& line, const text::Place& place);
 
-/// Returns the value of the first word with this letter; nullopt if the block has no such word.
+/// Returns the value of the first word with the letter `letter`; nullopt if the block has no such word.
 std::optional<double> value_of(const std::vector<Word>& words, char letter);
 
 }  // namespace vernier::offline

@@ -8,17 +8,17 @@
 
 namespace vernier::part {
 
-/// A point of the part: flank 0 (A) or 1 (B), and the position of the point on the flank.
+/// A point of the test part: the flank 0 (A) or 1 (B), and the parameters u, v of the point on the flank.
 struct PartPoint {
   std::size_t flank = 0;
   double u = 0, v = 0;
 };
 
-/// Point and direction of the evaluated tool displacement. Contact: the cutter is a rigid body; its
-/// displacement is evaluated at the height of the point, along the surface normal at the point. Tip: the
-/// displacement of the tool tip along N(u,1), as in the paper. In plane: like contact, but only the
-/// horizontal part of the displacement, along the horizontal part of the normal (unit length). A profile at
-/// constant height shows this value for a nearly vertical wall.
+/// Method to evaluate the tool displacement at a point of the part. kContact: the cutter is a rigid body. The
+/// displacement of the cutter is evaluated at the height of the point, along the surface normal at the point.
+/// kTip: the displacement of the tool tip along N(u,1), as in the paper. kInPlane: like kContact, but only
+/// the horizontal part of the displacement, along the horizontal part of the normal (unit length). A profile
+/// at constant height shows the kInPlane value for a nearly vertical wall.
 enum class DefectReading : std::uint8_t { kContact, kTip, kInPlane };
 
 struct DefectOptions {
@@ -27,40 +27,46 @@ struct DefectOptions {
   RotarySolution solution = RotarySolution::kContinuous;
 };
 
-/// Displacement of the tool by the errors of a machine: actual - nominal chain, in workpiece coordinates.
+/// Displacement of the tool by the errors of a machine: actual minus nominal chain, in workpiece coordinates.
 struct ToolDisplacement {
-  Eigen::Vector3d shift;  // mm, exact, at the height asked for
-  Eigen::Matrix3Xd by;    // its derivatives, 3 x free statics of the machine, mm per unit of the static
+  Eigen::Vector3d shift;  // displacement at the given height, mm, without linearisation
+  Eigen::Matrix3Xd by;    // derivatives of the displacement, 3 x free statics of the machine, mm per unit of
+                          // the static
 };
 
-/// Returns the displacements at joint poses, for the point of the tool axis `height_mm` above the tip (one
-/// height per joint pose).
+/// Returns the tool displacements at joint poses, for the point of the tool axis that is `height_mm` above
+/// the tip (one height for each joint pose).
 std::vector<ToolDisplacement> displacements(const BHeadMachine& machine, const std::vector<JointPose>& joints,
                                             const std::vector<double>& height_mm);
 
-/// Indices of the statics of `by` and of the Jacobian of a part, in the order of the machine file.
+/// Returns the indices of the free statics, in the order of the machine file. ToolDisplacement::by and the
+/// Jacobian of a part have one column for each of them.
 std::vector<std::size_t> free_statics(const model::Machine& machine);
 
-/// Effect of the errors of a machine on the part, at N points.
+/// Effect of the errors of a machine on N points of the test part.
 struct PartDefect {
-  std::vector<JointPose> joints;  // machine positions when the point is cut
+  std::vector<JointPose> joints;  // axis positions of the machine when the point is cut
   Eigen::Matrix3Xd position,
-      normal;                 // nominal surface, workpiece coordinates; normal of the reading: unit, outward
-  Eigen::VectorXd defect_mm;  // along the normal, positive: material left; exact, not linearised
+      normal;                 // point of the nominal surface, workpiece coordinates; normal for the defect:
+                              // unit length, outward
+  Eigen::VectorXd defect_mm;  // defect along the normal, without linearisation; positive: material remains
   /// Matrix d defect / d static, N x free statics, mm per unit of the static, at the machine's values.
   Eigen::MatrixXd jacobian;
 };
 
-/// Mdef(u) = n . (displacement of the tool at the point - displacement at the origin of the work coordinates,
-/// where the offsets were set); displacement = actual - nominal chain. The part is clamped on the table where
-/// it was cut; the part is not aligned. The point counts as cut at its parameter u. The true contact of the
-/// envelope is up to 0.55 mm further along the surface at 11 mm height.
+/// Computes the defect of the part: Mdef(u) = n . (displacement of the tool at the point - displacement at
+/// the origin of the work coordinates, where the offsets were set). A displacement is actual minus nominal
+/// chain. The part stays clamped on the table on which it was cut, and is not aligned. Each point counts as
+/// cut at its own parameter u. The true contact point of the envelope is up to 0.55 mm further along the
+/// surface at 11 mm height.
 PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>& points,
                        const DefectOptions& options = {});
 
-/// Returns the hundred points of the test: 25 on each flank at the bottom and the top line (11 and 25 mm), at
-/// u = 0.02, 0.06 ... 0.98. The points are in the order of the flanks, on each flank the bottom line first.
+/// Returns the hundred points of the test: 25 points on each flank at the bottom and the top line (11 and 25
+/// mm), at u = 0.02, 0.06 ... 0.98. The points are in the order of the flanks; on each flank the points of
+/// the bottom line are first.
 std::vector<PartPoint> standard_points();
-inline constexpr std::size_t kPointsPerLine = 25;  // of the test part's standard
+inline constexpr std::size_t kPointsPerLine = 25;  // number of points per line in the standard of the test
+                                                   // part
 
 }  // namespace vernier::part

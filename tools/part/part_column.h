@@ -8,13 +8,13 @@
 
 namespace vernier::part {
 
-/// One column of a file, in mm or deg. The file must outlive the PartColumn.
+/// One column of a CSV file as numbers, in mm or deg. The CSV file must exist longer than the PartColumn.
 class PartColumn {
  public:
-  /// Throws InputError if the column is required and missing, or has a unit of another dimension.
+  /// Throws InputError if the column is required but missing, or if its unit has another dimension.
   PartColumn(const format::CsvFile& csv, const std::string& name, format::Dimension dimension, bool required);
   bool present() const { return index_.has_value(); }
-  /// Throws InputError if the cell is not a number.
+  /// Returns the number in a row. Throws InputError if the cell is not a number.
   double at(std::size_t row) const;
 
  private:

@@ -10,22 +10,22 @@
 
 namespace vernier::part {
 
-/// All results of one run of `part s-shape`.
+/// All results of one run of the command `part s-shape`.
 struct PartJob {
   BHeadMachine machine;
   DefectOptions options;
-  std::vector<PartPath> paths;    // of both flanks
-  std::vector<PartPoint> points;  // the hundred, or the measured ones
-  PartDefect defect;              // there
+  std::vector<PartPath> paths;    // paths of both flanks
+  std::vector<PartPoint> points;  // the hundred points of the standard, or the measured points
+  PartDefect defect;              // defect at these points
   std::optional<MeasuredPart> measured;
-  std::optional<RecordedDeviations> recorded;  // there too
+  std::optional<RecordedDeviations> recorded;  // deviations at these points, from a recorded path
   std::optional<Identification> identified;
 };
 
-/// The result for programs; the keys are in tools/docs/s_part.md.
+/// Returns the results as JSON for programs; the keys are in tools/docs/s_part.md.
 nlohmann::ordered_json part_json(const PartJob& job);
 
-/// Returns the name of a reading as the command line writes it.
+/// Returns the name of a DefectReading as it is written on the command line.
 const char* reading_name(DefectReading reading);
 
 }  // namespace vernier::part

@@ -11,10 +11,11 @@
 
 namespace vernier::part {
 
-/// Returns the data of a report for improvement_report_html(). `result`: part_json() of the same job.
+/// Returns the data for the HTML report improvement_report_html(). `result`: the JSON of part_json() for the
+/// same job.
 nlohmann::ordered_json part_report(const PartJob& job, const nlohmann::ordered_json& result);
 
-/// Joins a list of lists of names: "EA0Z and EA0C; EB0Z and EB0C"; "none" for an empty list.
+/// Returns a list of name lists as text: "EA0Z and EA0C; EB0Z and EB0C"; "none" if the list is empty.
 std::string joined_groups(const nlohmann::ordered_json& groups);
 
 }  // namespace vernier::part

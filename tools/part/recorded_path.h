@@ -8,23 +8,23 @@
 
 namespace vernier::part {
 
-/// Positions that a controller recorded during the cut of the part, in the order of time.
+/// Axis positions that a controller recorded while the part was cut, in time order.
 struct RecordedPath {
   std::string file;
   std::vector<JointPose> joints;
 };
 
-/// Reads the columns of the axes X Y Z B C as `vernier record` writes them; other columns are ignored.
-/// `zero`: the recorded values at which the part's axis positions are 0. Throws InputError with file, line
-/// and word.
+/// Reads the columns of the axes X Y Z B C in the format of `vernier record`; other columns are ignored.
+/// `zero`: the recorded values that correspond to the axis positions 0 of the part. If the file is not valid,
+/// throws InputError with file, line and word.
 RecordedPath read_recorded(const std::string& text, const std::string& file, const JointPose& zero = {});
 
-/// Remaining material of the part after a recorded path at a point, along the normal of the surface;
-/// positive: too much material.
+/// Material that remains at a point of the part after a recorded path, along the normal of the surface. A
+/// positive value is too much material.
 struct RecordedPoint {
-  double recorded_mm = 0;  // by the recorded positions
-  double path_mm = 0;      // of the ideal path: material that a cylinder cannot cut
-  std::size_t sample = 0;  // that cut it
+  double recorded_mm = 0;  // material that remains with the recorded positions
+  double path_mm = 0;      // material that remains with the ideal path, because a cylinder cannot cut it
+  std::size_t sample = 0;  // index of the recorded sample that cut the point
 
   double controller_mm() const { return recorded_mm - path_mm; }
 };
@@ -34,18 +34,20 @@ struct RecordedDeviations {
   std::vector<RecordedPoint> points;
 };
 
-/// Computes for each point how far the cutter reaches in along the normal of the surface. The ray is cut with
-/// the cylinder of the flank at recorded poses, and at poses on the straight path of the axes between two
-/// recorded poses; the deepest cut counts. Poses are evaluated with the nominal machine: the results are
-/// deviations of the positions, not of the machine. Throws InputError if no pose comes within 1 mm of a
-/// point.
+/// Computes for each point how deep the cutter cuts along the normal of the surface. The ray along the normal
+/// is intersected with the cylinder of the cutter. The cylinder is at the recorded poses and at poses on the
+/// straight path of the axes between them; the deepest cut counts. The poses are evaluated with the nominal
+/// machine. The results are therefore deviations of the recorded positions, not errors of the machine. Throws
+/// InputError if no pose is within 1 mm of a point.
 RecordedDeviations recorded_deviations(const BHeadMachine& machine, const RecordedPath& recorded,
                                        const std::vector<PartPoint>& points, const Cutter& cutter);
 
-/// `file`, `points`, and of each kind of deviation the least, the largest and the rms.
+/// Returns JSON with `file`, `points`, and for each kind of deviation the smallest value, the largest value
+/// and the rms.
 nlohmann::ordered_json recorded_json(const RecordedDeviations& deviations);
 
-/// Returns one row per point: its position, the deviations, the defect of the machine, and the sum of both.
+/// Returns CSV with one row per point: its position, the deviations, the defect of the machine, and the sum
+/// of both.
 std::string recorded_csv(const std::vector<PartPoint>& points, const PartDefect& defect,
                          const RecordedDeviations& deviations);
 

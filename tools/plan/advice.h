@@ -9,9 +9,9 @@
 
 namespace vernier::plan {
 
-/// Returns advice for the next measurement if the first candidate of an ambiguous diagnosis and an
-/// alternative explain the rows equally well. Empty if no effects need to be distinguished. text: the text of
-/// the machine file.
+/// Returns advice for the next measurement. The advice is for an ambiguous diagnosis, in which the first
+/// candidate and an alternative explain the rows equally well. The advice is empty if there are no effects to
+/// distinguish. `text`: the text of the machine file.
 std::vector<std::string> advice_for(const std::string& text, const model::Machine& machine,
                                     const model::Measurement& measurement,
                                     const diagnose::Diagnosis& diagnosis,

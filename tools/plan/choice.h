@@ -6,20 +6,20 @@
 
 namespace vernier::plan {
 
-/// All comparisons that the rows must decide. Each pair of a true effect and an alternative that is refitted
-/// has one entry.
+/// All comparisons that the selected rows must decide. Each pair of a true effect and an alternative effect
+/// that is refitted has one comparison.
 struct Sides {
   std::vector<Discrimination> side;
   std::vector<double> needed;
-  /// Non-centrality divided by the required value, of the worst of the first `count` entries.
+  /// Returns the smallest ratio of non-centrality to required value among the first `count` comparisons.
   double reached(std::size_t count) const;
   double reached() const { return reached(side.size()); }
   void assume(const std::vector<std::size_t>& chosen);
 };
 
-/// Adds offered rows (with repeats) to `chosen`; each time the row that improves the worst comparison most.
-/// Ends in three cases: `least` rows are chosen and `reached()` is at least `goal`; `most` rows are chosen;
-/// no offered row improves the worst comparison.
+/// Adds offered rows to `chosen`. Each time, the row that most improves the worst comparison is added; a row
+/// may be added several times. choose_rows ends in three cases: `least` rows are selected and `reached()` is
+/// at least `goal`; `most` rows are selected; no offered row improves the worst comparison.
 void choose_rows(Sides& sides, std::vector<std::size_t>& chosen, std::size_t least, std::size_t most,
                  double goal);
 

@@ -13,7 +13,7 @@
 
 namespace vernier::plan {
 
-/// Returns the machine at its best fit, to which the alternatives are added.
+/// Returns the machine file at its best fit. Alternative effects are added to this machine.
 effects::MachineText fit_model(const std::string& text, const model::Machine& machine,
                                const model::Measurement& measurement);
 
@@ -21,36 +21,39 @@ effects::MachineText fit_model(const std::string& text, const model::Machine& ma
 struct FittedHypothesis {
   effects::Candidate candidate;
   std::string add;
-  model::Machine machine;  // with the effect, at its best fit; all unknowns of the effect are free
+  model::Machine machine;  // the fitted machine with this effect; all unknowns of the effect are free
 };
 
-/// `name`: an effect id (the candidate of that effect which fits the rows best) or a complete `add` string.
-/// The effects must outlive the result. Throws InputError: unknown effect, no candidate of the effect in
-/// these rows.
+/// `name`: the id of an effect (its candidate that fits the rows best is used), or a complete `add` string.
+/// The object `effects` must exist longer than the result. Throws InputError if the effect is unknown or has
+/// no candidate in these rows.
 FittedHypothesis fit_hypothesis(const effects::MachineText& model, const model::Measurement& measurement,
                                 const std::string& name, const std::vector<effects::Effect>& effects);
 
-/// Fits an alternative with given evidence of the model and the rows.
+/// Fits an alternative effect. This overload uses the evidence of model and rows that the caller has already
+/// computed.
 FittedHypothesis fit_hypothesis(const effects::MachineText& model, const diagnose::Evidence& evidence,
                                 const model::Measurement& measurement, const std::string& name,
                                 const std::vector<effects::Effect>& effects);
 
-/// Decrease of chi^2 in units of the noise, minus the penalty of the BIC for the unknowns.
+/// Returns the value of a scored candidate: its decrease of chi^2 in units of the noise, minus the BIC
+/// penalty of its unknowns.
 double value_of(const diagnose::Scored& scored, const diagnose::Evidence& evidence);
 
-/// Splits the text of `--separate` at commas. A comma separates only if the text after it begins with the id
-/// of an effect. Throws InputError if the number of parts is not two.
+/// Splits the argument of `--separate` at commas into the two effects. A comma is a separator only if the
+/// text after the comma begins with the id of an effect. Throws InputError if there are not exactly two
+/// parts.
 std::vector<std::string> split_hypotheses(const std::vector<std::string>& arguments,
                                           const std::vector<effects::Effect>& effects);
 
-/// Variables of the alternatives besides positions and constants.
+/// Variables on which the alternative effects depend, besides positions and constants.
 struct Drivers {
   std::set<model::SymbolKind> kinds;
   std::set<std::string> inputs;
 };
 Drivers drivers_of(const std::vector<const FittedHypothesis*>& hypotheses);
 
-/// Returns the machine of the alternative without its effect: the coefficients of the effect are 0.
+/// Returns the machine of an alternative without its effect: the coefficients of the effect are set to 0.
 model::Machine without_effect(const FittedHypothesis& hypothesis);
 
 }  // namespace vernier::plan

@@ -8,24 +8,24 @@
 
 namespace vernier::plan {
 
-/// Returns poses from which a plan may choose, distributed over the working ranges of the machine (Halton's
-/// sequence, from its member `from` on). A third of the poses are at the ends of an axis, where errors are
-/// largest. In these poses the inputs are at their reference. The poses contain both approach directions.
-/// Throws InputError for an axis without a range.
+/// Returns poses that a plan may select, distributed over the working ranges of the machine (Halton sequence,
+/// beginning with element `from`). In a third of the poses, an axis is at an end of its range, where errors
+/// are largest. In these poses the inputs have their reference values. The poses contain both approach
+/// directions of the axes. Throws InputError if an axis has no range.
 model::States offered_poses(const model::Machine& machine, std::size_t count, std::size_t from);
 
-/// Returns the chosen poses as a path: always to the nearest remaining pose, in shares of the
-/// axes' ranges.
+/// Returns the selected poses in the order of a path. The next pose is always the nearest remaining pose,
+/// with distances as shares of the ranges of the axes.
 std::vector<std::size_t> nearest_way(const model::Machine& machine, const model::States& offered,
                                      const std::vector<std::size_t>& chosen);
 
-/// Returns the headings of the inputs in a measurement file, and cells with their references: each with a
-/// comma.
+/// Returns the headings of the inputs in a measurement file (input_headings), or cells with their reference
+/// values (input_references). Each heading or cell has a comma.
 std::string input_headings(const model::Machine& machine);
 std::string input_references(const model::Machine& machine);
 
-/// Returns the rows of a measurement file with x, y, z to be filled in; check: the role of each; reading_um:
-/// u of a coordinate.
+/// Returns the rows of a measurement file in which the user enters x, y, z. `check`: true for check rows;
+/// `reading_um`: standard uncertainty u of a coordinate.
 std::string pose_rows_csv(const model::Machine& machine, const model::States& states,
                           const std::vector<char>& check, double reading_um, const std::string& run);
 

@@ -8,10 +8,10 @@
 
 namespace vernier::plan {
 
-/// Finds other causes that explain the rows nearly as well as the best candidate of all. A diagnosis also
-/// compares these causes: rows that separate two named effects should separate these causes too. The result
-/// has one cause per effect, driving axis and input, best first, at most `most`. The named effects are not
-/// included.
+/// Finds other causes that explain the rows nearly as well as the best candidate. A diagnosis also considers
+/// these other causes. The rows that separate the two named effects should also separate these other causes.
+/// The result of find_other_hypotheses() has one cause for each combination of effect, driving axis and
+/// input, best first, at most `most` causes. The two named effects are not in the result.
 std::vector<FittedHypothesis> find_other_hypotheses(const effects::MachineText& model,
                                                     const model::Measurement& measurement,
                                                     const std::vector<const FittedHypothesis*>& named,

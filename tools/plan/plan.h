@@ -10,14 +10,15 @@
 
 namespace vernier::plan {
 
-/// Finds the rows to measure next that distinguish two named effects. `a`, `b`: ids or add strings (see
-/// fit_hypothesis). The effects must outlive the plan. Throws InputError.
+/// Finds the rows that should be measured next to distinguish two named effects. `a`, `b`: ids of effects or
+/// add strings (see fit_hypothesis). The object `effects` must exist longer than the plan. Throws InputError
+/// if an effect is unknown or has no candidate in the rows.
 Plan plan_next(const std::string& text, const model::Machine& machine, const model::Measurement& measurement,
                const std::string& a, const std::string& b, const std::vector<effects::Effect>& effects,
                const PlanOptions& options = {});
 
-/// Returns the sentence of the plan and the requirements of the plan, for the list of a diagnosis. The list
-/// is empty if the plan has no advice for the pair.
+/// Returns advice for the list `next_measurement` of a diagnosis: the sentence of the plan, and the
+/// requirements of the plan. The list is empty if the plan has no advice for the two effects.
 std::vector<std::string> next_measurement(const std::string& text, const model::Machine& machine,
                                           const model::Measurement& measurement, const std::string& a,
                                           const std::string& b, const std::vector<effects::Effect>& effects,

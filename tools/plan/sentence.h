@@ -9,25 +9,27 @@
 
 namespace vernier::plan {
 
-/// Explains in one sentence why the planned rows distinguish the two effects: the state that the existing
-/// rows lack, and the influence of this state on each effect. Keeps references.
+/// Explains in one sentence why the planned rows distinguish the two effects: the state of the machine that
+/// the existing rows do not contain, and the influence of this state on each effect. The Explanation keeps
+/// references to its arguments.
 class Explanation {
  public:
-  /// `existing`: the rows that the plan builds on, bound to the plan's machine.
+  /// `existing`: the rows on which the plan is based, in the form for the machine of the plan.
   Explanation(const Plan& plan, const model::Measurement& existing);
   std::string sentence() const;
 
  private:
-  /// A changed state: the planned rows at its farthest level, and the same rows with the state
-  /// unchanged.
+  /// A state that the plan changes: the planned rows at the farthest level of this state, and the same rows
+  /// with the state unchanged.
   struct Contrast {
-    std::string where;     // "at T_bed 15 and 35 degC (so far 20 to 25)"
-    std::string farthest;  // "35 degC"
+    std::string where;     // description of the levels: "at T_bed 15 and 35 degC (so far 20 to 25)"
+    std::string farthest;  // farthest level: "35 degC"
     model::Measurement planned, as_was;
     bool usable = false;
   };
   struct Answer {
-    double a = 1, b = 1;  // size of the effect, planned divided by unchanged
+    double a = 1, b = 1;  // ratio of the size of each effect: with the planned state divided by with the
+                          // unchanged state
   };
   std::vector<Contrast> contrasts() const;
   Contrast speed() const;

@@ -10,15 +10,15 @@
 
 namespace vernier::plan {
 
-/// Returns `count` more positions of an axis between `low` and `high`, in its unit and increasing. At these
-/// positions together with the existing positions `taken`, two different cyclic errors with periods down to
-/// 1/1000 of the range are never equal. The function uses the best of many random sets: the set whose window
-/// has the smallest largest peak. The result is equal for equal input.
+/// Returns `count` additional positions of an axis between `low` and `high`, in the unit of the axis and
+/// increasing. At these positions and the existing positions `taken`, two cyclic errors with different
+/// periods (down to 1/1000 of the range) are never equal. Of many random sets of positions, the set is used
+/// whose spectral window has the smallest maximum. Equal input gives the same positions.
 std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
                                      std::size_t count);
 
-/// Returns advice for the next measurement, as a sentence, if the positions of the axis do not distinguish
-/// the periods of `finding` from other periods (CandidateFinding::aliases).
+/// Returns a sentence with advice for the next measurement. The advice is for a cyclic error whose period the
+/// positions of the axis do not distinguish from other periods (CandidateFinding::aliases).
 std::string uneven_sentence(const model::Machine& machine, const model::Measurement& measurement,
                             const diagnose::CandidateFinding& finding);
 

@@ -9,15 +9,17 @@
 
 namespace vernier::probe {
 
-/// Touches as a table: columns by name, `feed[mm/min]` or `feed_mm_min`, lengths in any unit.
+/// Touches of a probe as a table. Columns are found by name, the feed as `feed[mm/min]` or `feed_mm_min`;
+/// lengths may have any unit.
 class TouchTable {
  public:
-  /// renames: "column=name" or "column=name[unit]"; where: "column=value" rows to keep. Throws InputError
-  /// with file, line and word.
+  /// `renames`: "column=name" or "column=name[unit]"; `where`: "column=value" selects the rows that are kept.
+  /// If the file is not valid, throws InputError with file, line and word.
   TouchTable(const std::string& text, const std::string& file, const std::vector<std::string>& renames,
              const std::vector<std::string>& where);
 
-  /// Returns the rows with this value in this column (named as in the file). Throws InputError.
+  /// Returns the rows that have the value `value` in the column `column` (with its name in the file). Throws
+  /// InputError if the column does not exist.
   TouchTable only(const std::string& column, const std::string& value) const;
   /// Returns the values of a column, in the order of the file. Throws InputError if the column does not
   /// exist.
@@ -28,23 +30,23 @@ class TouchTable {
   std::size_t line(std::size_t row) const { return csv_.line[row]; }
   const format::CsvFile& csv() const { return csv_; }
 
-  /// Returns the numbers of the column with one of the names, in base units (mm, deg, mm/min stays mm/min, s,
-  /// degC); nullopt if there is no such column. A cell that is not a number is an InputError. The first name
-  /// with a column is used. Of two columns that differ only by a suffix "_printed", the printed column is
-  /// used, and a note reports this.
+  /// Returns the numbers of a column in base units (mm, deg, s, degC; mm/min is not changed); nullopt if no
+  /// column has one of the names. Throws InputError if a cell is not a number. The first of the names for
+  /// which a column exists is used. If two columns differ only by the suffix "_printed", the column with the
+  /// suffix is used, and a note reports this.
   std::optional<Eigen::VectorXd> find(const std::vector<std::string>& names);
-  /// Returns the numbers of a required column; throws InputError if the column is missing. `what`: purpose of
-  /// the column.
+  /// Returns the numbers of a required column. Throws InputError if the column is missing. `what`: purpose of
+  /// the column, for the message.
   Eigen::VectorXd need(const std::vector<std::string>& names, const std::string& what);
-  /// Returns column u, mm. A value that is not above 0 is an InputError.
+  /// Returns the column u, mm. Throws InputError if a standard uncertainty u is not above 0.
   std::optional<Eigen::VectorXd> uncertainty();
 
-  /// Decisions made during reading.
+  /// Returns notes about decisions that were made while the file was read.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   struct Column {
-    std::string name, unit;  // without the unit in the name
+    std::string name, unit;  // name without the unit
     bool printed = false;
     std::size_t index = 0;
   };

@@ -7,17 +7,18 @@
 
 namespace vernier::provenance {
 
-/// One input of a command.
+/// One input file of a command.
 struct ProvenanceInput {
-  std::string name;    // as the command read it, relative to the folder of the command
-  std::string sha256;  // of the bytes that the command read, 64 hexadecimal digits
+  std::string name;    // name with which the command read the file, relative to the folder of the command
+  std::string sha256;  // SHA-256 of the bytes that the command read, 64 hexadecimal digits
 };
 
-/// How a file was made. `vernier again` uses it to make the file again.
+/// Record of how an output file was made: program, command and inputs. `vernier again` uses this record to
+/// make the file again.
 struct Provenance {
-  std::string program;               // name, version and commit
-  std::vector<std::string> command;  // arguments, without the name of the program
-  std::string folder;                // in which the command ran, relative to the folder of the file
+  std::string program;               // name, version and commit of the program
+  std::vector<std::string> command;  // arguments of the command, without the name of the program
+  std::string folder;                // folder in which the command ran, relative to the folder of the file
   std::vector<ProvenanceInput> inputs;
 };
 
@@ -25,21 +26,21 @@ struct Provenance {
 /// from anybody: `vernier again` runs no other command.
 bool makes_files_from_files(const std::string& command);
 
-/// Records the inputs of this process from now on, and adds the provenance to its output files: HTML pages,
-/// machine files (a comment at the end) and JSON objects (key "made_by"). All other files, and a file that is
-/// the copy of an input, are written as they are. For a command whose result depends on more than files (a
-/// board, a server, a fleet, a key) the function does nothing.
+/// Records the inputs of this process from now on, and adds their provenance to its output files: HTML pages,
+/// machine files (a comment at the end) and JSON objects (key "made_by"). Other output files, and files that
+/// are copies of an input, are written without provenance. If the result of a command depends on more than
+/// files (a board, a server, a fleet, a key), record_provenance does nothing.
 void record_provenance(const std::vector<std::string>& arguments, const std::string& program);
 
-/// Provenance of a file with this content; nullopt if the file has none. Throws InputError with `name` if the
-/// provenance is malformed.
+/// Returns the provenance in the content of a file; nullopt if the file has none. Throws InputError with
+/// `name` if the provenance in the file is not valid.
 std::optional<Provenance> provenance_of(const std::string& content, const std::string& name);
 
-/// Returns the text in the form for an XML or HTML comment, without two consecutive hyphens, which would end
-/// the comment.
+/// Returns a text that can be in an XML or HTML comment. The returned text contains no two consecutive
+/// hyphens, which would end the comment.
 std::string in_comment(const std::string& text);
 
-/// SHA-256 (FIPS 180-4), 64 hexadecimal digits.
+/// Returns the SHA-256 hash (FIPS 180-4) of bytes as 64 hexadecimal digits.
 std::string sha256_of(const std::string& bytes);
 
 }  // namespace vernier::provenance

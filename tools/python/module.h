@@ -11,31 +11,32 @@
 
 namespace vernier::python {
 
-/// A machine file for Python: its text with the remarks, and the machine that it describes.
+/// A machine file in the Python module: its text with the comments, and the machine that it describes.
 struct MachineOfPython {
   std::string path, text;
   model::Machine machine;
 };
 
-/// Measurement files by their names. A machine gives their columns a meaning, so they are read together with
-/// a machine.
+/// Measurement files in the Python module, given by their names. Measurement files are read together with a
+/// machine, because the machine defines the meaning of their columns.
 struct MeasurementsOfPython {
   std::vector<std::string> paths;
 };
 
-/// Result of a call: the JSON of the command of the same name, and the residuals.
+/// Result of a function of the Python module: the JSON of the command with the same name, and the residuals.
 struct ResultOfPython {
   nlohmann::ordered_json json;
   std::shared_ptr<const model::Measurement> measurement;
   Eigen::VectorXd residual;
-  std::shared_ptr<const MachineOfPython> machine;  // as fitted, or as the ladder of a diagnosis ends
+  std::shared_ptr<const MachineOfPython> machine;  // the fitted machine, or the machine at the end of the
+                                                   // stepwise model of a diagnosis
 };
 
-/// Throws InputError as parse_machine does.
+/// Reads a machine file for Python. Throws InputError under the same conditions as parse_machine.
 std::shared_ptr<const MachineOfPython> machine_of_text(const std::string& path, std::string text);
 
-/// Each function of the module does what the command of the same name does. Throw InputError and LimitNotMet
-/// as the command does.
+/// Each function of the Python module has the result of the command with the same name. The functions of the
+/// Python module throw InputError and LimitNotMet under the same conditions as the command.
 ResultOfPython fit_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements);
 ResultOfPython compare_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements);
 ResultOfPython diagnose_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements,

@@ -6,11 +6,11 @@
 
 namespace vernier::python {
 
-/// Converts JSON to Python: null to None, lists, numbers, text; an object becomes a dict whose keys are also
+/// Converts JSON to Python: null to None, lists, numbers, text. An object becomes a dict whose keys are also
 /// attributes (class `Record` of the module).
 pybind11::object python_of(const nlohmann::ordered_json& json, const pybind11::object& record_class);
 
-/// Makes that class.
+/// Creates the class `Record` of the Python module.
 pybind11::object make_record_class();
 
 }  // namespace vernier::python

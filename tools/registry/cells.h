@@ -7,8 +7,9 @@
 
 namespace vernier::registry {
 
-/// Converts values to cells of a row, and back. A NULL cell is read as an empty value: "", 0. Throw
-/// DatabaseError if a cell is not a number.
+/// Functions that convert values to the cells of a database row, and cells to values. A NULL cell gives an
+/// empty text or the number 0. If a cell does not contain a number, the functions for numbers throw
+/// DatabaseError.
 Cell cell(std::int64_t value);
 Cell cell(double value);
 std::string words(const Cell& cell);

@@ -4,9 +4,9 @@
 
 namespace vernier::registry {
 
-/// BLAKE2b-256 of a text, in hexadecimal digits.
+/// Returns the hash BLAKE2b-256 of a text as hexadecimal digits.
 std::string digest_of(const std::string& text);
-/// 32 hexadecimal digits from the system's random numbers.
+/// Returns a random id of 32 hexadecimal digits, from the random numbers of the operating system.
 std::string fresh_id();
 
 }  // namespace vernier::registry

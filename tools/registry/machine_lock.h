@@ -9,33 +9,33 @@
 
 namespace vernier::registry {
 
-/// Another caller has the lock of a machine: no further step on the machine is allowed.
+/// Exception: another caller has the lock of a machine, so that no further step on this machine is permitted.
 class LockLost : public text::LimitNotMet {
  public:
   using text::LimitNotMet::LimitNotMet;
 };
 
-/// Locks of machines in the registry: only one caller at a time works on a machine, from any computer. A lock
-/// is a lease by the database's clock. The holder renews the lease. The lease of a killed caller ends by
-/// itself; then the next caller can lock the machine.
+/// Locks of machines in the registry. Only one caller at a time may work on a machine, from any computer. A
+/// lock is a lease: it ends after a time by the clock of the database. The owner of a lock renews its lease.
+/// If the owner is killed, its lease ends, and then another caller can lock the machine.
 class MachineLocks {
  public:
-  /// Locks all machines, or no machine. purpose: text for users, e.g. "rollout spring". lease_s: 1 s at
-  /// least. Throws LimitNotMet naming the machine that another caller has locked, and the latest end of that
-  /// lock.
+  /// Locks all of the machines, or none of them if one cannot be locked. `purpose`: text for users, for
+  /// example "rollout spring". `lease_s`: duration of the lease, at least 1 s. Throws LimitNotMet with the
+  /// name of a machine that another caller has locked, and the latest end of that lock.
   MachineLocks(Registry& registry, std::vector<std::string> machines, std::string purpose, double lease_s);
-  /// Releases the machines that are still locked.
+  /// The destructor releases the machines that are still locked.
   ~MachineLocks();
   MachineLocks(const MachineLocks&) = delete;
   MachineLocks& operator=(const MachineLocks&) = delete;
 
-  /// Renews the leases when a third of a lease has passed. Throws LockLost if a lease has ended or another
-  /// caller has locked the machine.
+  /// Renews the leases if a third of their duration has passed. Throws LockLost if a lease has ended or
+  /// another caller has locked the machine.
   void renew();
-  /// Renews the leases immediately; call it right before a step that cannot be undone. Throws LockLost like
-  /// renew().
+  /// Renews the leases immediately. Call require() directly before a step that cannot be undone. Throws
+  /// LockLost under the same conditions as renew().
   void require();
-  /// The owner of the lock, for statements that are executed only while the lock is held.
+  /// Returns the id of the lock's owner, for statements that may be executed only while the lock is held.
   const std::string& holder() const { return holder_; }
 
  private:
@@ -43,7 +43,7 @@ class MachineLocks {
   std::vector<std::string> machines_;
   std::string holder_;
   double lease_s_;
-  std::int64_t renewed_us_ = 0;  // by this computer's steady clock
+  std::int64_t renewed_us_ = 0;  // time of the last renewal by the steady clock of this computer
 };
 
 }  // namespace vernier::registry

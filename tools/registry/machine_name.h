@@ -5,12 +5,13 @@
 
 namespace vernier::registry {
 
-/// True for a name that a machine may have: letters, digits, `.`, `_` and `-`, the first a letter or a digit,
-/// 1 to 200 bytes. Such a name is safe in a file name, a topic, a list of lines and a shell.
+/// True if a machine may have this name: letters, digits, `.`, `_` and `-`, beginning with a letter or a
+/// digit, 1 to 200 bytes. A machine name of this form is safe in a file name, an MQTT topic, a list of lines
+/// and a shell command.
 bool is_machine_name(std::string_view name);
-/// Throws InputError for another name.
+/// Throws InputError if a machine may not have this name.
 void require_machine_name(const std::string& name);
-/// `text` with each {machine} replaced by the name.
+/// Returns `text` in which the name of the machine replaces each {machine}.
 std::string for_machine(std::string text, const std::string& machine);
 
 }  // namespace vernier::registry

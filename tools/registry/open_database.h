@@ -7,11 +7,12 @@
 
 namespace vernier::registry {
 
-/// Opens a database: `postgresql://…` is a server, any other text a file, which is created if it does not
-/// exist. Throws InputError if the server or file cannot be reached, or is not a database.
+/// Opens a database. A place of the form `postgresql://…` is a server; any other place is a file, which is
+/// created if it does not exist. Throws InputError if the server or the file is not available, or is not a
+/// database.
 std::unique_ptr<Database> open_database(const std::string& place);
 
-/// True if `place` is the address of a server, which may be unavailable for a while.
+/// True if `place` is the address of a database server, which may be unavailable for some time.
 bool is_server(const std::string& place);
 
 }  // namespace vernier::registry

@@ -7,7 +7,8 @@
 
 namespace vernier::registry {
 
-/// The registry on a server. address: libpq's `postgresql://…`. Throws DatabaseError.
+/// Opens a registry on a PostgreSQL server. `address`: address in the form `postgresql://…` of libpq. Throws
+/// DatabaseError if the server is not available.
 std::unique_ptr<Database> open_postgres(const std::string& address);
 
 }  // namespace vernier::registry

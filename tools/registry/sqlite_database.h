@@ -7,8 +7,8 @@
 
 namespace vernier::registry {
 
-/// The registry in a file. Committed data survive the end of the program and, if the medium is reliable, a
-/// power failure. Throws DatabaseError.
+/// Opens a registry in a file (SQLite). Committed data remain after the end of the program and, if the
+/// storage medium is reliable, after a power failure. Throws DatabaseError if the file cannot be opened.
 std::unique_ptr<Database> open_sqlite(const std::string& file);
 
 }  // namespace vernier::registry

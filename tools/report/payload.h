@@ -8,19 +8,19 @@
 
 namespace vernier::report {
 
-/// Base64 (RFC 4648, padded) of some bytes.
+/// Returns bytes in Base64 code (RFC 4648, padded).
 std::string base64(std::string_view bytes);
 
-/// Returns the text for an HTML document: & < > " ' written as entities.
+/// Returns a text for an HTML document, in which & < > " ' are written as entities.
 std::string escape_html(std::string_view text);
 
-/// Returns `value` with long rows of numbers packed: {"u8": base64} for small whole numbers, else {"f32":
-/// base64} of little-endian floats. null and values that are not finite become NaN. Short rows are not
-/// changed.
+/// Returns `value` with long arrays of numbers in packed form: {"u8": base64} for small whole numbers,
+/// otherwise {"f32": base64} of little-endian floats. Null and numbers that are not finite become NaN. Short
+/// arrays are not changed.
 nlohmann::ordered_json packed(const nlohmann::ordered_json& value);
 
-/// Returns JSON that is valid inside a <script> element: no '<' and '>', ASCII only; bytes that are no UTF-8
-/// are replaced.
+/// Returns JSON that is valid inside a <script> element: it contains no '<' and '>' and only ASCII
+/// characters. Bytes that are not UTF-8 are replaced.
 std::string script_json(const nlohmann::ordered_json& value);
 
 }  // namespace vernier::report

@@ -7,8 +7,8 @@
 
 namespace vernier::residual {
 
-/// Returns mean residual vectors over at most 5 x 5 x 5 parts of the volume (lengths: x y z directly,
-/// `length` along the bar, `d` along its normal). residual: mm or deg, one per observation.
+/// Returns the mean residual vectors in at most 5 x 5 x 5 parts of the volume. Lengths are used: x y z
+/// directly, `length` along the bar, `d` along its normal. `residual`: one value per observation, mm or deg.
 std::vector<FailureCell> failure_cells(const model::Machine& machine, const model::Measurement& measurement,
                                        const Eigen::VectorXd& residual);
 

@@ -7,18 +7,19 @@
 
 namespace vernier::residual {
 
-/// Data that the sentence of a finding needs in addition to the finding.
+/// Data that the sentence about a finding needs, in addition to the finding itself.
 struct SentenceFacts {
-  std::string unit, second_unit;         // of the columns
+  std::string unit, second_unit;         // units of the two columns
   double low = 0, high = 0;              // range of the column
-  double at_low_um = 0, at_high_um = 0;  // the explained curve there
-  double highest_at = 0, lowest_at = 0;  // where the curve is highest and lowest
+  double at_low_um = 0, at_high_um = 0;  // value of the explained curve at `low` and at `high`
+  double highest_at = 0, lowest_at = 0;  // values of the column at which the curve has its maximum and
+                                         // minimum
   bool monotone = false, time = false;
   std::string highest_run, lowest_run;
-  std::vector<std::string> disagreeing;  // runs in which the effect would be visible, but is not
+  std::vector<std::string> disagreeing;  // runs in which the effect should be visible but is not
 };
 
-/// Returns one sentence in plain English for a finding.
+/// Returns one sentence in plain English about a finding.
 std::string sentence_of(const Finding& finding, const SentenceFacts& facts);
 
 }  // namespace vernier::residual

@@ -10,14 +10,14 @@
 namespace vernier::results {
 
 /// Returns the result of `compare --before --after` as JSON (FORMATS section 6): before_um, after_um (rms),
-/// reduction, interval, verdict, sentence, paired, samples, rows left out and rows with a correction, and the
-/// numbers of all readings and of each group.
+/// reduction, interval, verdict, sentence, paired, samples, excluded rows and rows with a correction, and the
+/// numbers for all readings and for each group.
 nlohmann::ordered_json before_after_json(const residual::BeforeAfter& result);
 
-/// Prints the result of `compare --before --after` for people: the verdict first, then the table.
+/// Prints the result of `compare --before --after` for people: first the verdict, then the table.
 void print_before_after(std::FILE* out, const residual::BeforeAfter& result);
 
-/// Data for the report (improvement_report_html).
+/// Returns the data of `compare --before --after` for the HTML report (improvement_report_html).
 nlohmann::ordered_json before_after_page(const residual::BeforeAfter& result, const std::string& machine,
                                          const std::vector<std::string>& files);
 

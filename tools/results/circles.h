@@ -11,15 +11,15 @@
 
 namespace vernier::results {
 
-/// One run of a circular test in a measurement: the observations and their angles.
+/// One run of a circular test in a measurement: its observations and their angles.
 struct CircleRun {
   std::string label;
   int direction = +1;
   std::vector<std::size_t> observation;  // indices into Measurement::observations, in time order
-  std::vector<double> angle_deg;         // of the nominal tool point about the centre, 0..360
+  std::vector<double> angle_deg;         // angle of the nominal tool point about the centre, 0..360
 };
 
-/// Runs of length observations on one circle: same centre, same nominal radius, same plane.
+/// Runs with length observations on one circle: they have the same centre, nominal radius and plane.
 struct Circle {
   std::array<std::size_t, 2> plane{0, 1};  // coordinates 0..2 of the plane: (X,Y), (Y,Z) or (Z,X)
   std::array<double, 3> centre_mm{};
@@ -27,12 +27,12 @@ struct Circle {
   std::vector<CircleRun> runs;
 };
 
-/// Finds the circular tests (ball bar) in a measurement. In such a run, lengths are measured while the
-/// nominal tool point moves over at least 90 degrees on a circle in a coordinate plane about the length's
-/// centre.
+/// Finds the circular tests (ball bar) in a measurement. In a run of a circular test, lengths are measured
+/// while the nominal tool point moves on a circle about the centre of the length. The circle is in a
+/// coordinate plane, and the motion covers at least 90 degrees.
 std::vector<Circle> find_circles(const model::Machine& machine, const model::Measurement& measurement);
 
-/// ISO 230-4 analysis of a circle's fit rows (check rows are overshoot or held out). Throws
+/// Analyses the fit rows of a circle by ISO 230-4. (Check rows are overshoot arcs or held-out rows.) Throws
 /// std::invalid_argument if a run has too few fit rows.
 importer::CircularResult analyse(const Circle& circle, const model::Measurement& measurement);
 

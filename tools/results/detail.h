@@ -10,14 +10,14 @@
 
 namespace vernier::results {
 
-/// Everything that the report draws: rows, columns, observations, circles, worst rows. `result` gets a
-/// "detail" member.
+/// Adds the member "detail" to a result. The member "detail" contains all data that the report draws: rows,
+/// columns, observations, circles, worst rows. `result`: the JSON object that receives the member "detail".
 void add_detail(nlohmann::ordered_json& result, const model::Machine& machine,
                 const model::Measurement& measurement, const Eigen::VectorXd& residual);
 
 /// Calls visit(name, unit, kind, values) for each quantity that was set or recorded in the rows: axes,
-/// motion, time, visit, inputs, candidate inputs. kind: axis, direction, motion, time, visit, input or
-/// candidate.
+/// motion, time, visit, inputs, candidate inputs. The argument `kind` is axis, direction, motion, time,
+/// visit, input or candidate.
 using VisitColumn =
     std::function<void(const std::string&, const std::string&, const char*, const model::Column&)>;
 void each_column(const model::Machine& machine, const model::Measurement& measurement,
@@ -31,9 +31,11 @@ nlohmann::ordered_json circular_detail(const model::Machine& machine, const mode
 /// Returns the ISO 230-4 numbers of every circular test among the rows (a list, empty without such tests).
 nlohmann::ordered_json circular_json(const model::Machine& machine, const model::Measurement& measurement);
 
-/// Residuals of two models against the columns of the strongest findings (findings_json): [{observation, unit
-/// (um or urad), column, column_unit, x[], before[], after[], check[]}], at most three pictures of 4000
-/// readings. Without findings against the row. `before`, `after`: one per observation, mm or deg.
+/// Returns diagrams of the residuals of two models over the columns of the strongest findings
+/// (findings_json): [{observation, unit (um or urad), column, column_unit, x[], before[], after[], check[]}].
+/// The function returns at most three diagrams of 4000 readings. If there are no findings, the residuals are
+/// shown over the row number. `before`, `after`: residuals of the two models, one value per observation, mm
+/// or deg.
 nlohmann::ordered_json before_after_pictures(const nlohmann::ordered_json& findings,
                                              const model::Machine& machine,
                                              const model::Measurement& measurement,

@@ -6,7 +6,7 @@
 
 namespace vernier::results {
 
-/// The result of `diagnose` for programs (FORMATS section 3, and more keys).
+/// Returns the result of `diagnose` as JSON for programs (FORMATS section 3, and additional keys).
 nlohmann::ordered_json diagnosis_json(const diagnose::Diagnosis& diagnosis,
                                       const model::Measurement& measurement);
 

@@ -8,17 +8,18 @@
 
 namespace vernier::results {
 
-/// Returns an error field as the reports draw it and programs read it: {axes[], counts[], max_um, rms_um,
+/// Returns an error field as JSON for the reports and for programs: {axes[], counts[], max_um, rms_um,
 /// max_at_mm[3], point_mm[][3], deviation_um[][3]}.
 nlohmann::ordered_json field_json(const model::Machine& machine, const map::ErrorField& field);
 
-/// Returns a state with each linear axis at the middle of its range, inputs at their reference, all other
-/// values 0; then the user's `words` are applied (as for state_at). Throws InputError with the word.
+/// Returns a state in which each linear axis is at the middle of its range, inputs have their reference
+/// values, and all other values are 0. The values in the user's `words` then replace these values (as for
+/// state_at). Throws InputError with the wrong word if `words` are not valid.
 model::States middle_state(const model::Machine& machine, const std::string& words);
 
-/// field_json over the linear axes, `count` nodes along each, from middle_state. `nullopt` if the machine has
-/// no such volume (no linear axis, more than three, one without min and max); `why_not` then contains the
-/// reason.
+/// Returns field_json over the linear axes, with `count` nodes along each axis, starting from middle_state.
+/// The function volume_json() returns nullopt if the machine has no such volume (no linear axis, more than
+/// three, or a linear axis without min and max). If there is no result, `why_not` contains the reason.
 std::optional<nlohmann::ordered_json> volume_json(const model::Machine& machine, std::size_t count,
                                                   std::string& why_not);
 

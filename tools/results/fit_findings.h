@@ -15,16 +15,17 @@ namespace vernier::results {
 /// machine was never fitted.
 nlohmann::ordered_json findings_json(const model::Machine& machine);
 
-/// Adds the findings to an assurance. The assurance fails for a machine that was never fitted, or whose fit
-/// did not converge, was absurd or gave no gain; other findings are listed as not covered.
+/// Adds the findings of the last fit to an assurance. The assurance fails if the machine was never fitted, or
+/// if its fit did not converge, was not plausible or gave no improvement. Other findings are listed as not
+/// covered.
 void add_findings(text::Assurance& word, const model::Machine& machine);
 
-/// Tests whether a fit describes its readings: it converged, its values are plausible, it improves the check
-/// rows (if any), no reading is missing and no reading is disturbed.
+/// Tests whether a fit describes its readings. A good fit must have converged, its values must be plausible,
+/// it must improve the check rows (if there are any), and no reading may be missing or disturbed.
 text::Assurance assurance_of(const fit::FitResult& result);
 
-/// Tests whether the correction of the machine may run, by the rules of the sheet. Rules that cannot be
-/// evaluated from the machine file are listed as not covered.
+/// Tests whether the correction of the machine may run, by the rules of the safety sheet. Rules of the safety
+/// sheet that cannot be evaluated from the machine file are listed as not covered.
 text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Machine& machine,
                              text::AssuranceKind kind);
 

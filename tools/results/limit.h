@@ -8,22 +8,23 @@
 
 namespace vernier::results {
 
-/// A limit for residuals: "2u" (a multiple of the u of each row), "0.2mm", "25um", "0.025deg" (readings of
-/// orientation). "rms=1.5u" tests the rms of the residuals; without rms= each row is tested.
+/// A limit for residuals: "2u" (a multiple of the standard uncertainty u of each row), "0.2mm", "25um",
+/// "0.025deg" (for readings of orientation). The limit "rms=1.5u" is for the rms of the residuals. Without
+/// "rms=" the limit is for each row.
 struct ResidualLimit {
   std::string words;
   bool rms = false, of_u = false, rotation = false;
-  double value = 0;  // mm, deg, or times u
+  double value = 0;  // in mm, in deg, or as a multiple of u
 };
 
-/// Throws InputError for words of another form.
+/// Converts a text to a limit. Throws InputError if the text has another form.
 ResidualLimit residual_limit(const std::string& words);
 
-/// Tests the residuals against the limit: {limit, of (largest or rms), role (check rows if the file has any),
+/// Tests the residuals against a limit: {limit, of (largest or rms), role (check rows if the file has any),
 /// rows, beyond, worst: {file, line, value, limit} in um or mdeg as `unit` states, pass}. For a row with x y
-/// z, the distance in space counts (for a rotation likewise); each other reading is tested alone. residual:
-/// mm or deg, one per observation. Throws InputError if the file has no reading of the limited kind, or if a
-/// limit in u meets a reading without a standard uncertainty.
+/// z, the distance in space is tested (for a rotation, the angle). Each other reading is tested separately.
+/// `residual`: one value per observation, mm or deg. Throws InputError if the file has no reading of the kind
+/// in the limit, or if the limit is in u and a reading has no standard uncertainty.
 nlohmann::ordered_json judge_residuals(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                        const ResidualLimit& limit);
 

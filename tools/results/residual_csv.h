@@ -7,9 +7,9 @@
 
 namespace vernier::results {
 
-/// Returns one line per reading: `row` (data rows counted from 1 over all files), `observation` (its kind),
-/// `value`, `prediction`, `residual` (value minus prediction) and `u` (empty if not given), mm or deg as
-/// `unit` states; then role, run, file and line. residual: one per observation.
+/// Returns CSV with one line per reading: `row` (number of the data row over all files, from 1),
+/// `observation` (its kind), `value`, `prediction`, `residual` (value minus prediction) and `u` (empty if not
+/// given), mm or deg as `unit` states; then role, run, file and line. `residual`: one value per observation.
 std::string residual_csv(const model::Measurement& measurement, const Eigen::VectorXd& residual);
 
 }  // namespace vernier::results

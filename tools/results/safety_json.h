@@ -7,12 +7,13 @@
 
 namespace vernier::results {
 
-/// Returns the rules of the sheet for which the machine file has a figure: [{"rule":…, "value":…, "limit":…,
-/// "unit":…, "ok":…, "accepted":…, "culprit":…, "reason":…}…]. The other rules stand in the `not_covered` of
-/// the assurance.
+/// Returns the rules of the safety sheet for which the machine file has a number: [{"rule":…, "value":…,
+/// "limit":…, "unit":…, "ok":…, "accepted":…, "culprit":…, "reason":…}…]. The other rules of the safety sheet
+/// are in `not_covered` of the assurance.
 nlohmann::ordered_json safe_to_run_json(const safety::SafetySheet& sheet);
 
-/// Returns all rules of the sheet, for a page that shows them; value is null if the file has no figure.
+/// Returns all rules of the safety sheet as JSON for the workbench page. The value is null if the machine
+/// file has no number.
 nlohmann::ordered_json safety_json(const safety::SafetySheet& sheet);
 
 /// Returns the safety sheet as text for users, one line for each rule.

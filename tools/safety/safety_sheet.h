@@ -9,61 +9,63 @@
 
 namespace vernier::safety {
 
-/// Rules that a machine file must meet before its correction may run. Images contain these numbers: a number
-/// never changes.
+/// Rules that a machine file must meet before its correction may run. Correction images contain the numbers
+/// of these rules. The number of a rule therefore never changes.
 enum class SafetyRule : std::uint8_t {
-  kCorrection = 0,     // how far an axis would be moved
-  kMaxCorrection = 1,  // against the axis' own limit, which would cut it off
+  kCorrection = 0,     // largest correction of an axis
+  kMaxCorrection = 1,  // correction relative to the axis' own limit (maxcorrection), which would truncate it
   kCancellation = 2,   // terms that are much larger than their sum
-  kUncertainty = 3,    // how well the correction is known where the machine works, with its tools
-  kMeasuredRange = 4,  // extrapolation beyond the measured range
-  kInputRange = 5,     // the same for temperatures and other inputs
-  kSetUp = 6,          // set-up of the measurement that would reach an axis
-  kConverged = 7,      // the fit came to an end
+  kUncertainty = 3,    // uncertainty of the correction in the working range of the machine, with its tools
+  kMeasuredRange = 4,  // extrapolation beyond the measured range of the axes
+  kInputRange = 5,     // extrapolation beyond the measured range of temperatures and other inputs
+  kSetUp = 6,          // a set-up of the measurement that would affect an axis
+  kConverged = 7,      // the fit has converged
   kResidual = 8,       // residual of the fit
-  kOutlier = 9,        // one reading against all the others
-  kCheckRows = 10,     // rows that the fit has not seen, against the nominal machine
-  kDisturbed = 11,     // disturbance of the instrument, or a residual far above its noise
-  kBound = 12,         // proved error of the image over its correction; tested by `compile` only
+  kOutlier = 9,        // one reading that differs from all other readings
+  kCheckRows = 10,     // held-out check rows, compared with the nominal machine
+  kDisturbed = 11,     // a disturbance of the instrument, or a residual far above its noise
+  kBound = 12,         // proved error of the image divided by its correction; only `compile` tests this rule
 };
-inline constexpr std::size_t kSafetyRuleCount = 13;  // rules of the sheet
+inline constexpr std::size_t kSafetyRuleCount = 13;  // number of rules on the sheet
 const char* rule_name(SafetyRule rule);
 std::optional<SafetyRule> rule_named(const std::string& name);
 
 struct SafetyFinding {
   SafetyRule rule = SafetyRule::kCorrection;
-  std::optional<double> value;  // nullopt if the file does not give it (a machine that was never fitted)
+  std::optional<double> value;  // nullopt if the machine file does not contain the value (for example a
+                                // machine that was never fitted)
   double limit = 0;
   std::string unit;
   bool ok = true;
-  bool accepted = false;  // not ok, and the user takes it
-  std::string culprit;    // parameter, axis, input or reading that counts most
-  std::string reason;     // why there is a limit
+  bool accepted = false;  // the rule is not met, and the user accepts this
+  std::string culprit;    // parameter, axis, input or reading with the largest contribution
+  std::string reason;     // reason for the limit
 };
 
-/// The safety sheet of one machine, for `compile`, `export`, `upload` and the workbench.
+/// The safety sheet of one machine, which `compile`, `export`, `upload` and the workbench use.
 struct SafetySheet {
-  std::vector<SafetyFinding> findings;  // one per rule, in the order of their numbers
-  /// Parameters that were added or set by hand since the fit. The uncertainty of such a parameter is the size
-  /// of the difference between its present value and its value in the fit.
+  std::vector<SafetyFinding> findings;  // one finding for each rule, in the order of the rules' numbers
+  /// Names of parameters that were added or changed by hand after the fit. The uncertainty of a parameter
+  /// that was changed by hand is the difference between its present value and its fitted value.
   std::vector<std::string> stale;
-  /// Adds a rule's finding. Throws std::logic_error for a value that is not finite.
+  /// Adds the finding of one rule to the sheet. Throws std::logic_error if the value is not finite.
   void judge(SafetyRule rule, std::optional<double> value, std::string culprit,
              const std::vector<SafetyRule>& accepted);
   bool ok() const;
-  std::uint32_t accepted_mask() const;  // bit n: rule n
-  /// Returns one line: the rule with the largest excess, its value, limit and culprit, and then the other
-  /// rules that are not met. The line is empty if all rules are met.
+  std::uint32_t accepted_mask() const;  // bit n is rule n
+  /// Returns one line of text: the rule with the largest excess over its limit, its value, limit and culprit,
+  /// and then the other rules that are not met. The line is empty if all rules are met.
   std::string refusal() const;
 };
 
-/// Evaluates a machine over its <volume> (else the ranges of its axes) and with its <tools>, at the
-/// references of its inputs. The uncertainty is also evaluated at both ends of the measured range of each
-/// input. `accepted`: rules that the user overrides. Throws InputError for an axis without a range.
+/// Evaluates a machine over its <volume> (or the ranges of its axes) and with its <tools>. The inputs have
+/// their reference values. The uncertainty is also evaluated at both ends of the measured range of each
+/// input. `accepted`: rules that the user accepts although they are not met. Throws InputError if an axis has
+/// no range.
 SafetySheet safety_sheet(const model::Machine& machine, const std::vector<SafetyRule>& accepted = {});
 
-/// Converts names of rules to rules. Throws InputError for a rule that does not exist; the error lists the
-/// rules that exist.
+/// Converts names of rules to rules. Throws InputError if a name is not the name of a rule. The message lists
+/// all rules.
 std::vector<SafetyRule> rules_named(const std::vector<std::string>& names);
 
 }  // namespace vernier::safety

@@ -10,39 +10,45 @@
 
 namespace vernier::sheet {
 
-/// Converts a word in any usual spelling to a unit of the formats: "µm", "micron", "(°C)", "Grad", "inch",
-/// "mm/Min.", "U/min"; brackets around the word are ignored. `nullopt` if the word is not a unit.
+/// Converts a unit in any usual spelling to a unit of the file formats: "µm", "micron", "(°C)", "Grad",
+/// "inch", "mm/Min.", "U/min". Brackets around the word are ignored. The function unit_meant() returns
+/// nullopt if the word is not a unit.
 std::optional<std::string> unit_meant(std::string_view word);
 
-/// Number and unit of a cell that has both: "0,5 mm", "12.5°". `nullopt` for any other cell.
+/// Returns the number and the unit of a cell that contains both: "0,5 mm", "12.5°". The function
+/// number_and_unit() returns nullopt for a cell that does not contain a number and a unit.
 std::optional<std::pair<std::string, std::string>> number_and_unit(std::string_view cell, bool decimal_comma);
 
-/// A heading: its words without the unit, and its unit: "X [mm]", "X(mm)", "X / mm", "Temp. in °C".
+/// A heading of a column, separated into its words and its unit: "X [mm]", "X(mm)", "X / mm", "Temp. in °C".
 struct Heading {
-  std::string text;          // as written
-  std::string name;          // without unit
-  std::string unit;          // of the formats; empty: no unit is written
-  std::string unknown_unit;  // text at the place of a unit that is not a unit
+  std::string text;          // text of the heading without change
+  std::string name;          // words of the heading without the unit
+  std::string unit;          // unit in the form of the file formats; empty if the heading has no unit
+  std::string unknown_unit;  // text at the position of a unit, if this text is not a unit
 };
 Heading parse_heading(std::string_view cell);
 
-/// The parts of a sheet: title lines, headings (one line or two, a line of units below), data.
+/// Parts of a sheet: title lines, headings (in one or two lines, possibly with a line of units below), rows
+/// of data.
 struct SheetTable {
-  std::vector<Heading> headings;  // one per column; named "1", "2" … without a heading
+  std::vector<Heading> headings;  // one heading per column; "1", "2" … if the sheet has no headings
   bool has_headings = false;
-  std::size_t heading_row = 0;  // index into the sheet's rows, where has_headings
+  std::size_t heading_row = 0;  // index of the row with the headings, if has_headings is true
   std::size_t first_data = 0;
-  std::size_t units_row = 0;             // index, 0: no such row
-  std::optional<std::size_t> upper_row;  // of headings in two lines the first
+  std::size_t units_row = 0;             // index of the row with the units; 0: there is no such row
+  std::optional<std::size_t> upper_row;  // if the headings have two lines, index of the first line
 };
 
-/// A row of data: as many numbers as words, and at least one. Dates are neither.
+/// True if a row is a row of data: it contains at least one number, and at least as many numbers as words.
+/// Dates count neither as numbers nor as words.
 bool is_row_of_data(const Sheet& sheet, std::size_t row);
 
-/// Finds the parts: the first row that is mostly numbers begins the data. Throws InputError if no row does.
+/// Finds the parts of a sheet. The first row with mostly numbers is the first row of data. Throws InputError
+/// if no row has mostly numbers.
 SheetTable parts_of_sheet(const Sheet& sheet);
 
-/// "X ist" → "X_ist": a name of the formats from any words, umlauts and signs spelled out.
+/// Converts words to a name that the file formats permit: "X ist" becomes "X_ist". Umlauts and signs are
+/// written with letters.
 std::string name_from_words(std::string_view words);
 
 }  // namespace vernier::sheet

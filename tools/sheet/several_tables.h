@@ -8,13 +8,14 @@
 
 namespace vernier::sheet {
 
-/// Index of the first row of each table of a sheet, its titles included. A new table begins at a line of
-/// headings that follows rows of data, if there are rows of data after this line. One entry for a sheet of
-/// one table.
+/// Returns the index of the first row of each table in a sheet, including its titles. A new table begins at a
+/// line of headings after rows of data, if there are also rows of data after this line. For a sheet with one
+/// table, the result has one element.
 std::vector<std::size_t> tables_of(const Sheet& sheet);
 
-/// Keeps the rows of one table, from 1. Throws InputError if the sheet has no table of this number, or if it
-/// has several tables and `number` is nullopt. The error states the first line of each table.
+/// Keeps only the rows of one table. `number` counts the tables from 1. Throws InputError if the sheet has no
+/// table with this number, or if it has several tables and `number` is nullopt. The error message contains
+/// the first line of each table.
 void keep_table(Sheet& sheet, std::optional<std::size_t> number);
 
 }  // namespace vernier::sheet

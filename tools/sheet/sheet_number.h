@@ -6,13 +6,13 @@
 
 namespace vernier::sheet {
 
-/// Converts a cell to number text with a decimal point only ("-1234.5"). Thousands ("1.234,5", "1'234.5", "1
-/// 234,5") and the long minus sign are accepted. `nullopt` if the cell is not a number with this decimal
-/// sign.
+/// Converts the number in a cell to text with a decimal point ("-1234.5"). Separators of thousands
+/// ("1.234,5", "1'234.5", "1 234,5") and the long minus sign are permitted. The function plain_number()
+/// returns nullopt if the cell is not a number with this decimal sign.
 std::optional<std::string> plain_number(std::string_view cell, bool decimal_comma);
 
-/// Decimal sign that a cell shows: a comma, a point, neither, or either. The cell "1,234" may have either
-/// decimal sign.
+/// Decimal sign in the number of a cell: a comma, a point, neither, or either. In the cell "1,234", the comma
+/// can be a decimal sign or a separator of thousands.
 enum class DecimalSign { kNeither, kPoint, kComma, kEither };
 DecimalSign decimal_sign_in(std::string_view cell);
 

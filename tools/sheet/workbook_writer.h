@@ -5,14 +5,14 @@
 
 namespace vernier::sheet {
 
-/// A sheet to be written: its first row contains headings that stay visible.
+/// A sheet of a workbook to be written. The first row of a sheet contains headings, which stay visible.
 struct SheetToWrite {
   std::string name;
-  std::vector<std::vector<std::string>> rows;  // a cell that reads as a number becomes one
+  std::vector<std::vector<std::string>> rows;  // a cell whose text is a number is written as a number
 };
 
-/// Returns the bytes of a workbook (.xlsx). The same sheets give the same bytes. Throws std::runtime_error if
-/// the workbook cannot be written.
+/// Returns the bytes of a workbook (.xlsx) with the given sheets. Equal sheets give equal bytes. Throws
+/// std::runtime_error if the workbook cannot be written.
 std::string workbook_of(const std::vector<SheetToWrite>& sheets);
 
 }  // namespace vernier::sheet

@@ -8,12 +8,12 @@
 
 namespace vernier::simulate {
 
-/// Axis counts of a mm, and of a degree.
+/// Number of counts per mm of a linear axis, and per degree of a rotary axis.
 inline constexpr double kCountsPerMm = 1e6, kCountsPerDeg = static_cast<double>(kTurnCounts) / 360;
 
-/// Returns the nearest count, limited to well below 64 bits.
+/// Returns the nearest integer, limited to a range well below 64 bits.
 inline std::int64_t counts(double value) {
-  constexpr double kMost = 4e18;  // below 2^62: sums of two stay within 64 bits
+  constexpr double kMost = 4e18;  // below 2^62, so that the sum of two counts fits 64 bits
   return std::llround(std::clamp(value, -kMost, kMost));
 }
 

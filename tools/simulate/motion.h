@@ -6,16 +6,16 @@
 
 namespace vernier::simulate {
 
-/// Returns the motion state of a machine at every tick. Positions and inputs are interpolated linearly.
-/// Recorded motion is interpolated too (a direction keeps the value of its row). All other quantities are
-/// derived:
+/// Returns the motion state of a machine at every tick of a path. Positions and inputs between the rows of
+/// the path are interpolated linearly. Recorded motion columns are also interpolated; a direction keeps the
+/// value of its row. All other quantities are computed from the positions:
 ///   v      slope of the path's segment
 ///   a      change of segment speed at each row, over the time between the segments' middles; linear between
 ///          the rows, the first and last row as their neighbours
 ///   dir    sign of the last motion, held at rest; 0 before the first
 ///   since  travel since the last reversal; a long way before the first
 ///   feed   speed over the linear axes; curv  |v x a| / |v|^3 over the linear axes
-/// Throws InputError if an axis is missing.
+/// Throws InputError if the path does not contain an axis of the machine.
 model::States path_states(const Path& path, const model::Machine& machine, const Ticks& ticks);
 
 }  // namespace vernier::simulate

@@ -8,12 +8,12 @@
 
 namespace vernier::text {
 
-/// Returns the value if it is finite. Every comparison for a verdict reads its numbers through decisive().
-/// what: name of the number, for the message. Throws std::logic_error for NaN and infinity (exit status 70:
-/// no verdict is better than a wrong verdict).
+/// Returns `value` if it is finite. Every comparison that determines a verdict reads its numbers through
+/// decisive(). `what`: name of the number, for the error message. Throws std::logic_error for NaN and
+/// infinity (exit status 70), because no verdict is better than a wrong verdict.
 double decisive(double value, std::string_view what);
 
-/// Kind of an assurance; the names are those of tools/docs/assurances.md.
+/// Kind of result to which an assurance belongs. The names are those of tools/docs/assurances.md.
 enum class AssuranceKind : std::uint8_t {
   kFit,
   kDiagnose,
@@ -29,37 +29,39 @@ enum class AssuranceKind : std::uint8_t {
 };
 const char* assurance_name(AssuranceKind kind);
 
-/// One rule that was tested. `value` and `limit` are finite; for a yes-or-no question, value counts the
-/// failures (limit 0).
+/// One rule of an assurance that was tested. `value` and `limit` are finite. For a yes-or-no question,
+/// `value` is the number of failures and `limit` is 0.
 struct AssuranceRule {
-  std::string rule;  // short name with hyphens
+  std::string rule;  // short name of the rule, with hyphens
   double value = 0, limit = 0;
   std::string text;  // one sentence for people
   bool ok = true;
 };
 
-/// The assurance of a result: the result is assured if every tested rule is met. An assurance without a rule
-/// does not hold.
+/// Assurance of a result: the list of tested rules. The assurance holds if every tested rule is met. An
+/// assurance without any rule does not hold.
 class Assurance {
  public:
   explicit Assurance(AssuranceKind kind) : kind_(kind) {}
 
-  /// The rule is met if value <= limit. Throws std::logic_error if value or limit is not finite.
+  /// Adds a rule that is met if value <= limit. Throws std::logic_error if value or limit is not finite.
   void at_most(std::string rule, double value, double limit, std::string text);
-  /// The rule is met if value >= limit. Throws as `at_most`.
+  /// Adds a rule that is met if value >= limit. Throws std::logic_error if value or limit is not finite.
   void at_least(std::string rule, double value, double limit, std::string text);
-  /// The rule is met if `ok` is true: then value is 0, else 1; the limit is 0.
+  /// Adds a rule that is met if `ok` is true. The value of the rule is 0 if it is met and 1 otherwise; its
+  /// limit is 0.
   void require(std::string rule, bool ok, std::string text);
-  /// Something that the result does not cover, as a sentence.
+  /// Adds a sentence about a question that the result does not cover.
   void not_covered(std::string text);
 
   AssuranceKind kind() const { return kind_; }
   bool holds() const;
-  /// The rules that are not met; if all are met, all rules.
+  /// Returns the rules that are not met. If all rules are met, returns all rules.
   std::vector<AssuranceRule> because() const;
   const std::vector<std::string>& uncovered() const { return uncovered_; }
 
-  /// Returns {"kind", "holds", "because": [{"rule", "value", "limit", "text"}], "not_covered": []}
+  /// Returns the assurance as JSON: {"kind", "holds", "because": [{"rule", "value", "limit", "text"}],
+  /// "not_covered": []}
   nlohmann::ordered_json json() const;
 
  private:

@@ -12,40 +12,42 @@ namespace vernier::text {
 
 /// Exit status of a program, and its output.
 struct ProcessResult {
-  int exit = -1;  // its exit status; 128 + signal if a signal ended it
+  int exit = -1;  // exit status of the program; 128 + signal if a signal ended the program
   std::string out, err;
 };
 
-/// A running program, so that another thread can end it.
+/// A running program, which another thread can end.
 struct RunningProcess {
-  std::atomic<pid_t> group{0};  // its process group; 0 before and after
+  std::atomic<pid_t> group{0};  // process group of the program; 0 before its start and after its end
   std::atomic<bool> cancelled{false};
-  /// Ends the program immediately, or as soon as it starts.
+  /// Ends the program immediately. If it is not yet started, it ends as soon as it starts.
   void cancel();
 };
 
-/// Runs `program` with `arguments` in `directory` and waits for its end. The program has no standard input
-/// and a separate process group, and ends together with this program. `on_line`: called with each line of the
-/// program's standard error. Output beyond `most_bytes` ends the program with exit 70. Throws InputError if
-/// the program cannot be started.
+/// Runs `program` with `arguments` in the folder `directory`, and waits for its end. The program has no
+/// standard input and its own process group. The started program ends together with this program. `on_line`:
+/// function that is called with each line of the program's standard error. If the output exceeds
+/// `most_bytes`, the program is ended with exit status 70. Throws InputError if the program cannot be
+/// started.
 ProcessResult run_process(const std::string& program, const std::vector<std::string>& arguments,
                           const std::string& directory, std::size_t most_bytes,
                           const std::function<void(std::string_view)>& on_line, RunningProcess& running);
 
-/// Files that become a program's standard input, output and error.
+/// File descriptors for the standard input, output and error of a program.
 struct StandardStreams {
   int in, out, error;
 };
-/// Starts a program in a separate process group; the program ends together with the thread that started it.
-/// Returns the process number of the program; -1 with errno set. All files except `streams` are closed in the
-/// program.
+/// Starts a program in its own process group. The program ends together with the thread that started it.
+/// Returns the process id of the program, or -1 with errno set. In the program, all file descriptors except
+/// `streams` are closed.
 pid_t start_process(const std::string& program, const std::vector<std::string>& arguments,
                     const std::string& directory, const StandardStreams& streams);
 
-/// The last line of a program's output that is not empty, without blanks around it, 400 bytes at most.
+/// Returns the last line of a program's output that is not empty, without leading and trailing blanks, at
+/// most 400 bytes.
 std::string last_line(std::string_view output);
 
-/// A command for a shell: words are quoted if necessary.
+/// Returns a command as text for a shell. Words are in quotes if this is necessary.
 std::string shell_text(const std::string& program, const std::vector<std::string>& arguments);
 
 }  // namespace vernier::text

@@ -7,12 +7,13 @@
 
 namespace vernier::text {
 
-/// Returns the distance of two words (Damerau and Levenshtein): how many letters must be changed, inserted,
-/// removed or swapped with a neighbour, each letter once. Capitals count as small letters.
+/// Returns the distance between two words (Damerau and Levenshtein): the number of letters that must be
+/// changed, inserted, removed or exchanged with a neighbour, each letter once. Capital and small letters are
+/// equal in this comparison.
 std::size_t letters_apart(std::string_view a, std::string_view b);
 
-/// Returns the word of `known` that was probably meant: the nearest word, if it is near enough for its
-/// length.
+/// Returns the word of `known` that the user probably meant: the nearest word, if its distance is small
+/// enough for its length.
 std::optional<std::string> word_meant(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace vernier::text

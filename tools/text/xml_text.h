@@ -7,38 +7,38 @@
 
 namespace vernier::text {
 
-/// Position of an attribute of a start tag in the text of an XML file.
+/// Position of an attribute in the start tag of an XML element.
 struct AttributeSpan {
-  std::string name;          // as written
-  std::size_t name_at = 0;   // offset of its name
+  std::string name;          // name of the attribute as it is written
+  std::size_t name_at = 0;   // offset of the name in the text
   std::size_t value_at = 0;  // offset of the first character between the quotes
   std::size_t value_size = 0;
 };
 
-/// Returns the attributes of the start tag whose element name begins at `offset`. The text must be
-/// well-formed at `offset` (a parser has accepted it).
+/// Returns the attributes of the start tag whose element name begins at `offset`. At `offset` the text must
+/// be valid XML, which a parser has already accepted.
 std::vector<AttributeSpan> attribute_spans(std::string_view text, std::size_t offset);
 
-/// Offset immediately after the last attribute (or the name) of that start tag, where another attribute can
-/// be inserted.
+/// Returns the offset directly after the last attribute (or the name) of a start tag, where another attribute
+/// can be inserted.
 std::size_t end_of_attributes(std::string_view text, std::size_t offset);
 
-/// 1-based line of an offset.
+/// Returns the line number (from 1) of an offset in a text.
 std::size_t line_of(std::string_view text, std::size_t offset);
 
-/// True if both texts have the same letters, ignoring case (ASCII).
+/// True if both texts are equal except for capital and small letters (ASCII).
 bool equal_no_case(std::string_view a, std::string_view b);
 
-/// One replacement in a text: `size` characters at `at` become `text`.
+/// One replacement in a text: `text` replaces `size` characters at the offset `at`.
 struct TextEdit {
   std::size_t at = 0, size = 0;
   std::string text;
 };
-/// Applies edits that do not overlap; the edits may be in any order (edits at the same offset are applied in
-/// the given order).
+/// Applies replacements that do not overlap, in any order. Replacements at the same offset are applied in the
+/// given order.
 std::string apply_edits(const std::string& text, std::vector<TextEdit> edits);
 
-/// A number or text, escaped for use between double quotes in an attribute.
+/// Returns a number or text in the form for an attribute value between double quotes.
 std::string escape_attribute(std::string_view value);
 
 }  // namespace vernier::text

@@ -5,20 +5,21 @@
 
 namespace vernier::timebase {
 
-/// Comparison of the end of a run over a closed path with its start. If readings and positions
-/// belong together, the residual repeats when the positions close, not before.
+/// Comparison of the end of a run over a closed path with its start. If readings and positions belong to the
+/// same times, the residual repeats when the path closes, and not earlier.
 struct Closure {
-  Eigen::Index rows = 0;   // rows of the end that repeat the start: the excess length of the turn in samples
-  double correlation = 0;  // concordance, without the trend
-  double elsewhere = 0;    // the best concordance of the start with the rest of the run
+  Eigen::Index rows = 0;   // number of rows at the end that repeat the start: the surplus of samples in the
+                           // closed path
+  double correlation = 0;  // concordance correlation of the end with the start, without their trend
+  double elsewhere = 0;    // largest concordance correlation of the start with the rest of the run
   double p_value =
-      1;  // probability that the end of a correct record is so similar to its start, for some number of rows
+      1;  // probability that the end of a correct record is so similar to its start, for any number of rows
 };
 
 /// Tests whether the last rows of a run repeat its first rows. `points`: the path, which must close (the pose
-/// after the last row is the first pose); `series`: rows x channels of one unit, without gaps. Returns
+/// after the last row is the first pose). `series`: rows x channels of one unit, without gaps. Returns
 /// nullopt if the path does not close. If the start is also similar to other parts of the run (a periodic
-/// error), examine_closure reports no finding.
+/// error), examine_closure returns no finding.
 std::optional<Closure> examine_closure(const Eigen::MatrixXd& points, const Eigen::MatrixXd& series);
 
 }  // namespace vernier::timebase

@@ -5,29 +5,30 @@
 
 namespace vernier::timebase {
 
-/// Returns `rows` rows of a series (rows x channels) from `first`, without mean and slope of each
-/// channel. A drift between two passes is not a shift. Returns nullopt beyond the series or if a
-/// cell is NaN.
+/// Returns `rows` rows of a series (rows x channels) from the row `first` on, after removal of mean and slope
+/// of each channel. Mean and slope are removed because a drift between two passes is not a shift in time.
+/// Returns nullopt if the rows exceed the series or if a cell is NaN.
 std::optional<Eigen::MatrixXd> stretch(const Eigen::MatrixXd& series, Eigen::Index first, Eigen::Index rows);
 
-/// Returns the concordance of two blocks of one size, -1..1; 1 only if the blocks are equal. Source: Lin,
-/// Biometrics 45 (1989).
+/// Returns the concordance correlation of two blocks of equal size, from -1 to 1. The concordance correlation
+/// is 1 only if the blocks are equal. The definition is that of Lin, Biometrics 45 (1989).
 double concordance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Effective number of independent rows if a and b are correlated (Bartlett). The number is conservative: it
-/// uses absolute products, so that an oscillation does not increase it.
+/// Returns the effective number of independent rows if the rows of `a` and `b` are correlated (Bartlett). The
+/// number is conservative, because absolute products are used. An oscillation of the samples therefore does
+/// not increase the number.
 double effective_rows(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Returns the probability that unrelated blocks with this number of independent rows agree so well (Fisher's
-/// z).
+/// Returns the probability that two unrelated blocks with `rows` independent rows have this correlation or a
+/// larger one (Fisher's z).
 double chance_of_agreement(double correlation, double rows);
 
-/// Returns the probability that noise alone makes one rms so much larger than the other (Fisher's z of a
-/// ratio of variances).
+/// Returns the probability that noise alone makes one rms larger than the other by this ratio (Fisher's z of
+/// a ratio of variances).
 double chance_of_ratio(double larger, double smaller, double rows);
 
-/// upper_tail: probability that a standard normal number exceeds z. The function after it: the z that a
-/// standard normal number exceeds with probability p < 0.5.
+/// upper_tail returns the probability that a standard normal variable exceeds z. upper_quantile returns the
+/// value that a standard normal variable exceeds with the probability p < 0.5.
 double upper_tail(double z);
 double upper_quantile(double p);
 

@@ -10,26 +10,28 @@
 
 namespace vernier::tolerance {
 
-/// One cause of deviations, by its name in the catalogue of effects: `squareness of Y in X`.
-/// Statics and table columns that are the same effect of the same axis at the same location are
-/// one source.
+/// One source of error of a machine, with its name from the catalogue of effects: `squareness of Y in X`.
+/// Constants and table columns with the same effect of the same axis at the same location belong to one
+/// source.
 struct MachineSource {
   std::string name;
-  std::string effect;                   // id of the catalogue; "custom": a term that it does not contain
-  std::vector<std::size_t> parameters;  // indices into the parameter set of its construction
+  std::string effect;                   // id of the effect in the catalogue; "custom" if the catalogue does
+                                        // not contain the term
+  std::vector<std::size_t> parameters;  // indices of the source's parameters in the parameter set
   std::vector<std::size_t> statics;
-  std::vector<std::pair<std::size_t, std::size_t>> columns;  // of tables: table, column
-  std::vector<std::size_t> scales;                           // axes with a scale factor
+  std::vector<std::pair<std::size_t, std::size_t>> columns;  // tables and columns that belong to the source:
+                                                             // index of the table, index of the column
+  std::vector<std::size_t> scales;                           // axes whose scale factor belongs to the source
 };
 
-/// Returns the free or non-nominal errors of a machine. A static gets the name of its term. machine_sources
-/// searches the forms of the catalogue in order for the term's quantities, its functions and the degree of
-/// freedom on which it acts.
+/// Returns the sources of error of a machine: those with free parameters, and those whose value differs from
+/// nominal. A constant gets the name of the term that contains it. machine_sources compares the quantities,
+/// functions and degree of freedom of this term with the forms of the catalogue, in their order.
 std::vector<MachineSource> machine_sources(const model::Machine& machine,
                                            const model::ParameterSet& parameters,
                                            const std::vector<effects::Effect>& catalogue);
 
-/// Returns the machine with this source at nominal.
+/// Returns the machine with the nominal value (no error) for one source.
 model::Machine without_source(const model::Machine& machine, const MachineSource& source);
 
 }  // namespace vernier::tolerance

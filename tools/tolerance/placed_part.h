@@ -11,35 +11,38 @@
 
 namespace vernier::tolerance {
 
-/// A feature at the positions where the machine cuts or touches it.
+/// A feature with the machine positions at which its points are cut or touched.
 struct PlacedFeature {
   PartFeature feature;
-  std::size_t first = 0, count = 0;  // its states
-  /// The evaluated direction at each point: surface normals; for a path its tangent, along which the path is
-  /// not evaluated; 0: every direction.
+  std::size_t first = 0, count = 0;  // first state of the feature in PlacedPart::states, and number of states
+  /// Evaluated direction at each point of the feature: the surface normal. For a path it is the tangent,
+  /// along which deviations are not evaluated. For a zero vector every direction is evaluated.
   Eigen::Matrix3Xd direction;
 };
 
-/// Positions of the machine for every point of every feature.
+/// Machine positions for all points of all features of a part.
 struct PlacedPart {
   std::vector<PlacedFeature> features;
   model::States states;
-  Eigen::Matrix3Xd point;  // nominal, workpiece coordinates, mm
-  bool program = false;    // with speeds and reversals of a part program; else each point at rest
+  Eigen::Matrix3Xd point;  // nominal points in workpiece coordinates, mm
+  bool program = false;    // true: states with the speeds and reversals of a part program; false: the machine
+                           // is at rest at each point
 };
 
-/// Number of points on a circle. 12, doubled until size and form of the machine's own error agree with those
-/// of twice and three times as many points to 0.05 um or 2 % of the form: with few points, a cyclic error of
-/// a short period can appear as an error of the size. At most 384. `placed`: states of n points and their
-/// outward directions.
+/// Returns the number of points at which a circle is evaluated, between 12 and 384. The number starts at 12
+/// and is doubled until size and form of the machine's error are stable. Size and form are stable if twice
+/// and three times as many points change them by at most 0.05 um or 2 % of the form, whichever is larger.
+/// With too few points, a cyclic error of a short period can appear as an error of the size. `placed` returns
+/// the states of n points on the circle and the outward directions at these points.
 std::size_t points_on_circle(
     const model::Machine& machine,
     const std::function<std::pair<model::States, Eigen::Matrix3Xd>(std::size_t)>& placed);
 
-/// Distributes points over every feature (a cylinder: points_on_circle on each of three circles, a plane: 5 x
-/// 5) and computes the axis positions at which the nominal chain has its tool at each point. Directions of
-/// motion are those from point to point, a circle counter-clockwise about its axis. `at`: inputs, and the
-/// positions of axes that are not needed. Throws LimitNotMet if a point is out of reach, naming the line.
+/// Distributes points over each feature and computes the axis positions at which the tool of the nominal
+/// machine is at each point. A cylinder has three circles with points_on_circle points each, a plane has 5 x
+/// 5 points. The directions of motion are those from one point to the next; a circle is traversed
+/// counter-clockwise about its axis. `at`: values of the inputs, and positions of the axes that do not move.
+/// Throws LimitNotMet with the line of the feature if the machine cannot reach a point.
 PlacedPart place_part(const model::Machine& machine, const PartDrawing& part, const model::States& at);
 
 }  // namespace vernier::tolerance

@@ -18,144 +18,152 @@
 
 namespace vernier::upload {
 
-/// An axis or input with the name that the board gives.
+/// An axis or an input of a board, with the name that the board reports.
 struct BoardSignal {
   std::string name;
   bool rotary = false, rollover = false;
 };
 
-/// Properties of a board.
+/// Properties that a board reports about itself.
 struct BoardInfo {
   HelloReply hello;
-  std::string board;  // its name; empty: no name
+  std::string board;  // name of the board; empty: the board has no name
   std::vector<BoardSignal> axes;
   std::vector<std::string> inputs;
 };
 
-/// Data of one tick that the board reported, in the units of the machine file: mm or deg, mm or deg, the
-/// input's unit.
+/// Data of one control tick that the board reported, in the units of the machine file: positions and
+/// corrections in mm or deg, inputs in their own units.
 struct BoardTick {
   std::uint64_t number = 0;
   double time_s = 0, feed_mm_per_min = 0;
   Mode mode = Mode::kBoot;
   Fault fault = Fault::kNone;
   bool holding = false;
-  std::vector<bool> saturated;  // by axis: its correction is held at a limit
+  std::vector<bool> saturated;  // by axis; true: the correction of the axis is held at a limit
   std::vector<double> position, correction, input;
   std::vector<int> sense;
 };
 
-/// The requested ticks, and the number of earlier ticks that were overwritten.
+/// The requested control ticks of a board, and the number of earlier ticks that the board has already
+/// overwritten.
 struct BoardHistory {
   std::vector<BoardTick> ticks;
   std::uint64_t next = 0;
   std::uint32_t lost = 0;
 };
 
-/// The correction that the board computes, and the part of it that is applied; mm or deg.
+/// The correction that the board computes for each axis, and the part of the correction that is applied; mm
+/// or deg.
 struct BoardState {
-  std::uint64_t fingerprint = 0;  // of the running image; 0: no image
+  std::uint64_t fingerprint = 0;  // fingerprint of the running correction image; 0: no image is running
   ImageState image = ImageState::kNone;
-  double since_s = 0;  // the board's t when it was taken over
-  double weight = 0;   // share of every correction that is in
+  double since_s = 0;  // time t of the board at which the running image became active
+  double weight = 0;   // share of all corrections that is applied, 0..1
   struct Axis {
     double wanted = 0, achieved = 0, weight = 0;
-    std::uint8_t limits = 0;  // AxisLimitFlag
+    std::uint8_t limits = 0;  // flags of the type AxisLimitFlag
   };
   std::vector<Axis> axes;
-  std::uint8_t settings = 0;  // SettingFlag
+  std::uint8_t settings = 0;  // flags of the type SettingFlag
 };
-/// Messages for the user about settings of the operator that are not stored, one line for each flag; empty if
-/// the settings are stored.
+/// Returns messages for the user about the operator's settings that the board has not stored, one line for
+/// each flag. The text is empty if all settings are stored.
 std::string settings_text(std::uint8_t settings);
-/// Returns "confirmed", "on trial", "lost" or "none". For limits of an axis: "at the image's limit, on its
-/// way" or empty.
+/// Returns the state of a correction image as a word: "confirmed", "on trial", "lost" or "none". limits_text
+/// returns the active limits of an axis, "at the image's limit, on its way", or an empty text.
 const char* name_of(ImageState image);
 std::string limits_text(std::uint8_t limits);
 
-/// Present contribution of one effect or table to the correction of an axis, before limits and ramps; mm or
-/// deg.
+/// Present contribution of one effect or table to the correction of an axis, before limits and ramps are
+/// applied; mm or deg.
 struct BoardShare {
   std::size_t axis = 0;
   std::string name;
   double correction = 0;
 };
 
-/// Counters of a board for its probe's line until a touch.
+/// Numbers of lost and rejected events at the signal of the touch probe, counted by the board until a touch.
 struct TouchTotals {
   std::uint32_t lost_edges = 0, lost_touches = 0, spikes = 0, missing = 0;
 };
 
-/// A touch of the probe; mm or deg.
+/// A touch of the probe that the board reported; positions in mm or deg.
 struct BoardTouch {
   std::uint64_t number = 0;
   double time_s = 0;
-  bool has_position =
-      false;  // false: an edge was lost, or the samples around it; the fields below `totals` are not valid
+  bool has_position = false;  // false: an edge of the probe signal or the position samples near it were lost;
+                              // the fields below `totals` are not valid
   TouchTotals totals;
   int bounces = 0;
-  std::vector<double> position, compensated, uncertainty;  // by axis
-  std::optional<std::array<double, 3>> workpiece;          // X, Y, Z, mm
+  std::vector<double> position, compensated, uncertainty;  // one value per axis
+  std::optional<std::array<double, 3>> workpiece;          // compensated position in workpiece coordinates,
+                                                           // X, Y, Z, mm
 };
 
-/// The requested touches, and the number of earlier touches that were overwritten.
+/// The requested touches of a board, and the number of earlier touches that the board has already
+/// overwritten.
 struct BoardTouches {
   std::vector<BoardTouch> touches;
   std::uint64_t next = 0;
   std::uint32_t lost = 0;
 };
 
-/// Required identity of a board; an empty name and no key require nothing.
+/// Identity that a board must have. If the name is empty and there is no key, every board is accepted.
 struct BoardClaim {
-  std::string name;                   // in its board file
-  std::optional<BoardPublicKey> key;  // of the board's own key pair
+  std::string name;                   // name of the board in its board file
+  std::optional<BoardPublicKey> key;  // public key of the board
   bool empty() const { return name.empty() && !key; }
 };
 
-/// Communicates with a board. Every call of Client throws InputError without a valid reply, and LimitNotMet
-/// with the board's reason if the board refuses.
+/// Client of a board: sends requests to the board and reads its replies. Each function of Client throws
+/// InputError if the board gives no valid reply, and LimitNotMet with the board's reason if the board refuses
+/// the request.
 class Client {
  public:
   explicit Client(std::unique_ptr<Transport> transport);
-  /// After this call, requests that must be signed are signed with this key; without a key no request is
-  /// signed.
+  /// Sets the key that signs all later requests that need a signature; without a key no request is signed.
   void sign_with(const std::optional<SigningKey>& key) { key_ = key; }
 
-  /// Requests the identity of the board. If the claim has a key, the board must sign a fresh nonce and its
-  /// name with that key. After this call, every signed request is valid only until the next start of the
-  /// board that gave this proof. A board that was restarted meanwhile must prove its identity again first. If
-  /// the claim has no key, only the name is compared. Throws LimitNotMet if the board is another board or
-  /// cannot prove its identity.
+  /// Asks the board for its identity and compares the identity with the claim. If the claim has a key, the
+  /// board must sign a new random nonce and its name with this key. After a proof by key, signed requests are
+  /// valid only for this board, and only until the board is restarted. A board that was restarted after its
+  /// proof must prove its identity again before it accepts a signed request. If the claim has no key, only
+  /// the name of the board is compared. Throws LimitNotMet if the board has another identity or cannot prove
+  /// its identity.
   void require_board(const BoardClaim& claim);
-  /// Returns the key of the board after the board signed a fresh nonce with it; `nullopt` if the board has no
-  /// key.
+  /// Returns the public key of the board after the board has signed a new random nonce with its key;
+  /// `nullopt` if the board has no key.
   std::optional<BoardPublicKey> proved_key();
 
   const BoardInfo& info() const { return info_; }
   BoardTick newest();
   BoardState state();
-  /// Ticks from number `first`, each `every`th.
+  /// Returns the stored control ticks of the board from number `first` on, only each `every`th tick.
   BoardHistory history(std::uint64_t first, std::uint16_t every);
   HealthRecord health();
-  /// Returns the shares of the running program; empty without a program, or if the program has just been
-  /// exchanged.
+  /// Returns the contributions of the effects and tables of the running correction program. The list is empty
+  /// if no program is running, or if the program was exchanged during the request.
   std::vector<BoardShare> shares();
   SlotsReply slots();
-  /// Sends an upload (tables/upload_format.h); the board checks it. The upload is on trial when the call
-  /// returns. progress: 0..1.
+  /// Sends an upload to the board, which checks it (format: tables/upload_format.h). When upload() returns,
+  /// the board uses the new correction image on trial. progress: function that gets the transmitted share,
+  /// 0..1.
   void upload(const std::vector<std::uint8_t>& bytes, const std::function<void(double)>& progress);
   void confirm();
   void revert();
-  /// The confirmed upload, header and image; empty without a confirmed image.
+  /// Returns the confirmed upload of the board (header and correction image), or nullopt if no image is
+  /// confirmed.
   std::optional<std::vector<std::uint8_t>> confirmed(const std::function<void(double)>& progress);
-  /// Sends a command, which the next tick executes. The mode and `refused_commands` show whether the board
-  /// accepted the command.
+  /// Sends a command, which the board executes in its next control tick. The mode and the counter
+  /// `refused_commands` of the board show whether the board accepted the command.
   void command(Command command);
   void weight(std::uint8_t axis, double share);
-  /// Returns touches from number `first`, as many as one reply contains; empty if no touch occurred since.
+  /// Returns the touches from number `first` on, as many as one reply of the board can contain. The list is
+  /// empty if the board has had no touch since.
   BoardTouches touches(std::uint64_t first);
-  /// Sets the location of the workpiece: origin in machine coordinates, mm; angle about Z, deg. Applies to
-  /// later touches.
+  /// Sets the location of the workpiece: origin in machine coordinates in mm, angle about Z in deg. The
+  /// location of the workpiece applies to later touches.
   void workpiece(const std::array<double, 3>& origin_mm, double angle_deg);
 
  private:
@@ -172,9 +180,10 @@ class Client {
   std::unique_ptr<Transport> transport_;
   std::optional<SigningKey> key_;
   BoardClaim claim_;
-  std::array<std::uint8_t, 16> proved_start_{};  // nonce of the start that proved the claim
+  /// Nonce of the board's start at which the board proved its identity
+  std::array<std::uint8_t, 16> proved_start_{};
   std::uint8_t sequence_ = 0;
-  std::uint32_t named_program_ = 0;  // whose share names are kept
+  std::uint32_t named_program_ = 0;  // number of the program whose names are in share_names_
   std::vector<std::string> share_names_;
   BoardInfo info_{};
 };

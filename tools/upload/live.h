@@ -7,20 +7,20 @@
 
 namespace vernier::upload {
 
-/// Present state of a board, for programs: mode, fault, axes, inputs, counters, latency, slots.
+/// Returns the present state of a board as JSON: mode, fault, axes, inputs, counters, latency, image slots.
 nlohmann::ordered_json live_json(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
                                  const SlotsReply& slots, const std::vector<BoardShare>& shares,
                                  const BoardState& state);
-/// True if a board has a confirmed correction image: in the store, or given at the start of the board
-/// (vernier-hal --image).
+/// Returns true if a board has a confirmed correction image: in its store, or given when the board was
+/// started (vernier-hal --image).
 bool has_confirmed(const SlotsReply& slots);
-/// Returns the text "0123456789abcdef is confirmed" with the state of the image in the store, or that no
-/// image is confirmed.
+/// Returns a text about the confirmed correction image: "0123456789abcdef is confirmed" with the state of the
+/// image in the store, or that no image is confirmed.
 std::string confirmed_text(const SlotsReply& slots);
 /// Returns the fingerprint of the confirmed correction image (16 hexadecimal digits); null if no image is
 /// confirmed.
 nlohmann::ordered_json confirmed_json(const SlotsReply& slots);
-/// Returns the live state for people, several lines, each with its line end.
+/// Returns the present state of a board as a text of several lines for the user.
 std::string live_text(const BoardInfo& info, const BoardTick& tick, const HealthRecord& health,
                       const SlotsReply& slots, const std::vector<BoardShare>& shares,
                       const BoardState& state);

@@ -9,13 +9,14 @@
 
 namespace vernier::upload {
 
-/// Checking an image and writing it to a slow medium takes a board some seconds; a small board at a serial
-/// line checks two signatures for the end of an upload, seconds each.
+/// Longest time in which a board must reply. A board may need some seconds to check an image and to write it
+/// to a slow medium. A small board at a serial line checks two signatures at the end of an upload, and each
+/// check takes some seconds.
 inline constexpr std::chrono::milliseconds kReplyDeadline{15'000}, kSerialReplyDeadline{60'000};
 
-/// Opens the connection to a board. wait: longest time until an answer is complete, independent of the
-/// intervals between its bytes (without a value: one of the deadlines above); over Modbus a request has two
-/// answers. Throws InputError naming the address.
+/// Opens the connection to a board. wait: longest time until a reply is complete, including all intervals
+/// between its bytes; without a value, one of the two deadlines above applies. Over Modbus, a request has two
+/// replies. Throws InputError with the address of the board if the connection fails.
 std::unique_ptr<Transport> open_transport(const BoardUrl& url,
                                           std::optional<std::chrono::milliseconds> wait = std::nullopt);
 

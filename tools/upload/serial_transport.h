@@ -8,8 +8,9 @@
 
 namespace vernier::upload {
 
-/// A board at a serial line of bytes (tables/serial_frame.h): serial://DEVICE[?baud=115200], 8N1, raw. wait:
-/// longest time until a reply is complete. Throws InputError naming the device.
+/// Opens the connection to a board at a serial line (frames of tables/serial_frame.h):
+/// serial://DEVICE[?baud=115200], 8N1, raw mode. wait: longest time until a reply of the board is complete.
+/// Throws InputError with the name of the device if the connection fails.
 std::unique_ptr<Transport> open_serial_transport(const BoardUrl& url, std::chrono::milliseconds wait);
 
 }  // namespace vernier::upload

@@ -7,13 +7,15 @@
 
 namespace vernier::upload {
 
-/// Sends one request to a board and returns its reply (tables/link_format.h).
+/// Connection that sends one request at a time to a board and returns the board's reply
+/// (tables/link_format.h).
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// request: at most kMaxRequestBytes. Throws InputError without a reply; the transport can be used again.
+  /// request: at most kMaxRequestBytes bytes. Throws InputError if the board does not reply; later requests
+  /// over the same connection are possible.
   virtual std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) = 0;
-  /// Waits before a busy board is asked again.
+  /// Waits for `time` before a request is sent again to a busy board.
   virtual void pause(std::chrono::milliseconds time) { std::this_thread::sleep_for(time); }
 };
 

@@ -9,57 +9,60 @@
 
 namespace vernier::vibration {
 
-/// Name of the displacement among the features of a signal.
+/// Name of the displacement in the list of the features of a signal.
 inline constexpr const char* kDisplacementName = "DISPLACEMENT";
 
-/// Method of the lower cut-off of a displacement: the board's filter, or the power of spectral
-/// lines.
+/// Method that removes low frequencies from a displacement: a cut-off frequency (the board's filter), or a
+/// least power of spectral lines.
 enum class Cut {
-  kCorner,  // comp/vibration/displacement.h, Hz: the value on the board at that moment
-  kPower,   // lines with |F|^2/N above it, (mm/s^2)^2: needs the whole record
+  kCorner,  // cut-off frequency in Hz of the filter comp/vibration/displacement.h; gives the displacement
+            // that the board has at that moment
+  kPower,   // least power |F|^2/N of a kept spectral line, (mm/s^2)^2; needs the whole record
 };
 
-/// Settings for the displacement of a record.
+/// Settings for the displacement that is computed from an acceleration record.
 struct DisplacementChoice {
   Cut cut = Cut::kPower;
-  std::optional<double> value;  // of the cut; no value: the noise floor of each signal (kPower only)
-  double resolution = 1e-5;     // of a sample in its signal's unit (kCorner), as on the board
+  std::optional<double> value;  // cut-off value; without a value, the noise floor of each signal is used
+                                // (only kPower)
+  double resolution = 1e-5;     // resolution of a sample in the unit of its signal (only kCorner), as on the
+                                // board
 };
 
-/// Displacement of one signal at each of its samples, um. The displacement is NaN where the board's filter
-/// has not reached its final value (three periods of the corner), or in the tapered ends of the record (a
-/// tenth at either end; kPower).
+/// Displacement of one acceleration signal at each of its samples, um. With kCorner, the displacement is NaN
+/// during the first three periods of the cut-off frequency, in which the board's filter settles. With kPower,
+/// the displacement is NaN in the first and last tenth of the record, which are tapered.
 struct DisplacementSeries {
   std::string name;
   std::vector<double> um;
-  double cut = 0;          // Hz or (mm/s^2)^2
-  std::size_t kept = 0;    // spectral lines (kPower)
-  std::uint32_t held = 0;  // samples beyond the range of the board's filter (kCorner)
+  double cut = 0;          // cut-off that was used, Hz or (mm/s^2)^2
+  std::size_t kept = 0;    // number of kept spectral lines (kPower)
+  std::uint32_t held = 0;  // number of samples outside the range of the board's filter (kCorner)
 };
 
-/// True if the signal is an acceleration (unit g, m/s^2, mm/s^2).
+/// Returns true if the signal is an acceleration (unit g, m/s^2 or mm/s^2).
 bool is_acceleration(const Signal& signal);
 
-/// Returns the displacement of an acceleration. Throws InputError for a signal of another unit,
-/// and for a corner or a resolution that comp/vibration/displacement.h refuses.
+/// Computes the displacement from an acceleration signal. Throws InputError if the unit is not that of an
+/// acceleration, or if comp/vibration/displacement.h does not accept the cut-off frequency or the resolution.
 DisplacementSeries displacement_of(const Signal& signal, double rate_Hz, const DisplacementChoice& choice);
 
-/// A signal whose displacement is known from another measurement at some of its samples, um; NaN:
-/// not measured.
+/// A signal whose displacement another instrument has measured at some of its samples, um; NaN: not measured.
 struct KnownDisplacement {
   std::string signal;
   std::vector<double> at_row_um;
 };
 
-/// Finds the value of the cut at which displacements and measurements agree best: least rms of their
-/// difference over all signals together, after removal of the mean difference of each signal. kCorner: 60
-/// corners, even in their logarithm, from the lowest for the length of the record (six periods) to rate/64.
-/// kPower: numbers of kept lines by 200 even steps of their logarithm. Throws InputError if fewer than three
-/// rows of a signal have both displacement and measurement.
+/// Finds the cut-off value with the least rms difference between computed and measured displacements over all
+/// signals. The mean difference of each signal is removed first. kCorner: the function tests 60 cut-off
+/// frequencies with equal ratios, from the lowest that the length of the record permits (six periods) to
+/// rate/64. kPower: the function tests up to 200 numbers of kept spectral lines, in equal steps of their
+/// logarithm. Throws InputError if a signal has fewer than three rows with a measured displacement, or if the
+/// record is too short for all tested cut-off frequencies.
 struct AgreedCut {
-  double value = 0, rms_um = 0;  // of the cut; of the remaining difference
+  double value = 0, rms_um = 0;  // best cut-off value, and rms of the remaining difference
   double measured_rms_um =
-      0;  // of the measurements about their mean: the difference without any displacement
+      0;  // rms of the measured displacements about their mean: the difference if no displacement is computed
 };
 AgreedCut agreed_cut(const VibrationRecord& record, const std::vector<KnownDisplacement>& known,
                      const std::vector<std::optional<std::size_t>>& ends, const DisplacementChoice& choice);

@@ -7,8 +7,8 @@
 
 namespace vernier::vibration {
 
-/// Fourier transform of real series of one length n >= 1 (FFTW). Plans are made once. Use a separate Fourier
-/// for each thread.
+/// Fourier transform of real series that all have the length n >= 1 (FFTW). The plans of FFTW are computed
+/// once, when the object is constructed. Each thread needs its own object of the class Fourier.
 class Fourier {
  public:
   explicit Fourier(std::size_t n);
@@ -16,9 +16,11 @@ class Fourier {
   Fourier(const Fourier&) = delete;
   Fourier& operator=(const Fourier&) = delete;
 
-  /// F[k] = sum x[i] exp(-2 pi j i k / n), k = 0 .. n/2; valid until the next call. x: n values.
+  /// Returns the spectrum F[k] = sum x[i] exp(-2 pi j i k / n), k = 0 .. n/2. The spectrum is valid until the
+  /// next call of forward or backward. x: n values.
   std::span<const std::complex<double>> forward(std::span<const double> x);
-  /// The series of the spectrum f (n/2 + 1 lines): backward(forward(x)) is x. Valid until the next call.
+  /// Returns the series whose spectrum is f (n/2 + 1 lines): backward(forward(x)) is x. The series is valid
+  /// until the next call of forward or backward.
   std::span<const double> backward(std::span<const std::complex<double>> f);
 
  private:

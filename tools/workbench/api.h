@@ -11,18 +11,20 @@
 
 namespace vernier::workbench {
 
-/// The requests of the page, without a network: files, commands, rows, predictions, terms, history, a board.
-/// A request that needs a file is answered by a separate process (FileReader), or by a command. May be called
-/// from several threads.
+/// Answers the requests of the workbench page (files, commands, rows, predictions, terms, history, a board).
+/// The code that answers the requests does not contain the network server. A request that needs the content
+/// of a file is answered by a separate process (FileReader) or by a command. Several threads may call the
+/// functions of Api.
 class Api {
  public:
-  /// directory: of the project. program: the `vernier` that runs commands. version: shown on the page.
-  /// commands: of that program, as CommandTable reads them. Throws InputError if the folder does not exist.
+  /// `directory`: folder of the project. `program`: path of the `vernier` program that runs commands.
+  /// `version`: version of the program, shown on the page. `commands`: the commands of this program, in the
+  /// form that CommandTable reads. Throws InputError if the project folder does not exist.
   Api(const std::string& directory, const std::string& program, std::string version,
       const nlohmann::ordered_json& commands);
 
-  /// Answers a request and never throws: bad input is 422 with {"message"}, an unknown path 404, an internal
-  /// error 500.
+  /// Answers a request and never throws an exception. The status is 422 with {"message"} for bad input, 404
+  /// for an unknown path, and 500 for an internal error.
   ApiReply reply(const ApiRequest& request);
 
  private:

@@ -4,8 +4,8 @@
 
 namespace vernier::workbench {
 
-/// workbench_page: the page of the workbench. The functions after it: its script (tools/workbench/web, one
-/// bundle) and its style sheet.
+/// Returns the HTML page of the workbench. workbench_script() returns the script of the page
+/// (tools/workbench/web, one bundle), and workbench_style() returns its style sheet.
 std::string_view workbench_page();
 std::string_view workbench_script();
 std::string_view workbench_style();

@@ -10,16 +10,17 @@
 
 namespace vernier::workbench {
 
-/// The server's side of a FileDesk in a separate process (`vernier workbench DIR --reader`). FileReader
-/// starts the process when needed, sends requests one by one, and starts a new process if one has ended. May
-/// be called from several threads.
+/// The part of the server that communicates with a FileDesk in a separate process (`vernier workbench DIR
+/// --reader`). FileReader starts this process when it is needed, sends the requests one by one, and starts a
+/// new process if the previous process has ended. Several threads may call the functions of FileReader.
 class FileReader {
  public:
-  /// patience_s: the process is ended if it gives no answer for this time.
+  /// `patience_s`: if the process gives no answer for this time, FileReader ends the process.
   FileReader(std::string program, const Project& project, double patience_s = 60)
       : program_(std::move(program)), project_(project), patience_s_(patience_s) {}
 
-  /// Answers like FileDesk::reply; 422 if the reading process ended because of the request.
+  /// Answers a request like FileDesk::reply. The status is 422 if the separate process ended because of the
+  /// request.
   ApiReply reply(const ApiRequest& request);
 
  private:
@@ -30,7 +31,7 @@ class FileReader {
   std::unique_ptr<Conversation> reader_;
 };
 
-/// The reading process: answers requests on `stream` until the stream ends.
+/// Main function of the separate process: answers requests on `stream` until the stream ends.
 void serve_files(const Project& project, int stream);
 
 }  // namespace vernier::workbench

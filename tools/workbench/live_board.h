@@ -9,8 +9,9 @@
 
 namespace vernier::workbench {
 
-/// Watches one board at a time, like `vernier watch`. A thread reads the state of the board kLiveRateHz times
-/// a second, stores the last states, and disconnects after kLetGoS without a request of the page.
+/// Monitors one board at a time, like the command `vernier watch`. A thread reads the state of the board
+/// kLiveRateHz times per second and stores the last states. The thread disconnects if the page sends no
+/// request for kLetGoS seconds.
 class LiveBoard {
  public:
   static constexpr double kLiveRateHz = 20, kLetGoS = 5;
@@ -20,9 +21,10 @@ class LiveBoard {
   LiveBoard(const LiveBoard&) = delete;
   LiveBoard& operator=(const LiveBoard&) = delete;
 
-  /// Returns pictures (live_json) with a number above `after`, each with `seq` and `at_s`: {"pictures":
-  /// [...], "error": text or null}. Returns when a picture is available, at most after half a second. A new
-  /// url disconnects the previous board. Throws InputError if the url is not an address of a board.
+  /// Returns the states of the board (live_json) with a number above `after`, each with `seq` and `at_s`:
+  /// {"pictures": [...], "error": text or null}. The function waits until a new state is available, at most
+  /// half a second. If `url` is different from the previous call, the previous board is disconnected. Throws
+  /// InputError if `url` is not the address of a board.
   nlohmann::ordered_json pictures(const std::string& url, std::uint64_t after);
 
  private:
@@ -30,7 +32,7 @@ class LiveBoard {
   void look(const std::string& url);
   void end();
 
-  std::mutex ending_;  // held while one watch is exchanged for another
+  std::mutex ending_;  // locked while the monitored board is replaced by another board
   std::mutex guard_;
   std::condition_variable changed_;
   std::thread thread_;

@@ -8,19 +8,19 @@
 
 namespace vernier::workbench {
 
-/// Largest body of a request, bytes.
+/// Largest permitted body of a request, bytes.
 inline constexpr std::size_t kMostBodyBytes = std::size_t{64} << 20;
 
-/// Returns 32 random bytes as hexadecimal digits, from the system's random numbers.
+/// Returns an access token: 32 random bytes from the operating system, as hexadecimal digits.
 std::string new_token();
 
-/// Serves the page and its API on 127.0.0.1. A request is answered only under three conditions. The request
-/// names this host and port (no other name for it: DNS rebinding), comes from no other origin, and carries
-/// the session's token as a cookie. The printed address sets the cookie once. A request that writes must also
-/// carry the header X-Vernier.
+/// HTTP server of the workbench page and its API, at the address 127.0.0.1. The server answers a request only
+/// if three conditions are met. The request names this host and port (protection against DNS rebinding), has
+/// no other origin, and contains the token of the session as a cookie. Opening the printed address sets this
+/// cookie once. A request that writes data must also have the header X-Vernier.
 class WorkbenchServer {
  public:
-  /// port 0: any free port. Throws InputError if the port is in use.
+  /// `port`: 0 selects any free port. Throws InputError if another program uses the port.
   WorkbenchServer(Api& api, std::uint16_t port);
   ~WorkbenchServer();
   WorkbenchServer(const WorkbenchServer&) = delete;
@@ -28,9 +28,9 @@ class WorkbenchServer {
 
   std::uint16_t port() const;
   const std::string& token() const;
-  /// Returns the address to open, with the token.
+  /// Returns the address of the page, with the token.
   std::string url() const;
-  /// Serves until stop(), which any thread may call.
+  /// Serves requests until stop() is called. Any thread may call stop().
   void serve();
   void stop();
 

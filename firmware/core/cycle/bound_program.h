@@ -10,15 +10,16 @@
 
 namespace vernier {
 
-/// Returns the axes and inputs of a correction image, in the order of the image: the wiring of a board made
-/// for this image.
+/// Returns the wiring (list of axes and inputs) of a board that is made for this image. The order is that of
+/// the correction image.
 Wiring wiring_of(const ImageView& view);
 
-/// A program, the state of its execution, and the devices of the board that the program uses. A BoundProgram
-/// is built outside the tick; Cycle::use() starts to use the BoundProgram within one tick. Refers to the
-/// image's bytes.
+/// A compiled correction program, the state of its execution, and the devices of the board that the program
+/// uses. A BoundProgram is built outside the tick. Cycle::use() then starts it within one tick. A
+/// BoundProgram contains pointers to the bytes of the image.
 struct BoundProgram {
-  /// The empty program, which is used if there is no image: it computes no correction.
+  /// Constructs the empty program, which computes no correction. The empty program is used if there is no
+  /// image.
   BoundProgram() noexcept : compensator(Program{}) {}
   /// Binds axis i and input i of the correction image to axis i and input i of the board. Not real-time safe.
   explicit BoundProgram(const ImageView& view) noexcept;
@@ -27,16 +28,18 @@ struct BoundProgram {
 
   Program program;
   Compensator compensator;
-  ShareProgram shares;                   // of the effects, for a live display
-  View<ShareName> share_names;           // one per share
-  std::uint32_t axis[kMaxAxes] = {};     // board's axis for each of the image
-  std::uint32_t input[kMaxInputs] = {};  // board's input for each of the image
-  bool reads_input[kMaxInputs] = {};     // per input of the image: whether its equation reads it
-  InputMicro reference[kMaxInputs];      // per input of the image: its value before the first reading
+  ShareProgram shares;                   // program for the shares of the effects, for a live display
+  View<ShareName> share_names;           // one name for each share
+  std::uint32_t axis[kMaxAxes] = {};     // for each axis of the image: index of the board's axis
+  std::uint32_t input[kMaxInputs] = {};  // for each input of the image: index of the board's input
+  bool reads_input[kMaxInputs] = {};     // for each input of the image: true if the equation uses the input
+  InputMicro reference[kMaxInputs];      // for each input of the image: value that is used before the first
+                                         // reading
 };
 
-/// Finds the axes and inputs of the correction image among those of the board, by name. bound: program made
-/// from the same view. offender: receives the name that does not fit. Not real-time safe.
+/// Finds the axes and inputs of the correction image among those of the board, by name. `bound`: a program
+/// made from the same view of the image. `offender`: receives the name of an axis or input of the image that
+/// the board does not have. Not real-time safe.
 BindFault bind(const ImageView& view, const Wiring& wiring, TimeUs tick, BoundProgram& bound, Name& offender);
 
 }  // namespace vernier

@@ -8,22 +8,22 @@
 
 namespace vernier {
 
-/// Time between two readings, in 1/256 of a tick; 256 if both readings came on time. A time of less than one
-/// tick counts as one tick, because the tick after a late tick reads positions that a controller sends at a
-/// constant rate.
+/// Time between two readings, in 1/256 of a tick. The time between two readings is 256 if both readings were
+/// on time. A time of less than one tick counts as one tick. Reason: after a late tick, the next tick reads
+/// positions that the controller sends at a constant rate.
 struct TicksQ8 {
   std::int32_t count = 256;
 };
 constexpr TicksQ8 kOneTick{256};
-/// Largest elapsed time that is used. A longer time is a fault, for example a clock that steps by a second.
-/// Sums of elapsed times fit 32 bits.
+/// Largest elapsed time that the firmware uses. A longer elapsed time is a fault, for example a clock that
+/// steps by a second. With the limit of the elapsed time, sums of elapsed times fit 32 bits.
 constexpr TicksQ8 kMostElapsed{1 << 20};
 
 /// Converts times to ticks without a division in the tick.
 class ElapsedTicks {
  public:
   ElapsedTicks() = default;
-  /// tick: 1 us .. 1 s. Not real-time safe.
+  /// `tick`: duration of a tick, 1 us to 1 s. Not real-time safe.
   explicit ElapsedTicks(TimeUs tick) noexcept
       : per_ns_(static_cast<std::int64_t>(
             quotient_of((std::uint64_t{256} << kShift) + 500 * static_cast<std::uint64_t>(tick.count),
@@ -40,11 +40,13 @@ class ElapsedTicks {
 
  private:
   static constexpr unsigned kShift = 24;
-  std::int64_t per_ns_ = 0;  // 256 / tick in ns, Q24: below 2^23, as a tick is 1 us at least
+  std::int64_t per_ns_ = 0;  // 256 / (duration of a tick in ns), Q24: below 2^23, because a tick has at least
+                             // 1 us
 };
 
-/// Returns 2^24 / elapsed, rounded down: the factor (Q16) that converts a travel to the travel per tick. Bit
-/// by bit, for targets without a divider. elapsed: 1 .. kMostElapsed. Real-time safe.
+/// Returns 2^24 / elapsed, rounded down. This quotient is the factor (Q16) that converts a travel since the
+/// last reading to a travel per tick. The quotient is computed bit by bit, for targets without a divider.
+/// `elapsed`: 1 to kMostElapsed. Real-time safe.
 constexpr std::int64_t per_tick_q16(TicksQ8 elapsed) noexcept {
   std::uint32_t rest = 0, quotient = 0;
   for (int bit = 24; bit >= 0; --bit) {

@@ -15,7 +15,7 @@
 
 namespace vernier {
 
-/// A value that one thread writes and other threads copy, word by word, without a lock. Real-time safe.
+/// A value that one thread writes and other threads read, word by word, without a lock. Real-time safe.
 template <class T>
 class AtomicWords {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(std::uint32_t) == 0);
@@ -37,13 +37,13 @@ class AtomicWords {
   std::array<std::atomic<std::uint32_t>, kWords> words_{};
 };
 
-/// A number that one thread counts up and other threads read. Needs no atomic of 64 bits, which small targets
-/// do not have. The writer stores the high half of the count before and after the low half. A reader that
-/// sees two different halves reads again, at most once in 2^32 counts.
+/// A counter that one thread increases and other threads read. SharedCount needs no 64-bit atomic, which
+/// small targets do not have. The writer stores the high half of the count before and after the low half. If
+/// a reader sees two different high halves, it reads again (at most once in 2^32 counts).
 class SharedCount {
  public:
-  /// Only one thread may call store(). A reader that sees the count also sees all earlier writes.
-  /// Real-time safe.
+  /// Only one thread may call store(). A reader that sees a new count also sees all earlier writes of the
+  /// writer. Real-time safe.
   void store(std::uint64_t count) noexcept {
     const auto high = static_cast<std::uint32_t>(count >> 32);
     after_.store(high, std::memory_order_release);
@@ -62,8 +62,9 @@ class SharedCount {
   std::atomic<std::uint32_t> before_{0}, low_{0}, after_{0};
 };
 
-/// The newest value of one writer. A reader always gets a complete value: if the writer wrote in between, the
-/// reader reads again. The writer never waits.
+/// The newest value of a variable with one writer and any number of readers. A reader always gets a complete
+/// value. If the writer wrote during the read, the reader reads again. The writer of a Published value never
+/// waits.
 template <class T>
 class Published {
  public:
@@ -75,7 +76,8 @@ class Published {
     value_.put(value);
     turn_.store(turn + 2, std::memory_order_release);
   }
-  /// Reads the newest value; false if the writer was faster in each of `tries` attempts. Not real-time safe.
+  /// Reads the newest value. Returns false if the writer changed the value during each of `tries` attempts.
+  /// Not real-time safe.
   bool read(T& value, int tries = 1000) const noexcept {
     for (int i = 0; i < tries; ++i) {
       const std::uint32_t before = turn_.load(std::memory_order_acquire);
@@ -94,13 +96,13 @@ class Published {
   AtomicWords<T> value_;
 };
 
-/// Stores the last values of one writer. A reader requests a value by its number. The reader gets the value,
-/// or the result that a newer value has overwritten the value. The writer of a History never waits and never
-/// fails: values that were not read in time are overwritten, and readers detect this.
+/// Stores the last values of one writer. A reader requests a value by its number. The reader receives the
+/// value, or the information that a newer value has overwritten it. The writer of a History never waits and
+/// never fails: values that were not read in time are overwritten, and readers detect this.
 template <class T>
 class History {
  public:
-  /// size: number of stored values, a power of two. Not real-time safe.
+  /// `size`: number of stored values, a power of two. Not real-time safe.
   explicit History(std::uint32_t size) : size_(size), values_(new AtomicWords<T>[size]) {}
 
   /// Only one thread may call add(). Real-time safe.
@@ -111,7 +113,7 @@ class History {
     values_[static_cast<std::uint32_t>(next) & (size_ - 1)].put(value);
     count_.store(next + 1);
   }
-  /// Returns the number of values added; value i can be read while i < count() <= i + size().
+  /// Returns the number of values that were added. Value i can be read while i < count() <= i + size().
   std::uint64_t count() const noexcept { return count_.load(); }
   std::uint32_t size() const noexcept { return size_; }
   /// Returns the number of the oldest value that can still be read.
@@ -119,8 +121,8 @@ class History {
     const std::uint64_t count = begun_.load();
     return count > size_ ? count - size_ : 0;
   }
-  /// Reads value `index`; false if the value is not written yet, or is already overwritten.
-  /// Not real-time safe.
+  /// Reads the value with number `index`. Returns false if this value was not yet written or is already
+  /// overwritten. Not real-time safe.
   bool read(std::uint64_t index, T& value) const noexcept {
     if (index >= count()) return false;
     const T copy = values_[static_cast<std::uint32_t>(index) & (size_ - 1)].get();
@@ -136,35 +138,37 @@ class History {
   std::unique_ptr<AtomicWords<T>[]> values_;
 };
 
-/// Start values of a tick, from which other threads compute the share of each effect.
+/// Start values of the equation in one tick. Other threads compute the share of each effect from these
+/// values.
 struct EquationRecord {
-  std::uint32_t programs = 0, reserved = 0;  // HealthRecord::programs: whose state it is
+  std::uint32_t programs = 0, reserved = 0;  // programs: HealthRecord::programs of the program to which this
+                                             // state belongs
   EquationState state;
 };
 
-/// All data that the tick exchanges with the rest of the daemon. Exchange has no locks: the tick never waits
-/// for another thread.
+/// All data that the tick exchanges with the other threads of the daemon. Exchange has no locks: the tick
+/// never waits for another thread.
 struct Exchange {
-  static constexpr std::uint32_t kHistory = 4096;  // ticks, about four seconds
+  static constexpr std::uint32_t kHistory = 4096;  // number of stored ticks, about four seconds
   static constexpr std::uint32_t kTouches = 256;
 
   Published<HealthRecord> health;
   Published<StateRecord> state;
-  Published<EquationRecord> equation;  // ten a second
+  Published<EquationRecord> equation;  // published ten times a second
   History<TickRecord> ticks;
   History<TouchRecord> touches;
-  Published<WorkpieceFrame> workpiece;           // written by the links
-  std::atomic<Command> command{Command::kNone};  // taken by the tick
+  Published<WorkpieceFrame> workpiece;           // written by the thread of the links
+  std::atomic<Command> command{Command::kNone};  // executed by the tick
   std::atomic<std::int32_t> axis_weight[kMaxAxes];
-  // State of the mode in the form of the store (OperatorState): bit 0 out, bit 8 holding, from bit 16 the
-  // latched fault.
+  // Operator settings in the form of the store (OperatorState): bit 0 deactivated, bit 8 holding, from bit 16
+  // the latched fault.
   std::atomic<std::uint32_t> operator_said{0};
-  std::atomic<std::uint32_t> setting_flags{0};  // SettingFlag, written by the context of the store
-  std::atomic<BoundProgram*> offered{nullptr};  // to be taken over by the next tick
-  std::atomic<BoundProgram*> retired{nullptr};  // was taken out; the owner may free it
+  std::atomic<std::uint32_t> setting_flags{0};  // SettingFlag, written by the thread of the store
+  std::atomic<BoundProgram*> offered{nullptr};  // program that the next tick starts to use
+  std::atomic<BoundProgram*> retired{nullptr};  // program that the tick no longer uses; its owner may free it
 
-  /// ticks_kept, touches_kept: numbers of ticks and touches that the Exchange stores, powers of two. The
-  /// constructor takes all memory. Not real-time safe.
+  /// `ticks_kept`, `touches_kept`: numbers of ticks and touches that the Exchange stores, powers of two. The
+  /// constructor allocates all memory. Not real-time safe.
   explicit Exchange(std::uint32_t ticks_kept = kHistory, std::uint32_t touches_kept = kTouches)
       : ticks(ticks_kept), touches(touches_kept) {
     for (auto& weight : axis_weight) weight.store(kFullWeight.count);

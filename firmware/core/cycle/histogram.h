@@ -5,12 +5,12 @@
 
 namespace vernier {
 
-/// Histogram of durations in a fixed memory: exact below 2^(kOctaveBits + 1) ns, then 2^kOctaveBits bins per
-/// octave, to 2^40 ns. The count of a bin saturates.
+/// Histogram of durations with a fixed memory. Bins are exact below 2^(kOctaveBits + 1) ns; above, each
+/// octave has 2^kOctaveBits bins, up to 2^40 ns. The count of a bin stops at its largest value.
 template <unsigned kOctaveBits>
 class HistogramOf {
  public:
-  /// ns: negative counts as 0. Real-time safe.
+  /// `ns`: duration; a negative duration counts as 0. Real-time safe.
   void add(std::int64_t ns) noexcept {
     const auto value = static_cast<std::uint64_t>(ns < 0 ? 0 : ns);
     std::uint32_t& bin = bins_[bin_of(value < kLimit ? value : kLimit - 1)];
@@ -24,10 +24,11 @@ class HistogramOf {
   std::int64_t last_ns() const noexcept { return last_; }
 
   /// Returns the upper edge of the bin that contains the given share of all durations, at most the largest
-  /// duration; 0 if the histogram is empty. per_million: 990000 for p99. realtime, one pass over the bins.
+  /// duration; 0 if the histogram is empty. `per_million`: share of the durations in 1e-6, for example 990000
+  /// for the 99 % percentile. realtime, one pass over the bins.
   std::int64_t percentile_ns(std::uint64_t per_million) const noexcept {
-    // The rank is rounded up: for few values, the percentile is one of the values, and not a value below all
-    // of them. The function has no division, because the tick calls it. Counts stay below 2^44.
+    // The rank is rounded up. For only a few values, the percentile is therefore one of the values. The
+    // function contains no division, because the tick calls this function. The counts are below 2^44.
     const std::uint64_t wanted = count_ * per_million;
     std::uint64_t seen = 0;
     for (std::uint32_t bin = 0; bin < kBins; ++bin) {
@@ -60,8 +61,8 @@ class HistogramOf {
   std::int64_t max_ = 0, last_ = 0;
 };
 
-/// Bins per octave, as a power of two. 6 gives 64 bins (1.6 %) and 9 KB per histogram; a small target sets a
-/// smaller number.
+/// Number of bins per octave, as a power of two. The value 6 gives 64 bins per octave (1.6 %) and 9 KB per
+/// histogram. A small target sets a smaller number.
 #ifndef VERNIER_HISTOGRAM_OCTAVE_BITS
 #define VERNIER_HISTOGRAM_OCTAVE_BITS 6
 #endif

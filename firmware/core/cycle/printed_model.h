@@ -6,9 +6,9 @@
 
 namespace vernier {
 
-/// The machine model that is built into this firmware (CMake: -DVERNIER_MODEL=DIR of `vernier compile -o
-/// DIR`). A correction image with the same equation as the built-in machine runs in the compiled form; any
-/// other image is interpreted. equation: null if the firmware was built without a machine.
+/// The machine model that is compiled into this firmware (CMake: -DVERNIER_MODEL=DIR of `vernier compile -o
+/// DIR`). If a correction image has the same equation as this machine, the board executes the compiled form.
+/// Any other image is interpreted. `equation`: null if no machine is compiled into the firmware.
 struct PrintedModel {
   std::uint64_t fingerprint = 0;
   PrintedEquation equation = nullptr;

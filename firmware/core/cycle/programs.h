@@ -10,20 +10,22 @@
 
 namespace vernier {
 
-/// Memory for one upload: header, image, and bound program. The bytes are in memory that is allocated at the
-/// construction of the board.
+/// Memory for one uploaded image: its header, the image, and the bound program. The memory for the bytes is
+/// allocated when the board is constructed.
 struct LoadedProgram {
   UploadHeader header{};
   std::unique_ptr<std::uint64_t[]> words;
   ImageView view;
-  BoundProgram bound;                    // the tick's, and the guardian's before and after
-  std::uint32_t axis[kMaxAxes] = {};     // board's axis for each of the image
-  std::atomic<std::uint32_t> number{0};  // of the take-over by the tick; 0: never
-  TimeUs trial_time;                     // of a trial
+  BoundProgram bound;                 // used by the tick while the program runs, and by the guardian
+                                      // before and after
+  std::uint32_t axis[kMaxAxes] = {};  // for each axis of the image: index of the board's axis
+  /// Number that the program received when the tick started it; 0: the tick never used it
+  std::atomic<std::uint32_t> number{0};
+  TimeUs trial_time;  // duration of a trial
   std::atomic<bool> taken{false};
 
   std::uint8_t* image() noexcept { return reinterpret_cast<std::uint8_t*>(words.get()); }
-  /// Binds the program again from its image; all state of its execution is new. Not real-time safe.
+  /// Binds the program again from its image. The state of its execution starts again. Not real-time safe.
   void start_anew() noexcept;
 };
 struct GiveBack {
@@ -34,65 +36,67 @@ struct GiveBack {
 /// A LoadedProgram in use; its memory becomes free when this object is destroyed.
 using ProgramRef = std::unique_ptr<LoadedProgram, GiveBack>;
 
-/// State of the trial of an image. The comment of each state names the part of the firmware that may end the
-/// state.
+/// State of the trial of an image on the board. The comment of each state names the part of the firmware that
+/// may end this state.
 enum class Trial : std::uint8_t {
-  kNone,        // the store, by run_trial()
-  kRunning,     // the guardian when its time is over; the store when it is to be kept
-  kConfirming,  // the store: it is being written down that the image is kept, however long that takes
-  kKept,        // the guardian: it now goes back to this one
-  kOver,        // the store, when the record says that the image was reverted
+  kNone,        // ended by the store, with run_trial()
+  kRunning,     // ended by the guardian when the trial time is over; by the store when the image is confirmed
+  kConfirming,  // ended by the store, after the record of the confirmation is written; there is no time limit
+  kKept,        // ended by the guardian, for which this image becomes the image to return to
+  kOver,        // ended by the store, when the record of the revert is written
 };
 
-/// The programs of a board: the running program, and the program to which the board returns. Three parts of
-/// the firmware use Programs; none of them waits for another:
-///   the store checks images and starts them or their trial;
-///   the guardian hands programs to the tick and ends trials on time, from memory alone;
+/// The programs of a board: the running program, and the program to which the board returns after a failed
+/// trial. Three parts of the firmware use Programs, and none of them waits for another part:
+///   the store checks images and starts an image or its trial;
+///   the guardian gives programs to the tick and ends trials on time, without access to the medium;
 ///   the links read the running program.
 class Programs {
  public:
-  /// Three places: the running program, the program to which the board returns, and a program that is being
-  /// received.
+  /// Smallest number of program memories: for the running program, for the program to which the board
+  /// returns, and for a program that is being received.
   static constexpr std::uint32_t kFewest = 3;
 
-  /// exchange: outlives this object; image_bytes: size of the largest image. Takes memory for all places.
-  /// Not real-time safe.
+  /// `exchange`: must exist longer than this object; `image_bytes`: size of the largest image. The
+  /// constructor allocates the memory of all programs. Not real-time safe.
   Programs(Exchange& exchange, std::uint32_t places, std::uint32_t image_bytes);
 
-  // ---- the store
-  /// Null if every place is in use.
+  // ---- functions for the store
+  /// Returns a free program memory; null if every memory is in use.
   ProgramRef take() noexcept;
   std::uint32_t image_bytes() const noexcept { return image_bytes_; }
-  /// Passes the confirmed image to the tick when the board starts.
+  /// Gives the confirmed image to the tick when the board starts.
   void run_confirmed(ProgramRef program) noexcept;
-  /// Starts the trial of an image. The trial ends at the time trial_time after the guardian passes the
-  /// program to the tick. Call run_trial() only in Trial::kNone.
+  /// Starts the trial of an image. The trial ends when `trial_time` has passed since the guardian gave the
+  /// program to the tick. Call run_trial() only in the state Trial::kNone.
   void run_trial(ProgramRef program, TimeUs trial_time) noexcept;
-  /// Begins to confirm the image on trial: the trial time stops. False if no image is on trial any more.
+  /// Begins the confirmation of the image on trial and stops the trial time. The function begin_to_keep()
+  /// returns false if no image is on trial any more.
   bool begin_to_keep() noexcept { return change(Trial::kRunning, Trial::kConfirming); }
-  /// Ends a confirmation. written: true if the medium has the record that the correction image is confirmed,
-  /// false if the record could not be written. Call kept() only after begin_to_keep().
+  /// Ends the confirmation of an image. `written`: true if the medium contains the record that the correction
+  /// image is confirmed; false if the record could not be written. Call kept() only after begin_to_keep().
   void kept(bool written) noexcept { trial_.store(written ? Trial::kKept : Trial::kRunning); }
-  /// The image on trial is reverted with the guardian's next round.
+  /// Requests that the guardian reverts the image on trial in its next call.
   bool give_up() noexcept;
-  /// True if give_up() was called and is not executed yet.
+  /// True if give_up() was called and the guardian has not yet executed it.
   bool giving_up() const noexcept { return to_give_up_.load() && trial_.load() == Trial::kRunning; }
-  /// The revert of the last trial is recorded. Only in Trial::kOver.
+  /// States that the revert of the last trial is recorded on the medium. Call given_up() only in the state
+  /// Trial::kOver.
   void given_up() noexcept { trial_.store(Trial::kNone); }
 
-  // ---- the guardian
-  /// Hands the next program to the tick and ends a trial whose time is over. now: time of the clock of
-  /// run_trial(). guard() never waits.
+  // ---- functions for the guardian
+  /// Gives the next program to the tick, and ends a trial whose time is over. `now`: time of the clock that
+  /// run_trial() uses. The function guard() never waits.
   void guard(TimeUs now) noexcept;
 
-  // ---- the links
-  /// Returns the running program, null before the first program. The program is not removed until
-  /// look_away(). Only one caller at a time may use look().
+  // ---- functions for the links
+  /// Returns the running program; null before the first program. The program is not freed until look_away()
+  /// is called. Only one thread at a time may call look().
   const LoadedProgram* look() noexcept;
   void look_away() noexcept { looked_at_.store(nullptr); }
 
   Trial trial() const noexcept { return trial_.load(); }
-  /// Returns the remaining time of the trial; `whole` if the trial has not begun.
+  /// Returns the remaining time of the trial; the time `whole` if the trial has not begun.
   TimeUs trial_left(TimeUs now, TimeUs whole) const noexcept;
 
  private:
@@ -108,17 +112,18 @@ class Programs {
   Exchange& exchange_;
   std::uint32_t places_, image_bytes_;
   std::unique_ptr<LoadedProgram[]> programs_;
-  std::unique_ptr<bool[]> owned_;  // by the guardian
+  std::unique_ptr<bool[]> owned_;  // flags of the programs that the guardian owns
   std::atomic<Trial> trial_{Trial::kNone};
   std::atomic<bool> to_give_up_{false};
   std::atomic<LoadedProgram*> confirmed_in_{nullptr}, trial_in_{nullptr};
   std::atomic<const LoadedProgram*> seen_{nullptr}, looked_at_{nullptr};
   std::uint32_t taken_over_ = 0;
-  SharedCount until_us_;  // of the trial; 0: no trial. Used by the guardian
-  // Pointers that the guardian uses. Several of these pointers can point to the same program.
+  SharedCount until_us_;  // end of the trial; 0: no trial. Used by the guardian
+  // Pointers to programs that only the guardian uses. Several of these pointers can point to the same
+  // program.
   LoadedProgram *running_ = nullptr, *offered_ = nullptr, *wanted_ = nullptr, *kept_ = nullptr,
                 *tried_ = nullptr;
-  LoadedProgram empty_[2];  // removes all corrections if no image can be restored
+  LoadedProgram empty_[2];  // program that removes all corrections if no image can be restored
 };
 
 }  // namespace vernier

@@ -4,8 +4,8 @@
 
 namespace vernier {
 
-/// Returns a / b rounded down, computed bit by bit: for set-up, on targets that have no divider of 64 bits.
-/// b: 1 .. 2^63. Not real-time safe.
+/// Returns a / b rounded down, computed bit by bit. This division is used during set-up on targets without a
+/// 64-bit divider. `b`: 1 to 2^63. Not real-time safe.
 constexpr std::uint64_t quotient_of(std::uint64_t a, std::uint64_t b) noexcept {
   std::uint64_t quotient = 0, rest = 0;
   for (int bit = 63; bit >= 0; --bit) {

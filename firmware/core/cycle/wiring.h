@@ -9,7 +9,8 @@
 
 namespace vernier {
 
-/// A name as in images: at most kImageNameBytes - 1 characters, longer names are cut.
+/// A name with the length limit of images: at most kImageNameBytes - 1 characters. Longer names are
+/// truncated.
 class Name {
  public:
   constexpr Name() = default;
@@ -21,7 +22,8 @@ class Name {
   constexpr bool empty() const noexcept { return size_ == 0; }
   constexpr std::uint32_t size() const noexcept { return size_; }
   constexpr operator std::string_view() const noexcept { return {text_, size_}; }
-  /// Appends a digit or a letter; the character is omitted if there is no room. Not real-time safe.
+  /// Appends a digit or a letter. If the name has its largest length, the character is omitted. Not real-time
+  /// safe.
   constexpr void add(char letter) noexcept {
     if (size_ + 1 < sizeof(text_)) text_[size_++] = letter;
   }
@@ -40,8 +42,8 @@ class Name {
   std::uint32_t size_ = 0;
 };
 
-/// A list of at most kMost values, without heap memory. Values beyond kMost are dropped: the caller checks
-/// the number before.
+/// A list of at most kMost values, without heap memory. Values beyond kMost are ignored; therefore the caller
+/// must check the number of values before.
 template <class T, std::uint32_t kMost>
 class FixedList {
  public:
@@ -63,14 +65,14 @@ class FixedList {
   std::uint32_t size_ = 0;
 };
 
-/// Names of the devices of a board, in the order of the devices. Images refer to axes and inputs by name; the
-/// wiring finds the device of a name.
+/// Names of the devices of a board, in the order of the devices. Images refer to axes and inputs by name. The
+/// wiring gives the device of each name.
 struct Wiring {
   struct Axis {
     Name name;
     bool rotary = false, rollover = false;
-    // The controller continues to count whole turns: a correction image fits whether its axis rolls over or
-    // not.
+    // true: the controller counts whole turns without a reset, so that an image fits with and without
+    // rollover of its axis
     bool continuous = false;
   };
   FixedList<Axis, kMaxAxes> axes;

@@ -4,11 +4,12 @@
 
 namespace vernier {
 
-/// Verifies a signature: Ed25519 in its pre-hashed form (RFC 8032 section 5.1, Ed25519ph, empty context).
-/// Implementation for targets without a cryptographic library: integers only, no heap, 7 KB of stack. The
-/// message is given in two parts, one after the other. key: 32 bytes; signature: 64. The function refuses a
-/// key or R of small order and an encoding that is not canonical, as libsodium does. The time of the
-/// verification is not constant: the function handles no secret data. Not real-time safe.
+/// Verifies a signature by Ed25519 in its pre-hashed form (RFC 8032 section 5.1, Ed25519ph, empty context).
+/// This implementation of Ed25519 is for targets without a cryptographic library. This implementation of
+/// Ed25519 uses only integers, no heap, and 7 KB of stack. The signed message is given in two parts, one
+/// after the other. `key`: 32 bytes; `signature`: 64 bytes. The function refuses a key or R of small order
+/// and an encoding that is not canonical, as libsodium does. The computing time is not constant, because the
+/// function handles no secret data. Not real-time safe.
 bool ed25519ph_fits(const std::uint8_t* first, std::uint32_t first_bytes, const std::uint8_t* second,
                     std::uint32_t second_bytes, const std::uint8_t* signature,
                     const std::uint8_t* key) noexcept;

@@ -8,22 +8,23 @@ namespace vernier {
 /// A public key and the rights of its owner.
 struct TrustedKey {
   PublicKey key{};
-  Name name;  // for people: whose it is
+  Name name;  // name of the owner, for people
   bool command = true, upload = true;
-  bool retired = false;  // images confirmed with it still run; no new image is accepted
+  bool retired = false;  // true: images that were confirmed with this key still run, but no new image is
+                         // accepted
 };
 
 /// Identity of a board, and the keys that the board trusts.
 struct BoardIdentity {
   static constexpr std::uint32_t kMostKeys = 8;
-  Name board, board_class;  // what an image may be signed for
+  Name board, board_class;  // name and class of the board for which an image may be signed
   FixedList<TrustedKey, kMostKeys> keys;
 
   BoardIdentity() = default;
   /// Constructs a board without a name that trusts one key with all rights.
   BoardIdentity(const PublicKey& key) { keys.push_back(TrustedKey{key, {}}); }  // NOLINT: one is the other
 
-  /// Returns the key that begins with these bytes; null: no such key.
+  /// Returns the trusted key that begins with the given bytes; null if there is no such key.
   const TrustedKey* find(const std::uint8_t* first_bytes, std::uint32_t size) const noexcept;
 };
 

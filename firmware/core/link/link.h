@@ -8,41 +8,42 @@
 
 namespace vernier {
 
-/// Answers the requests of tables/link_format.h on any medium. A link runs outside the tick; each byte of a
-/// request is untrusted until it is checked.
+/// Answers the requests of tables/link_format.h over any medium. A link runs outside the tick. A link checks
+/// each byte of a request before it uses the byte.
 class Link {
  public:
-  /// All arguments outlive the link. identity: reported by HelloReply. Not real-time safe.
+  /// All arguments must exist longer than the link. `identity`: identity of the board, which HelloReply
+  /// contains. Not real-time safe.
   Link(Exchange& exchange, Uploader& uploader, const Wiring& wiring, TimeUs tick,
        const BoardIdentity& identity);
 
-  /// Answers one request. request: any bytes; reply: room for kMaxReplyBytes. answer() returns the bytes of
-  /// the reply, 0 if the request is too short for an answer. now: time of the uploader's clock. Not real-time
-  /// safe.
+  /// Answers one request. `request`: any bytes; `reply`: memory for kMaxReplyBytes bytes. answer() returns
+  /// the number of bytes in the reply; 0 if the request is too short for an answer. `now`: time of the clock
+  /// that the uploader uses. Not real-time safe.
   std::uint32_t answer(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, TimeUs now);
 
-  /// True if the request needs the medium. The store then answers the request and may wait for the medium.
-  /// Not real-time safe.
+  /// True if the board must access the medium (storage) to execute the request. For a request that needs the
+  /// medium, the store answers and may wait. Not real-time safe.
   static bool needs_store(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// True if the request is, or may contain (signed), a request for the store or a step of an upload.
-  /// may_need_store() is always false while the store works on a request. Not real-time safe.
+  /// True if the request is for the store or is a step of an upload, or if a signed request may contain such
+  /// a request. While the store works on a request, may_need_store() returns false. Not real-time safe.
   static bool may_need_store(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// True if the request sets something that a start of the board restores. Not real-time safe.
+  /// True if the request changes a setting that the board restores at its next start. Not real-time safe.
   static bool is_setting(const std::uint8_t* request, std::uint32_t size) noexcept;
-  /// The reply "ask again": the board sends this reply if a request arrives while the store is busy. Not
-  /// real-time safe.
+  /// Writes the reply "ask again" (kNotReady). The board sends it if a request arrives while the store is
+  /// busy. Not real-time safe.
   static std::uint32_t answer_busy(const std::uint8_t* request, std::uint8_t* reply) noexcept {
     return answer_with(LinkStatus::kNotReady, request, reply);
   }
-  /// A reply without payload. request: two bytes at least. Not real-time safe.
+  /// Writes a reply that contains only a status. `request`: at least two bytes. Not real-time safe.
   static std::uint32_t answer_with(LinkStatus status, const std::uint8_t* request,
                                    std::uint8_t* reply) noexcept;
 
-  /// The live registers for Modbus masters that use only registers; values: kLiveRegisters. Not real-time
-  /// safe.
+  /// Sets the live registers for Modbus masters that use only registers. `values`: kLiveRegisters values. Not
+  /// real-time safe.
   void fill_registers(std::uint16_t* values);
-  /// Passes on a command of a Modbus master that uses only registers. The command is refused if the number is
-  /// not a command, or if the tick has not executed the previous command. Not real-time safe.
+  /// Executes a command from a Modbus master that uses only registers. The command is refused if the number
+  /// is not a command, or if the tick has not executed the previous command. Not real-time safe.
   LinkStatus give(std::uint8_t command);
 
  private:
@@ -57,7 +58,7 @@ class Link {
   LinkStatus slots(Writer& out, TimeUs now) const;
   LinkStatus read(Reader& in, Writer& out);
   LinkStatus weight(Reader& in);
-  /// The program of the tick.
+  /// The program that the tick executes.
   struct Running {
     std::uint64_t fingerprint = 0;
     ImageState image = ImageState::kNone;
@@ -80,7 +81,7 @@ class Link {
   const Wiring& wiring_;
   TimeUs tick_;
   const BoardIdentity& identity_;
-  // Memory for the shares, which are computed on request.
+  // Memory for the shares of the effects, which are computed on request.
   EquationRecord equation_;
   std::int32_t registers_[kMaxRegisters];
   Correction shares_[kMaxShares];

@@ -9,9 +9,10 @@
 
 namespace vernier {
 
-/// Reads the record of a place. Erased flash reads as ones: not written. A store of an earlier version may
-/// have no such place. A place with more bytes than a record was not written by this board: written, without
-/// a record. Not real-time safe.
+/// Reads the record at a numbered place of a slot store. Erased flash memory reads as ones. A place whose
+/// bits are all one counts as not written. A store of an earlier version may not have this place. If a place
+/// has more bytes than a record, this board did not write it. The place then counts as written, without a
+/// record. Not real-time safe.
 template <class Record>
 StoredPlace<Record> read_place(SlotStore& store, std::uint32_t number) noexcept {
   constexpr std::uint8_t kErased = 0xff;

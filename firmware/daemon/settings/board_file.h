@@ -13,14 +13,15 @@ namespace vernier {
 /// Entry of one axis or one input of the board file.
 struct AxisEntry {
   Wiring::Axis wiring;
-  double low = 0, high = 0;  // mm or deg; travel, and range of a simulated axis
-  std::string default_step;  // text of a default of max_step, if max_step is not given for a real output
+  double low = 0, high = 0;  // limits of the travel and of a simulated axis, mm or deg
+  std::string default_step;  // text for a default of max_step, used if max_step is not given for a real
+                             // output
   SignalSource position, output;
 };
 struct InputEntry {
   std::string name, unit;
   SignalSource source;
-  double reference = 0;  // reading of a simulated one
+  double reference = 0;  // constant reading of a simulated input
 };
 
 /// Entry of a link of the board file, with the rights of the link.
@@ -32,21 +33,22 @@ struct LinkEntry {
 /// Contents of a board file (TOML) after reading and checking; tools/docs/board.md describes the file.
 struct BoardFile {
   std::string path;
-  std::string store;  // directory of the slots
+  std::string store;  // directory with the image slots
   std::uint32_t slot_bytes = 1u << 20;
   ServiceOptions service;
   std::vector<AxisEntry> axes;
   std::vector<InputEntry> inputs;
-  SignalSource probe;                  // line of the touch probe; its delay is in `service`
-  SignalSource sync;                   // of the ticks
-  SignalSource enable, healthy;        // digital lines from and to the machine's controller
-  std::vector<LinkEntry> links;        // kind: "modbus-tcp", "modbus-rtu", "isotp"
-  int priority = 80;                   // SCHED_FIFO
-  std::string watchdog;                // device of a hardware watchdog; empty: no watchdog
-  std::vector<std::string> key_files;  // public keys, read already
+  SignalSource probe;                  // signal line of the touch probe; its delay is in `service`
+  SignalSource sync;                   // sync signal of the ticks
+  SignalSource enable, healthy;        // digital lines from and to the controller of the machine
+  std::vector<LinkEntry> links;        // kinds: "modbus-tcp", "modbus-rtu", "isotp"
+  int priority = 80;                   // priority in SCHED_FIFO
+  std::string watchdog;                // device of a hardware watchdog; empty if there is none
+  std::vector<std::string> key_files;  // files of public keys, which are already read
 };
 
-/// Reads and checks a board file and the key files that it names. Throws BoardError. Not real-time safe.
+/// Reads and checks a board file and the key files that it names. Throws BoardError if a file is not valid.
+/// Not real-time safe.
 BoardFile read_board_file(const std::string& path);
 
 }  // namespace vernier

@@ -8,13 +8,14 @@
 
 namespace vernier {
 
-/// The board's own key in two files of the store: `identity.key` (64 bytes, readable by its owner only) and
-/// `identity.pub` (for people and for `vernier fleet add --board-key`).
+/// The private key of the board, in two files of the store: `identity.key` (64 bytes, readable only by its
+/// owner) and `identity.pub` (for people and for `vernier fleet add --board-key`).
 class BoardKey final : public IdentityKey {
  public:
-  /// Reads the key of a store, or makes a key if the store has none. The secret half is on the medium before
-  /// the constructor returns. store: directory that can be written. Throws BoardError if the key cannot be
-  /// read or made, is not a key, or if other users may read it. Not real-time safe.
+  /// Reads the key of a store. If the store has no key, a new key is created. A new private key is on the
+  /// medium before the constructor returns. `store`: a directory in which files can be written. Throws
+  /// BoardError if the key cannot be read or created, is not a valid key, or is readable by other users. Not
+  /// real-time safe.
   explicit BoardKey(const std::string& store);
   ~BoardKey() override;
   BoardKey(const BoardKey&) = delete;
@@ -22,7 +23,7 @@ class BoardKey final : public IdentityKey {
 
   const std::uint8_t* public_half() const noexcept override { return public_.data(); }
   HalFault sign(const std::uint8_t* message, std::uint32_t size, std::uint8_t* signature) noexcept override;
-  /// The public half as 64 hexadecimal digits. Not real-time safe.
+  /// Returns the public key as 64 hexadecimal digits. Not real-time safe.
   std::string text() const;
 
  private:

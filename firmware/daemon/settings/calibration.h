@@ -6,37 +6,43 @@
 
 namespace vernier {
 
-/// Reading of an instrument at an axis while the output of the axis had a constant code.
+/// A calibration point of an analogue output: reading of an instrument at the axis while the output has a
+/// constant code.
 struct CalibrationPoint {
   std::int64_t code = 0;
-  double measured = 0;  // um of a linear axis, arcsec of a rotary one; 0 is without a correction
+  double measured = 0;  // reading of the instrument: um for a linear axis, arcsec for a rotary axis; 0
+                        // without a correction
 };
 
-/// Gain and zero of an output with their standard uncertainties, from a straight line through the points.
+/// Gain and zero of an analogue output with their standard uncertainties, from a straight line through the
+/// calibration points.
 struct Calibration {
-  double span = 0, span_std = 0;  // mm or deg that `codes` codes are
+  double span = 0, span_std = 0;  // change in mm or deg for the number `codes` of codes
   double zero = 0, zero_std = 0;  // code at which the instrument reads 0
-  bool inverted = false;          // the measured value falls as the code rises
-  double residual = 0;  // rms of measured - line, with the freedom of the line taken off; um or arcsec
-  double worst = 0;     // largest of them
+  bool inverted = false;          // true: the measured value decreases as the code increases
+  double residual = 0;  // rms difference between reading and line, corrected for the degrees of freedom of
+                        // the line; um or arcsec
+  double worst = 0;     // largest difference between reading and line
   std::size_t points = 0;
 };
 
-/// Fits a line to the points by least squares. codes: number of codes of the whole span. Throws BoardError:
-/// fewer than three points, only one code, a slope smaller than five times its uncertainty. Not real-time
-/// safe. Source: JCGM 100:2008, H.3 (calibration line).
+/// Fits a straight line to the calibration points by least squares. `codes`: number of codes of the whole
+/// span. Throws BoardError if there are fewer than three points, if all points have one code, or if the slope
+/// is smaller than five times its uncertainty. Not real-time safe. The method is that of JCGM 100:2008, H.3
+/// (calibration line).
 Calibration fit_calibration(const std::vector<CalibrationPoint>& points, std::int64_t codes, bool rotary);
 
-/// Reads a file with the header "code,measured[um]" (rotary: "code,measured[arcsec]") and one point per line;
-/// # begins a comment. Throws BoardError with file and line. Not real-time safe.
+/// Reads a file with the header "code,measured[um]" (rotary axis: "code,measured[arcsec]") and one point per
+/// line. The character # begins a comment. If the file is not valid, throws BoardError with file and line.
+/// Not real-time safe.
 std::vector<CalibrationPoint> read_calibration_points(const std::string& path, bool rotary);
 
-/// Writes the file that an output names as its `calibration`: span, zero (the nearest code) and polarity. The
-/// uncertainties are written as comments for people. The file is written by write_output: as a whole or, if
-/// that fails, not changed. Then BoardError is thrown. Not real-time safe.
+/// Writes the file for the setting `calibration` of an output: span, zero (the nearest code) and polarity.
+/// The file contains the uncertainties as comments for people. If the file cannot be written completely, it
+/// is not changed, and the function throws BoardError. Not real-time safe.
 void write_calibration(const std::string& path, const Calibration& calibration, const std::string& axis);
 
-/// Returns a calibration as JSON: the content of write_calibration.
+/// Returns a calibration as JSON, with the content of write_calibration.
 std::string calibration_json(const Calibration& calibration, const std::string& axis);
 
 }  // namespace vernier

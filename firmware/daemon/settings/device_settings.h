@@ -6,21 +6,24 @@
 
 namespace vernier {
 
-/// The setting polarity: "normal", which is the default, or "inverted". Throws BoardError.
-/// Not real-time safe.
+/// Reads the setting polarity: returns true for "inverted", and false for "normal" (the default). Throws
+/// BoardError for any other text. Not real-time safe.
 bool is_inverted(const SignalSource& source);
 
-/// Reads the settings span, zero, low, high and polarity of an analogue output. Each name has the `suffix`
-/// ("_ns") if it counts codes. codes: number of codes of the whole span. rotary: span is in degrees, else in
-/// mm. Throws BoardError. Not real-time safe.
+/// Reads the settings span, zero, low, high and polarity of an analogue output. The name of each setting ends
+/// with `suffix` ("_ns") if the setting counts codes. `codes`: number of codes of the whole span. `rotary`:
+/// true if the span is in degrees; false if it is in mm. Throws BoardError if a setting is missing or wrong.
+/// Not real-time safe.
 AnalogueScale analogue_scale(const SignalSource& source, bool rotary, std::int64_t codes, const char* suffix);
 
-/// Reads the settings resolution, range and polarity of an output that is a signed number: correction /
-/// resolution. The scale's codes are shifted by its zero. Throws BoardError. Not real-time safe.
+/// Reads the settings resolution, range and polarity of an output whose value is a signed number: correction
+/// / resolution. The codes of the returned scale are shifted by its zero. Throws BoardError if a setting is
+/// missing or wrong. Not real-time safe.
 AnalogueScale number_scale(const SignalSource& source, bool rotary);
 
-/// Reads the settings scale (um of a count; 0.001 deg of a rotary axis; below 0: the other way) and offset
-/// (mm or deg at the device's zero) of a position. Throws BoardError. Not real-time safe.
+/// Reads the settings scale and offset of a position. The scale is in um per count (rotary axis: 0.001 deg
+/// per count), negative for the opposite direction; the offset is the position at the device's zero in mm or
+/// deg. Throws BoardError if a setting is missing or wrong. Not real-time safe.
 PositionScale position_scale(const SignalSource& source, bool rotary);
 
 }  // namespace vernier

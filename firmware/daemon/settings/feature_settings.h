@@ -7,8 +7,9 @@
 
 namespace vernier {
 
-/// The inputs of kind "feature" of a board file. Throws BoardError if an input names no input with samples or
-/// no feature, or has a window or resolution that is not possible. Not real-time safe.
+/// Returns the requests for the inputs of kind "feature" in a board file. Throws BoardError if such an input
+/// names no input with samples or no feature, or if its window or resolution is not possible. Not real-time
+/// safe.
 std::vector<FeatureRequest> feature_requests(const BoardFile& file);
 
 }  // namespace vernier

@@ -8,13 +8,15 @@
 
 namespace vernier {
 
-/// The sync frame of a CAN bus (SYNC of CiA 301, identifier 0x80): any frame with the identifier counts.
+/// The sync frame of a CAN bus (SYNC of CiA 301, identifier 0x80). Any frame with this identifier is a sync
+/// signal.
 class CanSync : public TickSync {
  public:
-  /// interface: "can0"; id: 11 bits, or 29 above 0x7ff. Null with `error` set. Not real-time safe.
+  /// `interface`: for example "can0"; `id`: 11 bits, or 29 bits if above 0x7ff. If the socket cannot be
+  /// opened, open() returns null and sets `error`. Not real-time safe.
   static std::unique_ptr<CanSync> open(const std::string& interface, std::uint32_t id, std::string& error);
-  /// Takes ownership of the socket. Any socket is possible that preserves the boundaries of frames and does
-  /// not block. Not real-time safe.
+  /// Takes ownership of the socket. The socket must preserve the boundaries of frames and must not block. Not
+  /// real-time safe.
   explicit CanSync(int socket) : socket_(socket) {}
   ~CanSync() override;
   CanSync(const CanSync&) = delete;

@@ -10,33 +10,36 @@
 
 namespace vernier {
 
-/// Positions of CiA 402 drives: position actual value (0x6064) with the statusword in a TPDO. One socket for
-/// all drives of a bus. The TPDOs contain only positions: the firmware derives the motion.
+/// Reads the positions of CiA 402 drives from a TPDO with the position actual value (0x6064) and the
+/// statusword. All drives of a bus use one socket. The TPDOs contain only positions. The firmware computes
+/// the motion from the positions.
 class CanopenAxes : public PositionReader {
  public:
   struct Axis {
     CanopenSettings settings;
     PositionScale scale;
   };
-  static constexpr int kMostFrames = 256;  // taken from the socket in one tick
+  static constexpr int kMostFrames = 256;  // largest number of frames that one tick reads from the socket
 
   /// Returns null with `error` set if the kernel refuses the socket. Not real-time safe.
   static std::unique_ptr<CanopenAxes> open(const std::string& interface, const std::vector<Axis>& axes,
                                            std::string& error);
-  /// Takes ownership of the socket. Any socket is possible that preserves the boundaries of frames and does
-  /// not block. Not real-time safe.
+  /// Takes ownership of the socket. The socket must preserve the boundaries of frames and must not block. Not
+  /// real-time safe.
   CanopenAxes(int socket, const std::vector<Axis>& axes);
   ~CanopenAxes() override;
   CanopenAxes(const CanopenAxes&) = delete;
   CanopenAxes& operator=(const CanopenAxes&) = delete;
 
   void begin_tick() noexcept override;
-  /// kNoReading: no TPDO of the drive since the previous tick. Real-time safe.
+  /// The function read_axis() returns kNoReading if no TPDO of the drive came since the previous tick.
+  /// Real-time safe.
   HalFault read_axis(std::uint32_t index, AxisReading& reading) noexcept override;
   const CanopenCounts& counts(std::uint32_t index) const noexcept { return drives_[index].drive.counts(); }
 
  private:
-  /// The position wraps around at 32 bits, as that of a rotary table does which always turns one way.
+  /// The position of a drive wraps around at 32 bits, for example on a rotary table that always turns in one
+  /// direction.
   struct Drive {
     std::uint32_t tpdo, heartbeat;
     CanopenDrive drive;

@@ -9,40 +9,45 @@
 
 namespace vernier {
 
-/// Identifiers and times of one drive on a CANopen bus. The board is a node without NMT: a master starts the
-/// drive and sends SYNC. Source: CiA 301 (predefined connection set, 7.3.3), CiA 402 (default PDOs).
+/// Identifiers and times of one drive on a CANopen bus. The board is a node without NMT. A master on the bus
+/// starts the drive and sends SYNC. Sources: CiA 301 (predefined connection set, 7.3.3), CiA 402 (default
+/// PDOs).
 struct CanopenSettings {
   std::uint32_t sync = 0x80;              // SYNC
   std::uint32_t emergency = 0x81;         // EMCY: 0x80 + node
   std::uint32_t heartbeat = 0x701;        // NMT error control: 0x700 + node
   std::uint32_t tpdo = 0x381;             // statusword (16 bits), position actual value (32 bits)
-  std::uint32_t rpdo = 0x501;             // the offset (32 bits)
-  InstantNs sync_timeout{20'000'000};     // longest time without SYNC, and without the TPDO
-  InstantNs heartbeat_time{200'000'000};  // longest time without a heartbeat
-  /// Largest change of the offset from one SYNC to the next, in parts of a count of the object. A limit that
-  /// is no whole number of counts holds over several SYNCs.
+  std::uint32_t rpdo = 0x501;             // offset of the position (32 bits)
+  InstantNs sync_timeout{20'000'000};     // longest permitted time without SYNC, and without the TPDO
+  InstantNs heartbeat_time{200'000'000};  // longest permitted time without a heartbeat
+  /// Largest change of the offset from one SYNC to the next, in parts of a count of the object. If the limit
+  /// is not a whole number of counts, it is kept as a mean over several SYNCs.
   static constexpr std::int64_t kPartsOfCount = 1 << 20;
   std::int64_t parts_per_sync = kPartsOfCount;
 };
 
-/// Counters of one drive; each counter only increases.
+/// Counters of one drive. The counters never decrease.
 struct CanopenCounts {
   std::uint64_t syncs = 0, positions = 0;
-  std::uint64_t offsets = 0;      // sent
-  std::uint64_t refused = 0;      // by the bus: no room, interface down
-  std::uint64_t malformed = 0;    // wrong length, remote, extended, or unknown
-  std::uint64_t emergencies = 0;  // error codes that are not "no error"
-  std::uint64_t not_enabled = 0;  // offsets that were wanted while the drive was not in Operation enabled
+  std::uint64_t offsets = 0;      // offsets that were sent
+  std::uint64_t refused = 0;      // offsets that the bus refused (no room, interface down)
+  std::uint64_t malformed = 0;    // frames with a wrong length, remote or extended frames, and unknown frames
+  std::uint64_t emergencies = 0;  // emergency frames with an error code other than "no error"
+  std::uint64_t not_enabled = 0;  // offsets that were required while the drive was not in the state Operation
+                                  // enabled
   std::uint64_t foreign = 0;      // frames with the board's identifier that another node sent
-  std::uint64_t bus_errors = 0;   // bus off
-  std::uint64_t losses = 0;       // of SYNC, TPDO, heartbeat, state Operational; EMCY; bus off
+  std::uint64_t bus_errors = 0;   // number of bus-off states
+  std::uint64_t losses = 0;       // losses of SYNC, TPDO, heartbeat or the state Operational; EMCY frames;
+                                  // bus off
   std::uint16_t last_emergency = 0;
 };
 
-/// State of one CiA 402 drive, and the offset that it gets: a state machine without a device.
+/// State machine of one CiA 402 drive and of the offset that the board sends to it. The class itself uses no
+/// device.
 ///
 /// The drive uses an offset from the next SYNC on (RPDO transmission type 0 to 240). The board also receives
-/// the frames that it sends, in the order on the bus: a SYNC may overtake an offset that waits for the bus.
+/// its own frames in their order on the bus. The board therefore detects if a SYNC comes before an offset
+/// that waits for the bus.
 ///   Operation enabled                    the offset follows, within parts_per_sync; it stays while
 ///                                        the drive leaves out a TPDO
 ///   Quick stop, fault reaction           the offset goes to zero within parts_per_sync: the drive moves
@@ -55,7 +60,7 @@ class CanopenDrive {
  public:
   explicit CanopenDrive(const CanopenSettings& settings) noexcept : settings_(settings) {}
 
-  /// Takes a frame of the bus, also one that the board has sent. Real-time safe.
+  /// Takes a frame from the bus. The frame may also be one that the board has sent. Real-time safe.
   void take(const can_frame& frame, InstantNs now) noexcept;
 
   struct Step {
@@ -63,8 +68,8 @@ class CanopenDrive {
     bool send = false;
     std::int32_t offset = 0;
   };
-  /// Judges the drive and chooses the offset for this tick. wanted: counts of the object. The caller must
-  /// call sent() if the CAN bus accepted the frame. Real-time safe.
+  /// Evaluates the state of the drive, and determines the offset for this tick. `wanted`: required offset in
+  /// counts of the object. If the CAN bus accepted the frame, the caller must call sent(). Real-time safe.
   Step step(std::int64_t wanted, InstantNs now) noexcept;
   void sent(std::int32_t offset, InstantNs now) noexcept {
     sent_ = offset, pending_ = true, pending_since_ = now;
@@ -73,19 +78,20 @@ class CanopenDrive {
   }
   /// Call this function if the CAN bus did not accept the frame. Real-time safe.
   void not_sent() noexcept { ++counts_.refused; }
-  /// The offset that the drive has from an earlier run. Not real-time safe.
+  /// Sets the offset that the drive has from an earlier run. Not real-time safe.
   void begin_with(std::int32_t offset) noexcept { sent_ = on_bus_ = applied_ = offset; }
 
-  /// The newest position actual value since the last call of begin_tick(). Real-time safe.
+  /// Reads the newest position actual value that came since the last call of begin_tick(). Returns false if
+  /// no value came. Real-time safe.
   bool position(std::int32_t& value) const noexcept {
     if (fresh_) value = position_;
     return fresh_;
   }
   void begin_tick() noexcept { fresh_ = false; }
 
-  /// Offset that the drive has, or gets with the next SYNC. Real-time safe.
+  /// Returns the offset that the drive has, or will have with the next SYNC. Real-time safe.
   std::int32_t offset() const noexcept { return sent_; }
-  /// True if the last step was sent without a limit. Real-time safe.
+  /// True if the last step was sent without any limitation. Real-time safe.
   bool follows() const noexcept { return follows_; }
   /// Returns the name of the missing signal ("SYNC", "the heartbeat", ...), or null if no signal is missing.
   /// Not real-time safe.
@@ -102,7 +108,7 @@ class CanopenDrive {
   static constexpr std::uint8_t kBootUp = 0x00, kOperational = 0x05;
 
  private:
-  /// When something was heard last.
+  /// Time at which a signal was last received.
   struct Heard {
     InstantNs at;
     bool known = false;
@@ -110,8 +116,8 @@ class CanopenDrive {
     bool within(InstantNs now, InstantNs time) const noexcept { return known && now - at <= time; }
   };
 
-  /// Whether the drive has the newest offset: an offset for a drive that takes nothing is sent once more,
-  /// comes back, and is used at a SYNC that the drive answers.
+  /// State of the question whether the drive has the newest offset. An offset for a drive that did not accept
+  /// offsets is sent once more, is received back, and is used at a SYNC to which the drive answers.
   enum class Doubt : std::uint8_t { kNone, kRepeat, kOnItsWay, kInDrive };
 
   void take_heartbeat(const can_frame& frame, InstantNs now) noexcept;
@@ -129,26 +135,30 @@ class CanopenDrive {
            (status & kReactionMask) == kFaultReactionActive;
   }
 
-  static constexpr std::uint8_t kSure = 2;  // TPDOs without torque in succession that are no wrong bit
+  static constexpr std::uint8_t kSure = 2;  // number of successive TPDOs without torque that are not
+                                            // explained by a wrong bit
   CanopenSettings settings_;
   Heard sync_, heartbeat_, tpdo_, foreign_, step_;
   std::uint8_t nmt_ = kBootUp;
   std::uint16_t status_ = 0;
-  std::uint8_t without_torque_ = kSure;  // newest TPDOs in succession, at most kSure
+  std::uint8_t without_torque_ = kSure;  // number of newest successive TPDOs without torque, at most kSure
   bool emergency_ = false, bus_off_ = false;
-  bool synced_ = false;    // a SYNC has come since the last step
-  bool answered_ = false;  // a TPDO has come since the last SYNC
+  bool synced_ = false;    // true: a SYNC has come since the last step
+  bool answered_ = false;  // true: a TPDO has come since the last SYNC
   Doubt doubt_ = Doubt::kRepeat;
-  bool well_ = false;    // at the last step
-  bool refuse_ = false;  // the tick has not yet learned of a loss
-  bool fading_ = false;  // the board still removes its correction after a loss
+  bool well_ = false;    // state of the drive at the last step
+  bool refuse_ = false;  // true: the tick does not yet know of a loss
+  bool fading_ = false;  // true: after a loss, the board still removes its correction
   bool follows_ = true, fresh_ = false;
   std::int32_t position_ = 0;
-  std::int32_t applied_ = 0;                                 // offset of the last SYNC
-  std::int32_t on_bus_ = 0;                                  // newest offset that has come back
-  std::int32_t sent_ = 0;                                    // newest offset
-  std::int64_t allowance_ = CanopenSettings::kPartsOfCount;  // change until the next SYNC, parts of a count
-  bool pending_ = false;                                     // it has not come back
+  std::int32_t applied_ = 0;                                 // offset that was used at the last SYNC
+  std::int32_t on_bus_ = 0;                                  // newest offset that was received back from the
+                                                             // bus
+  std::int32_t sent_ = 0;                                    // newest offset that was sent
+  std::int64_t allowance_ = CanopenSettings::kPartsOfCount;  // permitted change until the next SYNC, in parts
+                                                             // of a count
+  bool pending_ = false;                                     // true: the sent offset was not yet received
+                                                             // back
   InstantNs pending_since_;
   CanopenCounts counts_;
 };

@@ -9,39 +9,41 @@
 
 namespace vernier {
 
-/// Address of a drive, and the method of testing its PDOs.
+/// Address of a drive, and the method to test its PDOs.
 struct CanopenPlace {
-  std::string interface;  // as for open_can()
+  std::string interface;  // interface as for open_can()
   std::uint32_t node = 1;
-  CanopenObject object;   // that takes the offset, 32 bits
-  bool test_pdos = true;  // compare the PDO settings of the drive by SDO; else they are not known
+  CanopenObject object;   // object that receives the offset, 32 bits
+  bool test_pdos = true;  // true: the PDO settings of the drive are compared by SDO; false: they are unknown
 };
 
-/// The correction of one axis as the position offset of a CiA 402 drive, sent by PDO in the tick: no thread
-/// and no wait. Rules: CanopenDrive.
+/// The correction of one axis as the position offset of a CiA 402 drive. The tick sends it by PDO, without a
+/// thread and without waiting. The rules for the offset are those of CanopenDrive.
 class CanopenOutput : public OutputDevice {
  public:
   /// Returns null with `error` set if the CAN bus does not exist, or if the PDOs of the drive differ from
   /// `settings`. Not real-time safe.
   static std::unique_ptr<CanopenOutput> open(const CanopenPlace& place, const CanopenSettings& settings,
                                              const AnalogueScale& scale, std::string& error);
-  /// Takes ownership of the socket. Any socket is possible that preserves the boundaries of frames and does
-  /// not block. Not real-time safe.
+  /// Takes ownership of the socket. The socket must preserve the boundaries of frames and must not block. Not
+  /// real-time safe.
   CanopenOutput(int socket, const CanopenPlace& place, const CanopenSettings& settings,
                 const AnalogueScale& scale);
   ~CanopenOutput() override;
   CanopenOutput(const CanopenOutput&) = delete;
   CanopenOutput& operator=(const CanopenOutput&) = delete;
 
-  /// kRefused: the drive does not accept an offset (no SYNC, bus off), or a loss must be reported to the
-  /// tick. Real-time safe.
+  /// The function write_correction() returns kRefused if the drive does not accept an offset (no SYNC, bus
+  /// off), or if a loss must be reported to the tick. Real-time safe.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
-  /// The correction that the drive has, if it does not follow. Real-time safe.
+  /// Returns the correction that the drive has if the drive does not follow the required correction.
+  /// Real-time safe.
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 
-  /// False if another node sends the RPDO. Listens for some SYNC periods. Not real-time safe.
+  /// Returns false if another node sends the RPDO. lock() listens to the bus for some SYNC periods. Not
+  /// real-time safe.
   bool lock() noexcept override;
-  /// The offset that the drive has, by SDO. Not real-time safe.
+  /// Reads the offset that the drive has, by SDO. Not real-time safe.
   HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept override;
   std::string attempt(std::uint32_t axis) override;
   std::string trial() const override;
@@ -50,7 +52,7 @@ class CanopenOutput : public OutputDevice {
   std::string account() const override;
   const CanopenDrive& drive() const noexcept { return drive_; }
 
-  static constexpr int kMostFrames = 256;  // taken from the socket in one tick
+  static constexpr int kMostFrames = 256;  // largest number of frames that one tick reads from the socket
 
  private:
   void drain(InstantNs now) noexcept;
@@ -64,7 +66,7 @@ class CanopenOutput : public OutputDevice {
   AnalogueConverter converter_;
   CanopenDrive drive_;
   std::uint64_t held_at_end_ = 0;
-  bool known_ = false;  // read_back() found the drive's own offset
+  bool known_ = false;  // true: read_back() found the offset that the drive already had
   std::int32_t before_ = 0;
 };
 

@@ -7,11 +7,12 @@
 
 namespace vernier {
 
-/// Requests and replies as ISO 15765-2 messages on a CAN interface, with the protocol of the kernel.
+/// Transmits requests and replies as ISO 15765-2 messages on a CAN interface, with the protocol of the
+/// kernel.
 class IsotpLink : public CommandLink {
  public:
-  /// interface: "can0"; receive, transmit: identifiers, 11 bits, or 29 bits above 0x7ff. Null with `error`
-  /// set if the kernel refuses. Not real-time safe.
+  /// `interface`: for example "can0"; `receive`, `transmit`: identifiers of 11 bits, or of 29 bits if above
+  /// 0x7ff. If the kernel refuses, open() returns null and sets `error`. Not real-time safe.
   static std::unique_ptr<IsotpLink> open(const std::string& interface, std::uint32_t receive,
                                          std::uint32_t transmit, std::string& error);
   ~IsotpLink() override;
@@ -25,8 +26,8 @@ class IsotpLink : public CommandLink {
     return 1;
   }
 
-  /// The client's side of an ISO-TP link: sends a request and waits for the reply. Returns the bytes of the
-  /// reply; -1 with errno set if no reply came. Not real-time safe.
+  /// Sends a request as the client of an ISO-TP link, and waits for the reply. The function ask() returns the
+  /// number of bytes in the reply; -1 with errno set if no reply came. Not real-time safe.
   int ask(const std::uint8_t* request, std::uint32_t size, std::uint8_t* reply, std::uint32_t room,
           TimeUs wait) noexcept;
 

@@ -11,60 +11,65 @@
 
 namespace vernier {
 
-/// A channel of the buffer of a device: the name of its files in scan_elements without "in_" ("accel_x").
+/// A channel in the buffer of a device. The name of a channel is that of its files in scan_elements, without
+/// "in_" ("accel_x").
 struct IioChannel {
   std::string name;
   IioScale scale;
 };
 
 struct IioBufferSettings {
-  std::string directory;  // of the device in sysfs
+  std::string directory;  // directory of the device in sysfs
   std::string device;     // "/dev/iio:device0"
   std::vector<IioChannel> channels;
   std::string trigger;    // written to trigger/current_trigger; empty: not changed
   std::string frequency;  // written to sampling_frequency; empty: not changed
 };
 
-/// Counters of the scans from the buffer; each counter only increases.
+/// Counters of the scans from the buffer. The counters never decrease.
 struct IioBufferCounts {
   std::uint64_t scans = 0;
-  std::uint64_t skipped = 0;    // scans that came too quickly: beyond kMostWaiting the oldest are left out
-  std::uint64_t missing = 0;    // ticks without a scan after the first one
-  std::uint64_t malformed = 0;  // reads that were no whole number of scans
+  std::uint64_t skipped = 0;    // scans that were removed because more than kMostWaiting scans were waiting;
+                                // the oldest scans are removed
+  std::uint64_t missing = 0;    // ticks without a scan, after the first scan
+  std::uint64_t malformed = 0;  // reads whose length was not a whole number of scans
   std::uint64_t broken = 0;     // ticks in which the device failed
 };
 
-/// A sensor (for example an accelerometer) that fills a buffer of the kernel's industrial I/O class. The
-/// sensor's clock or a trigger starts each scan. Every tick gets the next scan, in order; each scan is used
-/// once. Input i is the i-th channel. A scan waits in a queue until its tick. If the sensor's clock is faster
-/// than the ticks, the queue grows to kMostWaiting; then a scan is skipped now and then. If the sensor's
-/// clock is slower than the ticks, some ticks have no scan (kNoReading): the window of a feature then repeats
-/// a sample.
+/// A sensor (for example an accelerometer) that writes its scans to a buffer of the kernel's industrial I/O
+/// class. The clock of the sensor or a trigger starts each scan of the channels. Each tick uses the next scan
+/// in order; each scan is used once. Input i of the board is the i-th channel. A scan waits in a queue until
+/// a tick uses it. If the clock of the sensor is faster than the ticks, the queue grows to kMostWaiting
+/// scans. If the queue has kMostWaiting scans and the clock of the sensor is faster than the ticks, a scan is
+/// removed from time to time. If the clock of the sensor is slower than the ticks, some ticks have no scan
+/// (kNoReading). The window of a feature then repeats a sample.
 class IioBuffer : public InputReader {
  public:
-  static constexpr std::uint32_t kMostWaiting = 4;  // ticks that a tick may be late without a scan lost
+  static constexpr std::uint32_t kMostWaiting = 4;  // number of ticks by which a tick may be late without
+                                                    // loss of a scan
 
-  /// Sets up the device (channels, trigger, rate) and starts it. Returns null with `error` set if that fails.
-  /// Not real-time safe.
+  /// Sets up the device (channels, trigger, rate) and starts it. If the device cannot be set up, open()
+  /// returns null and sets `error`. Not real-time safe.
   static std::unique_ptr<IioBuffer> open(const IioBufferSettings& settings, std::string& error);
-  /// Stops the device.
+  /// The destructor stops the device.
   ~IioBuffer() override;
   IioBuffer(const IioBuffer&) = delete;
   IioBuffer& operator=(const IioBuffer&) = delete;
 
-  /// Takes the received scans without waiting, and steps to the next scan. realtime: one or two system calls.
+  /// Reads the received scans without waiting, and goes to the next scan. The function is real-time safe: one
+  /// or two system calls.
   void begin_tick() noexcept override;
-  /// kNoReading: this tick has no scan. Real-time safe.
+  /// The function read_input() returns kNoReading if this tick has no scan. Real-time safe.
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override;
   const IioBufferCounts& counts() const noexcept { return counts_; }
 
  private:
   struct Element {
     IioElement type;
-    std::size_t at = 0;  // in a scan
+    std::size_t at = 0;  // offset of the channel in a scan
     IioScale scale;
   };
-  static constexpr std::size_t kMostBytes = 8192;  // read in one call
+  static constexpr std::size_t kMostBytes = 8192;  // largest number of bytes that one call reads
 
   explicit IioBuffer(const IioBufferSettings& settings) : settings_(settings) {}
   bool choose_channels(std::string& error);
@@ -76,9 +81,9 @@ class IioBuffer : public InputReader {
   int fd_ = -1;
   bool started_ = false;
   std::size_t scan_bytes_ = 0;
-  std::vector<Element> elements_;  // by input
+  std::vector<Element> elements_;  // one element for each input
   std::vector<unsigned char> read_, waiting_, now_;
-  std::uint32_t first_ = 0, count_ = 0;  // of the ring of waiting scans
+  std::uint32_t first_ = 0, count_ = 0;  // position and number of the waiting scans in the ring
   bool drained_ = false, fresh_ = false, known_ = false;
   IioBufferCounts counts_;
 };

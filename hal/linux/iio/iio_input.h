@@ -8,18 +8,19 @@
 
 namespace vernier {
 
-/// Scale of an attribute: value = (value of the attribute + offset) * scale, in the unit of the input, as the
-/// kernel defines in_*_offset and in_*_scale.
+/// Scale of an IIO attribute: value = (value of the attribute + offset) * scale, in the unit of the input.
+/// The kernel defines in_*_offset and in_*_scale in this way.
 struct IioScale {
   double offset = 0;
   double scale = 1;
 };
 
-/// A sensor of the kernel's industrial I/O class (IIO), or of the class hwmon. The sensor is one attribute,
-/// for example in_temp0_input in 1/1000 degC, or in_voltage3_raw.
+/// A sensor of the kernel's industrial I/O class (IIO), or of the class hwmon. The sensor is one attribute (a
+/// file), for example in_temp0_input in 1/1000 degC, or in_voltage3_raw.
 class IioInput : public SampledInput {
  public:
-  /// attribute: path. Null with `error` set. Not real-time safe.
+  /// `attribute`: path of the attribute. If the attribute cannot be opened, open() returns null and sets
+  /// `error`. Not real-time safe.
   static std::unique_ptr<IioInput> open(const std::string& attribute, const IioScale& scale,
                                         std::uint32_t stale_reads, std::string& error);
 

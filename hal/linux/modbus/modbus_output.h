@@ -17,8 +17,9 @@
 
 namespace vernier {
 
-/// Registers of a controller (PLC) that take corrections. The block begins at `address`: sequence number,
-/// valid bits (bit p: place p), then two registers for each place, a signed 32-bit number, high word first.
+/// Block of registers in a controller (PLC) that receives corrections. The block begins at `address`:
+/// sequence number, valid bits (bit p for place p), and then two registers for each place with a signed
+/// 32-bit number, high word first.
 struct ModbusOutputSettings {
   static constexpr int kSequence = RegisterBlock::kSequence, kValid = RegisterBlock::kValid,
                        kValues = RegisterBlock::kValues, kPlaces = RegisterBlock::kPlaces;
@@ -26,55 +27,57 @@ struct ModbusOutputSettings {
   static constexpr int kLongestPeriod_ms = 50;
 
   struct Axis {
-    AnalogueScale scale;                     // the register holds code - scale.zero
-    int place = 0;                           // 0 .. kPlaces - 1
-    std::int64_t most_per_tick = INT32_MAX;  // largest change of the correction in a tick, counts
+    AnalogueScale scale;                     // the register contains code - scale.zero
+    int place = 0;                           // place of the axis in the block, 0 to kPlaces - 1
+    std::int64_t most_per_tick = INT32_MAX;  // largest change of the correction in one tick, counts
   };
   int unit = 1, address = 0;
-  int echo = 0;             // register to which the controller copies the sequence number that it has used
-  TimeUs period{5'000};     // from one exchange to the next
-  TimeUs timeout{100'000};  // longest time without an echo, and without a tick
+  int echo = 0;             // echo: register to which the controller copies the last sequence number that it
+                            // has used
+  TimeUs period{5'000};     // time from one exchange to the next
+  TimeUs timeout{100'000};  // longest permitted time without an echo, and without a tick
   TimeUs tick{1'000};
   std::vector<Axis> axes;
 };
 
-/// Corrections of several axes as registers of a controller. A separate thread writes the block and reads the
-/// echo; a tick only leaves its value and never waits. If no new sequence number comes back in `timeout`, the
-/// thread clears the valid bits and all writes are refused. The valid bit of an axis is set again when the
-/// board's own correction of the axis is zero: the return of a connection causes no step. So it is if a
-/// controller was restarted within the time-out and has lost the block, and if the process stood still for
-/// longer than the time-out. A value that an earlier process left in the block stays there without its valid
-/// bit, until writes move it to zero.
-/// Only one board writes a block. An echo that is none of the last sequence numbers is a loss: another board
-/// writes, or the controller was restarted. After a loss the thread writes nothing until the sequence number
-/// has stood still for as long as another board may need for a block.
+/// Writes the corrections of several axes to registers of a controller. A separate thread writes the block
+/// and reads the echo. A tick only stores its value and never waits. If no new sequence number is returned
+/// within `timeout`, the thread clears the valid bits, and all writes are refused. The valid bit of an axis
+/// is set again when the board's own correction of the axis is zero. A restored connection therefore causes
+/// no step of the correction. The same rule applies if a controller was restarted within the time-out and has
+/// lost the block, or if the process was stopped for longer than the time-out. A value that an earlier
+/// process left in the block stays there without its valid bit, until writes of this process move the value
+/// to zero. Only one board may write a block. An echo that is not one of the last sequence numbers is a loss:
+/// another board writes the block, or the controller was restarted. After a loss, the thread writes nothing
+/// until the sequence number has not changed for the time that another board may need for a block.
 class ModbusOutput : public OutputDevice {
  public:
-  /// Longest time for an answer, as the lines of `settings` must have it. A serial line is quiet for as long
-  /// again after an answer that did not come: both together are half of the time-out, so that one lost answer
-  /// is no loss of the controller.
+  /// Returns the longest time for an answer, which the Modbus line must use. After a missing answer, a serial
+  /// line is not used for the same time again. The wait and the pause after a missing answer are together
+  /// half of the time-out, so that one missing answer is not a loss of the controller.
   static TimeUs wait_for_answer(TimeUs timeout, bool serial) {
     return TimeUs(timeout.count / (serial ? 4 : 2));
   }
-  /// line: used by this output only. Returns null with `error` set if the controller does not answer, does
-  /// not return the sequence number, or is written by another board. Waits for the controller.
-  /// Not real-time safe.
+  /// `line`: a Modbus line that only this output uses. Returns null with `error` set if the controller does
+  /// not answer, does not return the sequence number, or is written by another board. open() waits for the
+  /// controller. Not real-time safe.
   static std::unique_ptr<ModbusOutput> open(std::shared_ptr<ModbusLine> line,
                                             const ModbusOutputSettings& settings, std::string& error);
-  /// Clears the valid bits. If writes have moved the value of an earlier process to zero, waits until the
-  /// controller has the zero, at most the time-out.
+  /// The destructor clears the valid bits. If writes have moved the value of an earlier process to zero, the
+  /// destructor waits until the controller has received the zero, for at most the time-out.
   ~ModbusOutput() override;
   ModbusOutput(const ModbusOutput&) = delete;
   ModbusOutput& operator=(const ModbusOutput&) = delete;
 
-  /// kRefused: the controller does not return the sequence number; or a correction grows whose valid bit is
-  /// not set. Real-time safe.
+  /// The function write_correction() returns kRefused if the controller does not return the sequence number,
+  /// or if a correction increases whose valid bit is not set. Real-time safe.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 
-  /// open() has found that nothing else changes the sequence number.
+  /// Returns true: open() has tested that no other device changes the sequence number.
   bool lock() noexcept override { return true; }
-  /// Before the first write: the value that the block had at open(), at most the range of the axis.
+  /// Returns, before the first write, the value that the block had at open(), limited to the range of the
+  /// axis.
   HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept override;
   std::string attempt(std::uint32_t axis) override;
   std::string trial() const override;
@@ -82,18 +85,20 @@ class ModbusOutput : public OutputDevice {
   const AnalogueScale& scale(std::uint32_t axis) const noexcept override {
     return settings_.axes[axis].scale;
   }
-  /// Exchanges, losses, and the delay from the tick of a correction to the answer to its write.
+  /// Returns statistics: number of exchanges and losses, and the delay from the tick of a correction to the
+  /// answer to its write.
   std::string account() const override;
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// State of one axis. The tick writes `wanted`; the thread writes `valid` and `refuse`, which the tick
-  /// clears.
+  /// State of the output of one axis. The tick writes `wanted`. The thread writes `valid` and `refuse`; the
+  /// tick clears `refuse`.
   struct Place {
-    std::atomic<std::int32_t> wanted{0};  // register's number
+    std::atomic<std::int32_t> wanted{0};  // number for the register
     std::atomic<bool> valid{false}, refuse{false};
     std::int32_t sent = 0;
-    /// `sent` began at a value of an earlier process, and is not at zero yet. The thread clears it.
+    /// True if `sent` began at a value of an earlier process and is not yet zero. The thread clears the flag
+    /// left_over.
     std::atomic<bool> left_over{false};
     std::int64_t most_per_period = 1;
     std::uint64_t held_at_end = 0;
@@ -117,23 +122,25 @@ class ModbusOutput : public OutputDevice {
   const std::shared_ptr<ModbusLine> line_;
   const ModbusOutputSettings settings_;
   std::vector<AnalogueConverter> converters_;
-  std::array<Place, ModbusOutputSettings::kPlaces> places_;  // by axis
+  std::array<Place, ModbusOutputSettings::kPlaces> places_;  // one entry for each axis
   std::atomic<bool> healthy_{false}, stop_{false};
-  std::atomic<std::int64_t> stored_ns_{INT64_MIN};  // when a tick left its value
+  std::atomic<std::int64_t> stored_ns_{INT64_MIN};  // time at which a tick stored its value
   std::uint16_t sequence_ = 0;
-  std::uint16_t kept_ = 0;  // of the last block that the controller surely took
-  /// The number that the block had when this board was about to write its first block, until it has.
+  std::uint16_t kept_ = 0;  // sequence number of the last block that the controller certainly received
+  /// Sequence number that the block had before this board wrote its first block; no value after this write.
   std::optional<std::uint16_t> found_;
-  bool repeat_ = false;      // the controller may have the last block or the one before
-  bool unanswered_ = false;  // the last exchange
+  bool repeat_ = false;      // true: the controller has either the last block or the previous block
+  bool unanswered_ = false;  // true: the last exchange was not answered
   Clock::time_point good_, written_;
-  std::optional<Clock::time_point> still_since_;  // found_ stands still; nothing is written meanwhile
-  std::array<Clock::time_point, 256> sent_at_{};  // by the low byte of the sequence number
+  std::optional<Clock::time_point> still_since_;  // time since which found_ has not changed; nothing is
+                                                  // written during this time
+  /// Time of each block, by the low byte of its sequence number
+  std::array<Clock::time_point, 256> sent_at_{};
 
-  mutable std::mutex guard_;  // of the figures below
+  mutable std::mutex guard_;  // protects the following statistics
   std::uint64_t exchanges_ = 0, failed_ = 0, losses_ = 0, foreign_ = 0;
-  std::vector<std::uint64_t> delays_;  // in tenths of a millisecond
-  std::int64_t delayed_ = INT64_MIN;   // tick whose delay was counted last
+  std::vector<std::uint64_t> delays_;  // number of delays in each bin of 0.1 ms
+  std::int64_t delayed_ = INT64_MIN;   // last tick whose delay was counted
   std::thread thread_;
 };
 

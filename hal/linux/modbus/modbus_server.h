@@ -13,18 +13,20 @@ struct _modbus;
 namespace vernier {
 
 /// A Modbus server over TCP for a few clients, or over a serial line (which libmodbus opens). No client can
-/// block the server: the server reads and writes only what is available. The server closes a connection if a
-/// request is not complete within half a second of its first byte, or a reply is not taken within a second.
-/// Sixteen clients keep their places while they send requests. A further client without a valid signature
-/// makes room for the next client after half a second. A client that signed keeps its place. A peer with more
-/// clients than another peer makes room for the other peer.
+/// block the server, because the server reads and writes only what is possible without waiting. The server
+/// closes a connection if a request is not complete within half a second after its first byte, or if a reply
+/// is not read within a second. Up to sixteen clients keep their connections while they send requests. An
+/// additional client without a valid signature is disconnected after half a second if another client wants to
+/// connect. A client that has sent a valid signature stays connected. If one peer has more clients than
+/// another peer, a client of the first peer is disconnected for a client of the second peer.
 class ModbusServer : public CommandLink {
  public:
-  /// address: numeric, "127.0.0.1"; port 0: any free port. Returns null with `error` set if the server cannot
-  /// listen. Not real-time safe.
+  /// `address`: numeric, for example "127.0.0.1"; `port`: 0 selects any free port. Returns null with `error`
+  /// set if the server cannot listen. Not real-time safe.
   static std::unique_ptr<ModbusServer> tcp(const std::string& address, int port, const ModbusLayout& layout,
                                            std::string& error);
-  /// device: "/dev/ttyS1"; 8 data bits, `parity` N, E or O, one stop bit; unit: 1..247. Not real-time safe.
+  /// `device`: for example "/dev/ttyS1", with 8 data bits, `parity` N, E or O, and one stop bit; `unit`:
+  /// 1..247. Not real-time safe.
   static std::unique_ptr<ModbusServer> rtu(const std::string& device, int baud, char parity, int unit,
                                            const ModbusLayout& layout, std::string& error);
   ~ModbusServer() override;
@@ -63,11 +65,11 @@ class ModbusServer : public CommandLink {
   ModbusLayout layout_;
   int unit_;
   InstantNs frame_time_;
-  _modbus* line_ = nullptr;  // of a serial line, which is the only client then
+  _modbus* line_ = nullptr;  // serial line, which is then the only client
   int listening_ = -1, port_ = 0;
-  std::vector<Client> clients_;    // in the order in which they came in
-  std::vector<Arrival> arrivals_;  // connected, without a place
-  std::uint64_t connections_ = 0;  // so far
+  std::vector<Client> clients_;    // in the order of their connection
+  std::vector<Arrival> arrivals_;  // connected clients that are not yet served
+  std::uint64_t connections_ = 0;  // number of connections since the start
 };
 
 }  // namespace vernier

@@ -10,22 +10,23 @@
 
 namespace vernier::commands::fleet_cli {
 
-/// Adds the option `--registry`; its default is the variable VERNIER_REGISTRY.
+/// Adds the option `--registry` to a command. The default of the option `--registry` is the environment
+/// variable VERNIER_REGISTRY.
 void add_registry(CLI::App& command, std::string& place);
-/// Opens the registry with the given name; creates a file that does not exist. Throws InputError if no name
-/// is given, or if the registry is not available.
+/// Opens the registry with the given name. If the name is a file that does not exist, the file is created.
+/// Throws InputError if the name is empty or the registry is not available.
 registry::Registry make_registry(const std::string& place);
-/// Opens a registry that exists already; a misspelt file name is refused.
+/// Opens an existing registry. A wrong file name is therefore an error, and no new registry is created.
 registry::Registry open_registry(const std::string& place);
 
-/// Converts a time that a user wrote to us since 1970; `otherwise` if the text is empty. Throws InputError if
-/// the text is not a time.
+/// Converts a time that a user wrote to us since 1970. If the text is empty, returns `otherwise`. Throws
+/// InputError if the text is not a time.
 std::int64_t time_of(const std::string& text, std::int64_t otherwise);
 
-/// Writes one complete line to standard error; any thread may call this function.
+/// Writes one complete line to standard error. Any thread may call this function.
 void say_line(const std::string& line);
 
-/// The subcommands of `vernier fleet`; each subcommand has one source file.
+/// Functions that add the subcommands of `vernier fleet`. Each subcommand has its own source file.
 void add_services(CLI::App& fleet);
 void add_batch(CLI::App& fleet);
 void add_trends(CLI::App& fleet);

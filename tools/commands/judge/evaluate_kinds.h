@@ -4,9 +4,9 @@
 
 namespace vernier::commands::evaluate_cli {
 
-/// Adds `evaluate iso230-6`.
+/// Adds the command `evaluate iso230-6`.
 void add_diagonals_kind(CLI::App& evaluate);
-/// Adds `evaluate iso9283`.
+/// Adds the command `evaluate iso9283`.
 void add_robot_kind(CLI::App& evaluate);
 
 }  // namespace vernier::commands::evaluate_cli

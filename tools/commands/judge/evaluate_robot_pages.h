@@ -9,7 +9,7 @@
 
 namespace vernier::commands::evaluate_cli {
 
-/// The largest value of a characteristic and its expanded uncertainty upwards (95 %).
+/// The largest value of a characteristic, and its one-sided expanded uncertainty (95 %).
 struct Judged {
   std::string name;
   double value_mm = 0, expanded_mm = 0;
@@ -18,11 +18,11 @@ struct Judged {
 /// Results of one kind of robot test.
 struct RobotPage {
   std::vector<Judged> characteristics;
-  std::string key;              // of the list in the JSON
-  nlohmann::ordered_json list;  // a pose, a station, a distance each
+  std::string key;              // key of the list in the JSON result
+  nlohmann::ordered_json list;  // one element for each pose, station or distance
   std::vector<std::string> lines;
-  std::size_t fewest = 0, wanted = 0;  // cycles that there are, and that the standard asks for
-  double least_spread_mm = 0;          // the least repeatability
+  std::size_t fewest = 0, wanted = 0;  // number of measured cycles, and number that the standard requires
+  double least_spread_mm = 0;          // smallest repeatability
 };
 
 RobotPage pose_page(const std::vector<evaluate::PoseResult>& poses, bool path);

@@ -8,17 +8,17 @@
 
 namespace vernier::commands::part_cli {
 
-/// The options of a command that name a part.
+/// The options of a command that describe a part.
 struct PartSource {
   std::string path, at, zero, place;
-  double position_mm = 0, size_mm = 0, form_mm = 0;  // for all that a program cuts
+  double position_mm = 0, size_mm = 0, form_mm = 0;  // tolerances for all features of a part program
 };
 
-/// Returns the part in its position in the machine, from a list of features or a part program. Throws
-/// InputError, and LimitNotMet if a point is out of reach.
+/// Returns the part at its position in the machine, from a list of features or from a part program. Throws
+/// InputError if the input is not valid, and LimitNotMet if the machine cannot reach a point.
 tolerance::PlacedPart placed_part(const PartSource& source, const model::Machine& machine);
 
-/// Adds `vernier part conformity`.
+/// Adds the command `vernier part conformity`.
 void add_conformity(CLI::App& part);
 
 }  // namespace vernier::commands::part_cli

@@ -5,15 +5,16 @@
 
 namespace vernier::commands::import_cli {
 
-/// Output files and options that every kind of import has.
+/// Output files and options of every kind of import.
 struct ImportOutput {
   std::string csv_path, json_path;
 };
 
-/// Adds `-o FILE` (required) and `--json FILE` to a kind.
+/// Adds the options `-o FILE` (required) and `--json FILE` to a kind of import.
 void add_import_output(CLI::App& kind, ImportOutput& output);
 
-// One function for each kind of import: adds the options and the callback to the subcommand.
+// For each kind of import there is one function. The function of a kind of import adds the options and the
+// callback to the subcommand.
 #define X(id, name, reads, ending) void add_##id##_kind(CLI::App& kind);
 #include "tools/import/kinds.inc"
 #undef X

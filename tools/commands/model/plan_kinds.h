@@ -22,17 +22,17 @@ struct PlanArguments {
   double accuracy_um = 0, expected_um = 0;
   double feed_mm_min = 5000, dwell_s = 5;
   bool check = false;
-  plan::PositioningTestOptions positioning;  // axis: empty if no such test is asked for
+  plan::PositioningTestOptions positioning;  // the member `axis` is empty if no positioning test is requested
 };
 
 /// Returns one pose of a plan as JSON: axes and approach directions.
 nlohmann::ordered_json pose_json(const model::Machine& machine, const model::States& states, std::size_t row);
 
-/// The program and the measurement file of a test of positioning (ISO 230-2).
+/// Writes the G-code program and the measurement file of a positioning test (ISO 230-2).
 void run_positioning_plan(const PlanArguments& arguments);
 
-/// The next poses for accuracy at the required locations. Throws LimitNotMet if the accuracy cannot be
-/// reached.
+/// Writes the next poses for the accuracy at the required locations. Throws LimitNotMet if this accuracy
+/// cannot be reached.
 void run_accuracy_plan(const PlanArguments& arguments);
 
 }  // namespace vernier::commands::plan_cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all exports share: arguments, the sheet "safe to run?", the result.
+// Functions for all export commands: arguments, safety sheet ("safe to run?"), result.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <array>
@@ -25,50 +25,52 @@ struct ExchangeArguments {
   bool leave_out = false, component = false;
 };
 
-/// Error of the interpolation between the lines of the table of one axis.
+/// Interpolation error between the lines of the table of one axis.
 struct AxisLines {
   std::string axis;
   std::size_t lines = 0, probed = 0;
   double worst_um = 0;
 };
 
-/// Throws LimitNotMet if the safety sheet ("safe to run?") fails, because the written files correct a machine
-/// in the same way as a correction image.
-/// not_of_board: the format does not use maxcorrection, which is a limit of the board.
+/// Throws LimitNotMet if the machine does not meet the safety sheet ("safe to run?"). The sheet applies
+/// because the exported files correct a machine in the same way as a correction image. `not_of_board`: true
+/// if the format does not use maxcorrection, which is a limit of the board.
 void require_safe(const model::Machine& machine, const ExchangeArguments& arguments,
                   bool not_of_board = false);
 
-/// Returns the fixed state: the middle of the ranges, overridden by the values of the user.
+/// Returns the fixed state for an export: the middle of the ranges, with the values of the user instead where
+/// they are given.
 model::States state_of(const model::Machine& machine, const ExchangeArguments& arguments);
 
-/// Prints and writes the result of an export (exported) or of an import of tables. extra: more keys.
+/// Prints and writes the result of an export (`exported` is true) or of an import of tables. `extra`:
+/// additional keys of the JSON result.
 void finish(const model::Machine& machine, const ExchangeArguments& arguments, const char* format,
             const std::vector<exchange::LeftOut>& left_out, const Json& files,
             const std::vector<AxisLines>& axes = {}, bool exported = true, const Json& extra = {});
 
-/// Writes the files into the folder of the output and returns their paths.
+/// Writes the files into the output folder and returns their paths.
 Json write_folder(const ExchangeArguments& arguments, const std::vector<exchange::ConfigurationFile>& files);
 
-/// Returns {"x": ..., "y": ..., "z": ...}.
+/// Returns three values as JSON: {"x": ..., "y": ..., "z": ...}.
 Json three_json(const std::array<double, 3>& values);
 
-/// Returns an entry for each of X, Y and Z along which an error remains with the files.
+/// Returns one entry for each of X, Y and Z in which an error remains with the exported files.
 std::vector<exchange::LeftOut> remaining(const std::array<double, 3>& after_um);
 
-/// Prints the rms of the tool point's error at so many positions, without and with the files.
+/// Prints the rms error of the tool point over a number of positions, without and with the exported files.
 void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um);
 
-/// Adds the subcommand of a format with the options of every export.
+/// Adds the subcommand of an export format, with the options of every export.
 CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,
                      const std::shared_ptr<ExchangeArguments>& arguments);
 
-/// Adds the subcommands of the firmwares of printers and small machines.
+/// Adds the export subcommands for the firmware of 3D printers and small machines.
 void add_printer_exports(CLI::App* parent);
 
-/// Adds the subcommands of the controllers of machine tools.
+/// Adds the export subcommands for the controllers of machine tools.
 void add_controller_exports(CLI::App* parent);
 
-/// Adds the subcommand `urdf`.
+/// Adds the export subcommand `urdf` for robots.
 void add_robot_exports(CLI::App* parent);
 
 }  // namespace vernier::commands::exchange_cli

@@ -8,19 +8,20 @@
 
 namespace vernier::commands {
 
-/// The values of `--board` and `--board-key`; empty if the option was not given.
+/// The values of the options `--board` and `--board-key`. A value is empty if its option was not given.
 struct ClaimWords {
   std::string board, board_key;
 };
 
-/// Adds `--board` and `--board-key` to a command that changes a board.
+/// Adds the options `--board` and `--board-key` to a command that changes a board.
 void add_board_claim(CLI::App& command, ClaimWords& words);
-/// Converts the options to a claim on the board. Throws InputError if the key is not valid.
+/// Converts the options to a claim, which states the required identity of the board. Throws InputError if the
+/// text of the key is not valid.
 upload::BoardClaim claim_of(const ClaimWords& words);
-/// Compares the board with the claim before data are signed or sent. Throws LimitNotMet with the words
-/// "nothing was sent" if the board is another board.
+/// Compares the identity of the board with the claim, before data are signed or sent. If the board is another
+/// board, throws LimitNotMet with the words "nothing was sent".
 void require_claim(upload::Client& client, const ClaimWords& words);
-/// Records in the assurance which items were compared and which were not.
+/// Records in the assurance which parts of the board's identity were compared and which were not.
 void vouch_for_board(text::Assurance& assurance, const ClaimWords& words, const std::string& board);
 
 }  // namespace vernier::commands

@@ -9,7 +9,8 @@
 
 namespace vernier::compile {
 
-/// Computes d node / d channel as a node. Throws std::domain_error if the node has a step or a table.
+/// Computes the derivative d node / d channel as a node of the graph. Throws std::domain_error if the node
+/// contains a step or a table.
 class Derivative {
  public:
   Derivative(Graph& graph, NodeId channel) : g_(graph), channel_(channel) {}
@@ -23,14 +24,14 @@ class Derivative {
   std::map<NodeId, NodeId> known_;
 };
 
-/// Values of nodes at random positions of their channels' ranges. The random numbers are seeded: each call
-/// gives the same values. A table or a lag has no sampled value. A node that depends on a table or a lag
-/// throws std::domain_error.
+/// Values of nodes at random positions in the ranges of their channels. The random numbers have a fixed seed,
+/// so that each call gives the same values. A table or a lag has no sampled value. For a node that depends on
+/// a table or a lag, Samples throws std::domain_error.
 class Samples {
  public:
   Samples(const Graph& graph, Eigen::Index count) : graph_(graph), count_(count) {}
   const Eigen::ArrayXd& of(NodeId node);
-  /// Sets the values of a channel instead of random values. Call set() before the channel is used.
+  /// Sets the values of a channel, which replace random values. Call set() before the channel is used.
   void set(NodeId channel, Eigen::ArrayXd values) { known_[channel] = std::move(values); }
 
  private:
@@ -41,11 +42,11 @@ class Samples {
   std::map<NodeId, Eigen::ArrayXd> known_;
 };
 
-/// Returns the value of a node that is equal at every sample (a trigonometric identity), otherwise nullopt.
+/// Returns the value of a node that is equal at every sample (for example sin^2 + cos^2); otherwise nullopt.
 std::optional<double> sampled_constant(Samples& samples, NodeId node);
 
-/// Intervals over a part of the declared ranges. The channels in `box` have the range of the box, the other
-/// channels their whole range.
+/// Interval arithmetic over a part (box) of the declared ranges. A channel in `box` has the range of the box.
+/// Any other channel has its whole range.
 class Enclosure {
  public:
   Enclosure(const Graph& graph, const std::map<NodeId, Interval>& box) : graph_(graph), box_(box) {}
@@ -58,17 +59,17 @@ class Enclosure {
 };
 
 /// Returns a lower bound of a node over the declared ranges, by bisection of the positions on which the node
-/// depends. lower_bound_of evaluates at most `boxes` parts. The result is never above the true minimum.
+/// depends. At most `boxes` boxes are evaluated. The lower bound is never above the true minimum.
 double lower_bound_of(const Graph& graph, NodeId node, std::size_t boxes);
 
-/// Upper bounds of |d node / d channel| over the declared ranges. Tables count with their steepest piece,
-/// choices with the steeper side; steps of comparisons are excluded. tables: largest slope of each column,
-/// per graph node.
+/// Upper bounds of |d node / d channel| over the declared ranges. For a table, the slope of its steepest
+/// segment counts. For a choice (min, max), the steeper side counts. The steps of comparisons are excluded.
+/// `table_slopes`: largest slope of each table column, by graph node.
 class Slopes {
  public:
   Slopes(const Graph& graph, NodeId channel, const std::map<NodeId, double>& table_slopes)
       : graph_(graph), channel_(channel), table_slopes_(table_slopes) {}
-  /// From this call on the node counts as constant: its slope by the channel is 0.
+  /// Declares that a node counts as constant from this call on: its slope with respect to the channel is 0.
   void hold(NodeId node) { known_[node] = {}; }
   Interval of(NodeId id);
 

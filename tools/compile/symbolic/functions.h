@@ -8,12 +8,13 @@ namespace vernier::compile {
 
 enum class Function : std::uint8_t { kSin, kCos, kExp, kLog, kSqrt, kReciprocal, kArcTangent };
 
-/// Returns the value of a function; slope_of returns its first derivative. Arguments of sine and cosine and
-/// results of the arc tangent are in degrees.
+/// value_of returns the value of a function, and slope_of returns its first derivative. The arguments of sine
+/// and cosine, and the result of the arc tangent, are in degrees.
 double value_of(Function f, double x);
 double slope_of(Function f, double x);
-/// Returns the largest |first| and |fourth| derivative over an interval (closed form). The fourth bounds the
-/// error of cubic pieces.
+/// Returns the largest magnitude over an interval (closed form): of the first derivative (slope_bound), and
+/// of the fourth derivative (fourth_derivative_bound). The fourth derivative bounds the error of cubic
+/// polynomials.
 double slope_bound(Function f, const Interval& x);
 double fourth_derivative_bound(Function f, const Interval& x);
 const char* name_of(Function f);

@@ -14,13 +14,13 @@
 
 namespace vernier::compile {
 
-/// A value of the error equation; index into Graph's nodes.
+/// Index of a node in the graph of the error equation.
 using NodeId = std::uint32_t;
 
 /// Operation of a node on real numbers, in the units of the machine file (mm, deg, s, mm/min ...).
 enum class NodeKind : std::uint8_t {
-  kConstant,  // number
-  kChannel,   // channel kind and index
+  kConstant,  // value: number
+  kChannel,   // channel: kind and index[0]
   kSum,       // number + sum of coefficient * node
   kProduct,   // args[0] * args[1]
   kTable,     // column index[1] of the table of axis index[0], at args[0] (the raw position)
@@ -31,7 +31,7 @@ enum class NodeKind : std::uint8_t {
   kSign,
   kEqual,
   kLess,
-  kLag,  // first-order lag of args[0] with time constant `number` (s)
+  kLag,  // first-order lag of args[0] with the time constant `number` (s)
 };
 
 struct Term {
@@ -47,24 +47,25 @@ struct Node {
   Function function = Function::kSin;
   std::uint32_t index[2] = {0, 0};
   std::vector<NodeId> args;
-  std::vector<Term> terms;  // kSum: at least one; sorted by node
+  std::vector<Term> terms;  // terms of a kSum: at least one; sorted by node
   Interval range;
 };
 
-/// The error equation as a graph of real-valued operations. Equal operations share one node (hash-consing).
-/// Constants are folded, zeros are pruned, sums are flattened and like terms are collected. Nodes are never
-/// removed. Unreachable nodes need no computing time.
+/// The error equation as a graph of real-valued operations. Equal operations are one node of the graph
+/// (hash-consing). The graph simplifies new nodes: operations on constants are computed, zeros are removed,
+/// nested sums are joined, and like terms are collected. Nodes are never removed. A node that no output uses
+/// needs no computing time.
 class Graph {
  public:
   NodeId constant(double value);
-  /// range: the possible readings of the channel, in the machine file's unit.
+  /// `range`: the possible readings of the channel, in the unit of the machine file.
   NodeId channel(ChannelKind kind, std::uint32_t index, const Interval& range);
   NodeId sum(double constant_part, const std::vector<Term>& terms);
   NodeId product(NodeId a, NodeId b);
   NodeId table(std::uint32_t axis, std::uint32_t column, NodeId position, const Interval& range);
-  /// Throws std::domain_error if the function is not defined over the whole range of the argument.
+  /// Throws std::domain_error if the function is undefined for a value in the range of the argument.
   NodeId function(Function f, NodeId argument);
-  /// kAbs, kSign (b unused), kMin, kMax, kEqual, kLess.
+  /// `kind`: kAbs, kSign (both do not use b), kMin, kMax, kEqual or kLess.
   NodeId choice(NodeKind kind, NodeId a, NodeId b);
   NodeId lag(NodeId input, double tau_s);
 
@@ -91,7 +92,7 @@ class Graph {
   std::map<Key, NodeId> known_;
 };
 
-/// Returns the range of a choice.
+/// Returns the range of the result of a choice (kAbs, kSign, kMin, kMax, kEqual, kLess).
 Interval range_of_choice(NodeKind kind, const Interval& a, const Interval& b);
 
 }  // namespace vernier::compile

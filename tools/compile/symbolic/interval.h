@@ -5,7 +5,7 @@
 
 namespace vernier::compile {
 
-/// The range of a quantity over the declared ranges; low <= high.
+/// Interval of the values of a quantity over the declared ranges; low <= high.
 struct Interval {
   double low = 0, high = 0;
 

@@ -9,10 +9,10 @@
 namespace vernier::compile {
 
 /// Returns the range of an axis in the unit of the machine file: the declared range, or the documented
-/// default for its kind and unit.
+/// default for the kind and unit of the axis.
 Interval axis_range(const model::Machine& machine, std::size_t axis);
-/// Returns the range of an input. Without a declared range: the range of the last fit's rows, widened by a
-/// tenth.
+/// Returns the range of an input: the declared range, if there is one. If no range is declared, the result is
+/// the range of the rows of the last fit, extended by a tenth.
 Interval input_range(const model::Machine& machine, std::size_t input);
 Interval channel_range(const model::Machine& machine, ChannelKind kind, std::size_t index);
 

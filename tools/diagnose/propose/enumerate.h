@@ -9,34 +9,41 @@
 
 namespace vernier::diagnose {
 
-/// A candidate, and the values over which its scanned unknowns are searched.
+/// A candidate effect, with the values over which its scanned unknowns are searched. A scanned unknown is not
+/// a linear coefficient, for example a period or a time constant.
 struct ScannedCandidate {
   effects::Candidate candidate;
-  std::vector<std::vector<double>> grid;  // one list per unknown that is not a coefficient, increasing
-  bool may_lose_columns = false;          // piecewise linear basis: the model may absorb a part of its span
-  FinePeriods fine;                       // of a cyclic error: the periods below its grid
-  double penalty = 0;      // of a search before the scan: twice the logarithm of the number of tested sets
-  double most_driven = 2;  // factor beyond the grid that still counts as inside the search range
+  std::vector<std::vector<double>> grid;  // one list of increasing values for each scanned unknown
+  bool may_lose_columns = false;          // for a piecewise linear basis: the free parameters of the model
+                                          // may absorb a part of its span
+  FinePeriods fine;                       // for a cyclic error: the periods shorter than those of its grid
+  double penalty = 0;      // penalty for a search before the scan: twice the logarithm of the number of
+                           // tested sets
+  double most_driven = 2;  // factor by which a scanned unknown may leave its grid and still count as inside
+                           // the search range
 
-  /// True if a fit moved a scanned unknown from its found value out of the range of its search.
+  /// True if a fit moved the scanned unknown `unknown` from its found value out of its search range.
   bool is_driven_out(std::size_t unknown, double found, double value) const;
 };
 
-/// Returns every effect of the catalogue at every location of the machine that the rule of its
-/// form admits and that the rows can distinguish. Every logged column with a suitable unit is an
-/// input.
+/// Returns the candidates: every effect of the catalogue at every location of the machine that the rule of
+/// the effect's form allows and that the rows can distinguish. Every logged column with a suitable unit is a
+/// possible input of a candidate.
 std::vector<ScannedCandidate> enumerate_candidates(const Evidence& evidence,
                                                    const std::vector<effects::Effect>& effects);
 
-/// Returns locations whose influence on all observations equals that of another location of their kind, but
-/// is many times weaker. Index: as Evidence::places(). Example: a length across the reading direction that is
-/// visible only because the machine is tilted by minutes. An effect that a survey shows at such a location
-/// belongs to the other location.
+/// Returns the locations that another location of the same kind outshines: both have the same influence on
+/// all observations, but the first is many times weaker. The result of outshone_places() has one flag for
+/// each location, in the order of Evidence::places(). Example of a weak location: a length across the reading
+/// direction that is visible only because the machine is tilted by a few minutes of arc. An effect at the
+/// weak location is attributed to the strong location.
 std::vector<char> outshone_places(const Evidence& evidence);
 
-/// Returns the degrees of freedom that the observations can distinguish. Among degrees of freedom with the
-/// same influence on all observations (all but 1e-7 of the direction), the first is used. Rows of the machine
-/// file have priority over an added row. `angles_apart`: returns the first angle and the first length.
+/// Returns the degrees of freedom of the chain that the observations can distinguish. Several degrees of
+/// freedom may have the same influence on all observations (all but 1e-7 of the direction). If several
+/// degrees of freedom have the same influence, only the first of them is in the result. Degrees of freedom of
+/// rows in the machine file have priority over those of an added row. `angles_apart`: true if an angle and a
+/// length with the same influence both stay in the result.
 std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
 
 }  // namespace vernier::diagnose

@@ -9,13 +9,15 @@
 
 namespace vernier::diagnose {
 
-/// Periods of an axis that are shorter than those of the grid; there are too many to project each period. A
-/// cyclic error with so short a period is nearly orthogonal to the part that the model absorbs. A periodogram
-/// therefore shows the possible short periods.
+/// Periods of an axis that are shorter than the periods of the search grid. The number of short periods is
+/// too large for a projection of each period. A cyclic error with a short period is nearly orthogonal to the
+/// part of the readings that the model absorbs. Because a cyclic error with a short period is nearly
+/// orthogonal to what the model absorbs, a periodogram shows the possible short periods.
 struct FinePeriods {
   std::size_t axis = 0;
-  double slowest = 0, fastest = 0;  // frequencies, periods per unit of the axis; fastest 0: no search
-  double step = 0;                  // interval of the tested frequencies
+  double slowest = 0, fastest = 0;  // search range of frequencies, periods per unit of the axis; fastest = 0:
+                                    // no search
+  double step = 0;                  // interval between the tested frequencies
   double length = 0;                // measured range of the axis, in its unit
   Eigen::VectorXd carrier;          // common factor of the sine and the cosine of the term, per reading
 
@@ -26,55 +28,60 @@ struct FinePeriods {
 };
 
 /// Returns the shortest period of an axis that the positions of the axis distinguish from every longer
-/// period. The result is 2.1 steps if the positions are even, nearly even or multiples of one step. The
-/// result is 0 if the positions are uneven enough for all periods down to 1/1000 of the range. The period is
-/// in the unit of the axis.
+/// period. The shortest period is 2.1 steps if the positions of the axis are even, nearly even or multiples
+/// of one step. The shortest period is 0 if the positions are so uneven that they distinguish all periods
+/// down to 1/1000 of the range. The unit of the period is the unit of the axis.
 double shortest_told_apart(const Evidence& evidence, std::size_t axis);
 
-/// Returns the frequency differences at which two cyclic errors are nearly identical at all positions of an
-/// axis. Unit: periods per unit of the axis. If the positions have the spacing s, these frequencies are 1/s
-/// and its multiples. Frequencies up to `most` are returned.
+/// Returns alias frequencies of an axis: frequency differences at which two cyclic errors are nearly
+/// identical at all positions of the axis. The unit of the frequency differences is periods per unit of the
+/// axis. If the positions have the spacing s, the alias frequencies are 1/s and its multiples. Only alias
+/// frequencies up to `most` are returned.
 std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis, double most);
 
-/// Returns the search range at an axis below the shortest period of `grid` (increasing). The search range
-/// extends down to 1/1000 of the measured range, to 2.5 periods for each position, and not below `shortest`
-/// (shortest_told_apart). `carrier` stays empty.
+/// Returns the search range of an axis for periods shorter than the shortest period of `grid` (increasing
+/// values). The search range ends at the longest of three periods: 1/1000 of the measured range, the period
+/// with 80 periods for each position of the axis, and `shortest` (shortest_told_apart). The member `carrier`
+/// of the result is empty.
 FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::vector<double>& grid,
                          double shortest);
 
-/// Returns the common factor of the columns sin(2 pi q / p) and cos(2 pi q / p) of a candidate at all
-/// readings. The factor is equal for every period p. Empty if the term is not such a pair. Call carrier_of
-/// before poses are weighted.
+/// Returns the common factor (carrier) of the columns sin(2 pi q / p) and cos(2 pi q / p) of a candidate, for
+/// each reading. The carrier is the same for every period p. The carrier is empty if the term of the
+/// candidate is not a sine and cosine pair. Call carrier_of before the readings of common poses are weighted
+/// (Evidence::weigh_poses).
 Eigen::VectorXd carrier_of(const Evidence& evidence, const effects::Candidate& candidate,
                            const FinePeriods& fine);
 
 /// A cyclic error sin(2 pi f q), cos(2 pi f q) of the positions q of an axis, times a carrier per reading.
 struct WaveOfAxis {
   std::size_t axis = 0;
-  Eigen::VectorXd carrier;  // of each reading
+  Eigen::VectorXd carrier;  // factor for each reading
 };
 
-/// Returns the exact decrease of chi^2 by a wave at the frequencies first + k * step, beside the
-/// part that the model absorbs and the orthonormal columns `beside`. `residual`: outside of both.
-/// A gain is 0 where the wave is not independent of both.
+/// Returns the exact decrease of chi^2 by a cyclic error at each frequency first + k * step. The model's free
+/// parameters and the orthonormal columns `beside` are fitted too. `residual`: residual after the fit of the
+/// free parameters and `beside`. The decrease of chi^2 is 0 at a frequency whose cyclic error is not
+/// independent of the free parameters and `beside`.
 Eigen::VectorXd wave_gains(const Evidence& evidence, const WaveOfAxis& wave, double first, double step,
                            Eigen::Index count, const Eigen::MatrixXd& beside,
                            const Eigen::VectorXd& residual);
 
-/// Returns the sines and cosines of a wave at the frequencies first + k * step.
+/// Returns the projected sine and cosine of a cyclic error at the frequencies first + k * step.
 ProjectedWaves projected_waves(const Evidence& evidence, const WaveOfAxis& wave, double first, double step,
                                Eigen::Index count);
 
-/// True if exact gains (wave_gains) at `count` frequencies are affordable. A long record uses a periodogram
-/// instead: in a long record, cyclic errors are nearly orthogonal to the columns of the model's free
+/// True if the computing time permits exact values of wave_gains at `count` frequencies. For a long record a
+/// periodogram is used instead: there, cyclic errors are nearly orthogonal to the columns of the model's free
 /// parameters.
 bool is_affordable(const Evidence& evidence, Eigen::Index count, const Eigen::MatrixXd& beside);
 
-/// Returns the most promising short periods for each of several candidates of one axis, refined:
-/// the best ones, and the longest of those that fit nearly as well (the best may be its alias).
-/// promising_periods uses the exact gain of each period beside the orthonormal columns `beside` if that is
-/// affordable, else the periodogram of `residual`. Periods below the level of chance are excluded. `kept`:
-/// renewed, for the indices `candidates` of the list; null keeps nothing.
+/// Returns the most promising short periods, refined, for each of several candidates of one axis. The list
+/// contains the best periods, and the longest period that fits nearly as well, because the best may be its
+/// alias. promising_periods uses the exact decrease of chi^2 beside the columns `beside` if the computing
+/// time permits; otherwise it uses the periodogram of `residual`. Periods whose decrease of chi^2 is likely
+/// by chance are excluded. `kept`: store for the projected columns of the candidates with the indices
+/// `candidates`; null stores nothing.
 std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
                                                    const std::vector<const FinePeriods*>& of_axis,
                                                    const Eigen::MatrixXd& beside,

@@ -10,38 +10,41 @@
 
 namespace vernier::diagnose {
 
-/// Returns the quantities on which a term depends besides positions and constants: dir of an axis,
-/// an input, t ...
+/// Returns the quantities on which a term depends, except positions and constants: the approach direction of
+/// an axis, an input, the time and others.
 std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
                                                  const effects::Candidate& candidate);
 
-/// The best of all candidates. The columns of the candidates are stored side by side, so that sets of
-/// candidates can be compared.
+/// The most promising candidates of a search. The columns of all candidates are stored together, so that sets
+/// of candidates can be compared.
 class Pool {
  public:
   struct Item {
     Scored scored;
-    Eigen::MatrixXd columns;        // after projection on the complement of what the model absorbs
+    Eigen::MatrixXd columns;        // columns after projection on the orthogonal complement of the part that
+                                    // the model absorbs
     std::vector<std::size_t> kept;  // index of the linear unknown of each column
-    bool banned = false;            // failed an acceptance test
+    bool banned = false;            // the candidate failed an acceptance test
     std::string why_not;
   };
 
   Pool(const Evidence& evidence, const Scanner& scanner);
 
-  /// Adds the most promising candidates: those with the largest gain minus penalty, and the best candidate of
-  /// every effect. Scanned values are refined first.
+  /// Adds the most promising of the scored candidates: those with the largest decrease of chi^2 minus
+  /// penalty, and the best candidate of every effect. Scanned values (for example a period) are refined
+  /// before a candidate is added.
   void add(const std::vector<Scored>& scored, const Eigen::MatrixXd& beside);
 
-  /// Removes all entries.
+  /// Removes all candidates from the pool.
   void clear() {
     items_.clear();
     keys_.clear();
   }
 
-  /// The entries that are not banned, as a problem of selection. `items`: item of each entry.
+  /// Returns the selection problem of the candidates that did not fail an acceptance test. `items`: receives
+  /// the index in the pool for each entry of the problem.
   SelectionProblem problem(std::vector<std::size_t>& items) const;
-  /// Returns the selection problem of the given items, excluded or not.
+  /// Returns the selection problem of the given candidates, including candidates that failed a test.
   SelectionProblem problem_of(const std::vector<std::size_t>& items) const;
 
   std::size_t size() const { return items_.size(); }
@@ -52,27 +55,30 @@ class Pool {
     items_[i].why_not = std::move(why);
   }
 
-  /// Returns the columns of several items side by side.
+  /// Returns the columns of several candidates side by side.
   Eigen::MatrixXd columns(const std::vector<std::size_t>& items) const;
-  /// A term from the search, without a name in the catalogue.
+  /// True if a candidate is a term of the product search, without a name in the catalogue.
   bool is_custom(std::size_t i) const { return candidate(i).choice.effect == &effects::custom_effect(); }
-  /// Returns the share of the squares of an item's columns that lies in the span of another's.
+  /// Returns the share of the sum of squares of one candidate's columns that is in the span of another
+  /// candidate's columns.
   double common_share(std::size_t item, std::size_t other) const;
-  /// Returns the effective number of readings that support an item: squared sum over the sum of squares of
-  /// its columns' squares.
+  /// Returns the effective number of readings that support a candidate. If s is the sum of squares of the
+  /// columns in one reading, the number is (sum of s)^2 / (sum of s^2).
   double witnesses(std::size_t item) const;
-  /// True if two items have the same effect (or cause in the catalogue), driving axis and inputs. Two items
-  /// with equal effect on the readings count as the same cause.
+  /// True if two candidates have the same effect (or cause in the catalogue), the same driving axis and the
+  /// same inputs. Two candidates with the same effect on the readings also count as the same cause.
   bool same_cause(std::size_t a, std::size_t b) const;
-  /// True if two items span the same columns (all but a thousandth of their squares).
+  /// True if the columns of two candidates span the same space (all but a thousandth of their squares).
   bool same_columns(std::size_t a, std::size_t b) const;
-  /// True if `general` has more unknowns than `special`, and depends on all that `special` depends on.
+  /// True if the candidate `general` has more unknowns than `special` and depends on all quantities on which
+  /// `special` depends.
   bool is_richer(std::size_t general, std::size_t special) const;
-  /// True if `general` is richer than `special` and contains its columns (all but 2 % of their squares).
+  /// True if the candidate `general` is richer than `special` and its columns contain the columns of
+  /// `special` (all but 2 % of their squares).
   bool contains(std::size_t general, std::size_t special) const;
-  /// True if two items depend on the same kinds of quantities. Positions, count of rows and travel since a
-  /// reversal do not count. If the columns of two such items are also equal, the items are two forms of one
-  /// term.
+  /// True if two candidates depend on the same kinds of quantities. For this comparison, positions, the row
+  /// number and the travel since a reversal are ignored. If two candidates also have equal columns, they are
+  /// two forms of one term.
   bool same_kind(std::size_t a, std::size_t b) const;
   /// Returns the penalty of a candidate for the number of tested candidates (twice the logarithm of their
   /// number).

@@ -14,9 +14,9 @@ struct Product {
   std::vector<std::string> inputs, units;
 };
 
-/// Searches beyond the catalogue. If `extend` is empty, enumerate_products returns all products of one or two
-/// recorded quantities at every location. Otherwise enumerate_products returns each product of `extend` with
-/// one additional factor.
+/// Builds candidates that are not in the catalogue: products of recorded quantities. If `extend` is empty,
+/// enumerate_products returns all products of one or two recorded quantities at every location of the chain.
+/// If `extend` is not empty, enumerate_products returns each product of `extend` with one additional factor.
 std::vector<ScannedCandidate> enumerate_products(const Evidence& evidence,
                                                  const std::vector<Product>& extend);
 

@@ -8,19 +8,20 @@
 
 namespace vernier::diagnose {
 
-/// Selects the gravity functions along a chain that become candidates: functions that several axes drive
-/// together, few enough to distinguish. Functions of one axis, or of a sum of parallel axes, have separate
-/// forms.
+/// Selects the gravity functions along a chain that become candidates. Several axes together drive these
+/// functions, and the readings can distinguish them. Gravity functions of one axis, or of a sum of parallel
+/// axes, have separate forms in the catalogue.
 class Pulls {
  public:
   explicit Pulls(const Evidence& evidence);
 
-  /// True if a form needs a gravity function along the chain.
+  /// True if a form of an effect needs a gravity function along the chain.
   static bool asks(const effects::EffectForm& form);
-  /// True if such a form is possible at this location. For a bend, only variants() tries the directions
-  /// `toward`.
+  /// True if a form with a gravity function is possible at the location `place`. For a bend, only variants()
+  /// tests the directions `toward`.
   bool admits(const effects::EffectForm& form, const effects::DofPlace& place) const;
-  /// Returns a choice with its location, once for every bar and every mass with a distinct gravity function.
+  /// Returns copies of a choice with its location, one copy for every bar and every mass whose gravity
+  /// function is different from the others.
   std::vector<effects::Choice> variants(const effects::Choice& choice) const;
 
  private:

@@ -7,12 +7,13 @@
 
 namespace vernier::diagnose {
 
-/// Returns the thermal response of each structure of the machine, as the residual shows it: a sum of
-/// temperatures and first-order lags of temperatures, constant and by the position of the structure's axis,
-/// at the degrees of freedom of one transform. Forward, backward and exchange steps on the extended BIC
-/// select the summands (thermal transfer functions, as Horejs and Mayr use them). `effects`:
-/// the catalogue; no result without an effect of found terms. `beside`: orthonormal columns of effects that
-/// the response does not have to explain.
+/// Returns the thermal response of each structure of the machine, estimated from the residual. A response is
+/// a sum of temperatures and of first-order lags of temperatures. A response acts at the degrees of freedom
+/// of one transform, as a constant and in proportion to the position of the structure's axis. Forward,
+/// backward and exchange steps on the extended BIC select the summands of a response (thermal transfer
+/// functions, as Horejs and Mayr use them). `effects`: the catalogue of effects; the result is empty if no
+/// effect of the catalogue has found terms. `beside`: orthonormal columns of effects that are in the model,
+/// so that the response does not explain them.
 std::vector<ScannedCandidate> enumerate_responses(const Evidence& evidence,
                                                   const std::vector<effects::Effect>& effects,
                                                   const Eigen::MatrixXd& beside);

@@ -11,71 +11,74 @@
 
 namespace vernier::diagnose {
 
-/// Effect of a candidate at its best scanned values on the residual, after the free parameters of the model
-/// are fitted.
+/// Effect of a candidate on the residual, with its scanned unknowns at their best values and the free
+/// parameters of the model fitted.
 struct Scored {
-  std::size_t candidate = 0;    // index into the list that was scanned
-  std::vector<double> scanned;  // values of its scanned unknowns
+  std::size_t candidate = 0;    // index of the candidate in the scanned list
+  std::vector<double> scanned;  // values of the candidate's scanned unknowns
   double gain = 0;              // decrease of chi^2
-  double own_share = 0;         // smallest share of a column that the model cannot absorb
-  Eigen::Index unknowns = 0;    // coefficients and scanned values
+  double own_share = 0;         // smallest share, over the candidate's columns, that the model cannot absorb
+  Eigen::Index unknowns = 0;    // number of coefficients and scanned values
 };
 
-/// Scores of all candidates against a residual. `beside`: orthonormal columns of the effects already
-/// accepted, in the orthogonal complement of the model's free parameters. The parts of candidates along these
-/// columns do not count.
+/// Computes the scores of all candidates for a residual. `beside`: orthonormal columns of the accepted
+/// effects, in the orthogonal complement of the model's free parameters. The part of a candidate along the
+/// columns `beside` does not count.
 class Scanner {
  public:
   Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates);
 
-  /// Returns the best values on the grid for every candidate that is visible in the data, in the
-  /// order of the list, from `first_candidate` on. `progress`: share done.
+  /// Returns the best values on the grid for every candidate that is visible in the data. The order is that
+  /// of the list, beginning at `first_candidate`. `progress`: receives the completed share of the scan (0 to
+  /// 1).
   std::vector<Scored> scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
                            std::size_t first_candidate = 0);
 
-  /// Searches periods shorter than those of the grid. For each candidate with such periods, returns the best
-  /// period above the level of chance. Among periods that fit as well as the best, scan_fine returns the
-  /// longest, which is the usual name of the family.
+  /// Searches periods of cyclic errors that are shorter than the periods of the grid. Returns the best short
+  /// period for each candidate that has one above the level of chance. If several periods fit equally well,
+  /// scan_fine returns the longest period, which is the usual one to report.
   std::vector<Scored> scan_fine(const Eigen::MatrixXd& beside, std::size_t first_candidate = 0);
 
-  /// Moves the scanned values between the grid's neighbours to the largest gain.
+  /// Refines the scanned values between neighbouring grid values, up to the largest decrease of chi^2.
   void refine(Scored& scored, const Eigen::MatrixXd& beside) const;
 
-  /// For a candidate with one period, returns the other periods that fit as well as the period of the
-  /// candidate, within chance. The positions of the axis do not distinguish these periods. Longest first,
-  /// down to 1/1000 of the range; empty for other candidates.
+  /// Returns, for a candidate with one period, the other periods that fit equally well within chance. The
+  /// positions of the axis do not distinguish alias periods. The alias periods are sorted, longest first,
+  /// down to 1/1000 of the range. The result of aliases() is empty for a candidate without a single period.
   std::vector<double> aliases(const Scored& scored, const Eigen::MatrixXd& beside) const;
 
-  /// Returns the independent columns of a scored candidate after projection. Columns that the model or
-  /// earlier columns contain are dropped. `kept`: indices of the linear unknowns of the columns that remain.
+  /// Returns the independent columns of a scored candidate, after projection on the complement of the model's
+  /// free parameters. A column that the model or earlier columns of the candidate contain is removed. `kept`:
+  /// receives the indices of the linear unknowns whose columns remain.
   Eigen::MatrixXd projected(const Scored& scored, std::vector<std::size_t>* kept = nullptr) const;
 
   const std::vector<ScannedCandidate>& candidates() const { return candidates_; }
 
  private:
   class Part;
-  /// Difference of chi^2 within which two periods fit equally well, if the remaining chi^2 with the cyclic
-  /// error is `left`. If that exceeds the noise, it is the scale.
+  /// Returns the difference of chi^2 below which two periods fit equally well. `left`: chi^2 that remains
+  /// with the cyclic error in the model. If `left` exceeds the noise, the difference is scaled by `left`.
   double alike_within(double left) const;
-  /// Best of a candidate's periods, by the full decrease of the residual.
+  /// Returns the score of a candidate with the best of the given periods, by the full decrease of the
+  /// residual's chi^2.
   Scored best_period(std::size_t candidate, const std::vector<double>& periods, const Eigen::MatrixXd& beside,
                      const Eigen::VectorXd& residual) const;
-  /// Returns the residual beside the columns `beside`, which candidates must explain.
+  /// Returns the residual after a fit of the columns `beside`. Candidates must explain this residual.
   Eigen::VectorXd residual_beside(const Eigen::MatrixXd& beside) const;
-  /// Returns the gain of a scored candidate at other scanned values; 0 if the readings do not depend on the
-  /// candidate at these values.
+  /// Returns the decrease of chi^2 by a candidate at the values `scanned`; 0 if the readings do not depend on
+  /// the candidate at these values.
   double gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
                  const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
-  /// Returns frequencies at which a cyclic error may fit as well as one at `own`, up to `most`: from the
-  /// spectral window of the positions, and, if the computing time permits, all peaks of the exact gain near
-  /// `mine`.
+  /// Returns frequencies up to `most` at which a cyclic error may fit as well as at the frequency `own`. The
+  /// alias frequencies come from the spectral window of the positions and, if the computing time permits,
+  /// from all peaks of the exact decrease of chi^2 near `mine`.
   std::vector<double> possible_aliases(const Scored& scored, double own, double most, double mine,
                                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
-  /// Sets gain, share and unknowns of a candidate at a point of scanned values; false if the readings do not
-  /// depend on the candidate at this point.
+  /// Sets gain, share and number of unknowns of a candidate at one point of scanned values. Returns false if
+  /// the readings do not depend on the candidate at this point.
   bool score(const ProjectedPoint& point, const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual,
              Scored& scored) const;
-  /// Returns the columns of a candidate at scanned values.
+  /// Returns the projected columns of a candidate at the values `scanned`.
   ProjectedPoint projected_at(ColumnMaker& maker, std::size_t candidate,
                               const std::vector<double>& scanned) const;
 

@@ -6,33 +6,37 @@
 
 namespace vernier::diagnose {
 
-// All thresholds of a diagnosis: numbers that were chosen and could have another value. One struct per
-// subject, each number with its unit, meaning and source. "Experiment" without a name is the sweep of
-// tools/docs/thresholds.md: halved and doubled over surveys of known truth. Purely numerical constants
-// (rounds until convergence, sections of a golden search, columns in a batch) are defined where they are
-// used.
+// All thresholds of a diagnosis: numbers that were chosen and could have other values. Each subject has one
+// struct of thresholds. Each threshold has its unit, meaning and source. "Experiment" without a name means
+// the sweep of tools/docs/thresholds.md: each threshold was halved and doubled over surveys with a known
+// error. Purely numerical constants (iterations until convergence, steps of a golden section search, columns
+// in a batch) are in the source files that use them.
 
-/// Assumptions about the data before any candidate is tested.
+/// Thresholds for assumptions about the data, which apply before any candidate is tested.
 struct EvidenceThresholds {
-  /// Limit of the scaled Jacobian, as a share of its largest direction: a fit does not follow a weaker
-  /// direction. Weaker directions are visible only through products of errors. Experiment: chains with
-  /// station tables, whose spectrum has a gap at this value.
+  /// Limit for the singular values of the scaled Jacobian, as a share of the largest singular value. A fit
+  /// does not change the parameters along a direction whose singular value is below the limit. Parameter
+  /// directions with a singular value below the limit are visible only through products of errors. Source:
+  /// experiment with chains with station tables, whose singular values have a gap at the limit.
   double absorb_cutoff = 1e-4;
-  /// If the Jacobian has more numbers than this (240 MB), only every k-th row is used. The limit is for long
-  /// surveys.
+  /// Largest number of elements of the Jacobian (240 MB). In a long survey with more elements, only every
+  /// k-th row is used.
   double most_numbers = 3e7;
-  /// Significance level at which readings of one pose are assumed to share an error (analysis of
-  /// variance). Searle 1992.
+  /// Significance level of the test whether the readings of one pose have a common error (analysis of
+  /// variance, Searle 1992).
   double pose_chance = 1e-3;
-  /// Degrees of freedom between and within poses that the test for a shared pose error requires. With fewer
-  /// degrees of freedom, the uncertainty of the variance exceeds 45 % (sqrt(2/10)).
+  /// Number of degrees of freedom, both between and within poses, that the test for a common error of a pose
+  /// requires. With fewer than 10 degrees of freedom, the relative uncertainty of the variance exceeds 45 %
+  /// (sqrt(2/10)).
   double pose_freedom = 10;
-  /// Steps of an axis are even if they are multiples of the smallest step, to within this share of the
-  /// smallest step. The value represents the positioning accuracy relative to the step of a measurement.
+  /// Tolerance for even steps of an axis, as a share of the smallest step. Steps are even if they are
+  /// multiples of the smallest step within this tolerance. The tolerance of 5 % represents the positioning
+  /// accuracy relative to the step of a measurement.
   double even_step = 0.05;
-  /// Response of the readings to a motion at a location in the chain (axis and degree of freedom), as a share
-  /// of the largest response to motions of the same kind. A response below this share is only rounding.
-  /// Example: a rotation about an axis through the read point.
+  /// Smallest response of the readings to a motion at a location in the chain (axis and degree of freedom),
+  /// as a share of the largest response to motions of the same kind. A smaller response of the readings is
+  /// only rounding error. Example of a response that is only rounding error: a rotation about an axis through
+  /// the measured point.
   double rounding = 1e-9;
 
   template <class Visit>
@@ -46,75 +50,84 @@ struct EvidenceThresholds {
   }
 };
 
-/// Thresholds for the candidates, and for the values over which their unknowns are searched.
+/// Thresholds for the candidate effects, and for the values over which their scanned unknowns are searched.
 struct CandidateThresholds {
-  /// Share of a unit vector, on average over the rows, that must be along gravity (a length) or across
-  /// gravity (an axis of rotation) for a location to sag: 17 degrees. A tilted table of 15 degrees counts as
-  /// level.
+  /// Threshold for a location that can sag under gravity (17 degrees). The direction of a length must be
+  /// along gravity, or the axis of a rotation across gravity, by this share of a unit vector on average over
+  /// the rows. A table that is tilted by 15 degrees counts as level.
   double sag_share = 0.3;
-  /// Cosine above which joints count as parallel: 2.6 degrees. Errors of assembly are a tenth of this angle.
+  /// Cosine of the angle between two joint axes above which the axes count as parallel: 2.6 degrees. Assembly
+  /// errors of the joint axes are a tenth of this angle.
   double parallel_cosine = 0.999;
-  /// Largest number of products of sines and cosines in a gravity function along the chain: a tick computes
-  /// all of them. An arm of seven joints on a tilted base has 30.
+  /// Largest number of products of sines and cosines in a gravity function along the chain, because each tick
+  /// of the control computes all products. The gravity function of a seven-joint arm on a tilted base has 30
+  /// products.
   std::size_t most_terms_of_gravity = 40;
-  /// Cosine between the moments of two masses over the rows above which the masses count as one. A hundredth
-  /// of the squares then differs, below the resolution of any survey.
+  /// Limit for the cosine between the moments of two masses over the rows. If the cosine between the moments
+  /// of two masses is above the limit, the two masses count as one mass. At the limit of the cosine, a
+  /// hundredth of the squares differs between the moments of two masses, which is below the resolution of any
+  /// survey.
   double same_moment = 0.995;
-  /// Share of the declared range above which terms name the declared range instead of the measured
+  /// If the measured range is more than this share of the declared range of an axis, terms name the declared
   /// range: "200" and not "199.3".
   double declared_range_share = 0.8;
-  /// Largest number of steps between runs. More steps can follow any drift and would report a
-  /// false jump.
+  /// Largest number of steps (jumps) between runs in one effect. More than four steps can follow any drift,
+  /// so that the diagnosis would report a false jump.
   std::size_t most_steps_of_runs = 4;
-  /// Correlation with the row number above which a logged column is a clock or a counter.
+  /// A logged column is a clock or a counter if its correlation with the row number exceeds this value.
   double like_a_clock = 0.95;
-  /// Readings for each function of a piecewise linear basis. With fewer readings per function, the table
-  /// follows the noise of single readings.
+  /// Number of readings that each function of a piecewise linear basis requires. With fewer readings per
+  /// function, the table follows the noise of single readings.
   double readings_per_hat = 4;
-  /// Range of the searched time constants. Shortest: this many intervals of the rows, or this part of their
-  /// duration if that is longer; longest: this many durations. Beyond this range, a first-order lag is a step
-  /// or a straight line.
+  /// Range of the searched time constants. The shortest time constant is `time_least_steps` intervals between
+  /// rows, or the duration of the rows divided by `time_least_part` if that is longer. The longest is
+  /// `time_most` durations. A first-order lag with a shorter or longer time constant looks like a step or a
+  /// straight line.
   double time_least_steps = 3, time_least_part = 200, time_most = 3;
-  /// Number of time constants in that range, logarithmic: a factor of 1.5 apart, refined
-  /// afterwards.
+  /// Number of time constants in the searched range, on a logarithmic scale: a factor of 1.5 apart. The best
+  /// time constant is refined.
   std::size_t time_values = 16;
-  /// Largest number of summands of a thermal response. A column with two walls and four delays of its
-  /// thermometers, in three directions and by height, needs about ten. Source: experiment (columns in finite
-  /// differences: 8 to 10).
+  /// Largest number of summands of a thermal response. The thermal response of a machine column needs about
+  /// ten summands: two walls and four delays of its thermometers, in three directions and by height. Source:
+  /// experiment (columns in finite differences: 8 to 10).
   std::size_t most_of_response = 12;
-  /// Range of the searched decay lengths, as parts of the travel range.
+  /// Range of the searched decay lengths: the travel range divided by each of these numbers.
   double travel_least_part = 500, travel_most_part = 2;
-  std::size_t travel_values = 14;  // a factor of 1.6 apart, refined afterwards
-  /// Periods of the grid: largest number of periods in the range (a periodogram searches shorter periods),
-  /// and number of frequencies for each frequency that the range distinguishes. The longest period of the
-  /// grid is this share of the range. A longer period is a curve, not a period.
+  std::size_t travel_values = 14;  // number of decay lengths, a factor of 1.6 apart; the best decay length is
+                                   // refined
+  /// Periods of the search grid: largest number of periods in the range (a periodogram searches shorter
+  /// periods), and number of tested frequencies for each frequency that the range distinguishes.
+  /// `longest_period_share`: longest period of the search grid, as a share of the range. An error with a
+  /// longer period than this looks like a curve, not like a cyclic error.
   double most_periods = 100, periods_per_range = 2.5, longest_period_share = 0.4;
-  /// Longest period, as a share of the range, for a linear axis that was read at even positions only. There a
-  /// short period looks like a long one: six tenths of a period in the range are not yet a parabola.
+  /// Longest searched period for a linear axis that was read at even positions only, as a share of the range.
+  /// At even positions a short period looks like a long period (aliasing). Six tenths of a period in the
+  /// range are not yet a parabola.
   double longest_aliased_share = 1.6;
-  /// Integer fractions of a revolution that are always tested: gears and bearings up to the
-  /// twelfth order.
+  /// Integer fractions of one revolution that are always tested as periods: errors of gears and bearings up
+  /// to the twelfth order.
   std::size_t harmonics_of_turn = 12;
-  /// Share of a period that an axis must travel to show a cyclic error of known period. On a shorter travel
-  /// the cyclic error is a curve.
+  /// Share of a known period that an axis must travel to show a cyclic error with this period. If an axis
+  /// travels less than this share of the period, the cyclic error looks like a curve.
   double least_of_a_period = 0.75;
-  /// Share of one revolution that a rotary axis must travel to show a cyclic error with the period of one
-  /// revolution, the most frequent period: half a revolution.
+  /// Share of one revolution that a rotary axis must travel to show a cyclic error with one period per
+  /// revolution, the most frequent period.
   double least_of_a_turn = 0.5;
-  /// Number of positions of an axis in one approach direction, and share of the rows, above which this
-  /// approach direction has a grid of its own.
+  /// An approach direction of an axis has its own grid of positions above two limits: a number of positions,
+  /// and a share of the rows.
   std::size_t comb_positions = 6;
   double comb_share = 0.25;
-  /// Steps per period: two by the sampling theorem, and a twentieth for steps that are not quite
-  /// even.
+  /// Number of steps in the shortest period: two by the sampling theorem, plus a twentieth for steps that are
+  /// not quite even.
   double steps_per_period = 2.1;
-  /// 1 - cosine below which two locations have the same influence on all readings: sqrt of the rounding, with
-  /// three digits of margin.
+  /// Limit for 1 - cosine of the influences of two locations on all readings. If 1 - cosine is below the
+  /// limit, the influences of both locations are equal. The value is sqrt of the rounding error, with three
+  /// digits of margin.
   double same_place = 1e-7;
-  /// A location is excluded if another location has the same influence, this factor stronger: a tilt of 6
-  /// degrees.
+  /// A location is excluded if another location has the same influence on the readings, but is stronger by
+  /// this factor (a tilt of 6 degrees).
   double outshone = 10;
-  /// Share of the search range by which the fit may move a scanned unknown beyond this range.
+  /// Factor by which the fit may move a scanned unknown beyond the limits of its search range.
   double driven_out = 2;
 
   template <class Visit>
@@ -151,33 +164,37 @@ struct CandidateThresholds {
   }
 };
 
-/// The periodogram below the grid's periods.
+/// Thresholds for the periodogram, which searches periods shorter than those of the grid.
 struct FinePeriodThresholds {
-  /// Number of tested frequencies for each frequency that the range distinguishes. A peak between two tested
-  /// frequencies keeps nine tenths of its height.
+  /// Number of tested frequencies for each frequency that the measured range distinguishes. A peak between
+  /// two tested frequencies keeps nine tenths of its height.
   double per_range = 3;
-  /// Limits of the search for short periods: periods over the range, and periods for each measured position.
-  /// The limit of the periods over the range (1000) is a ball screw of 1 mm lead on 1 m. The limit of the
-  /// periods per position: fewer positions per period do not show the cyclic error. With twelve positions the
-  /// best of a thousand periods explains 80 % of an unrelated pattern, and other periods explain as much. A
-  /// cyclic error that was found with so few positions is reported with its aliases (Scanner::aliases).
+  /// Limits of the search for short periods: number of periods in the range, and number of periods for each
+  /// measured position. The limit of 1000 periods in the range corresponds to a ball screw of 1 mm lead on an
+  /// axis of 1 m. The limit of 80 periods for each position exists because fewer positions per period do not
+  /// show the cyclic error. With only twelve positions, the best of a thousand periods explains 80 % of an
+  /// unrelated error pattern, and other periods explain as much. A cyclic error that is found with only a few
+  /// positions is reported together with its aliases (Scanner::aliases).
   double most_periods = 1000, per_position = 80;
-  /// Number of peaks of a location that are scored in full, in addition to the slowest of those that fit
-  /// nearly as well.
+  /// Number of peaks of the periodogram that are evaluated in full for each location. The slowest of the
+  /// peaks that fit nearly as well is evaluated too.
   std::size_t peaks = 3;
-  /// Power of the window of the positions, as a share of its largest, above which periods are aliases of each
-  /// other. The first value is for candidates, the second value is for the decision.
+  /// Limits for the power of the spectral window of the positions, as a share of its largest power. Periods
+  /// are aliases of each other above the limit. `alias_near` is the limit for a possible alias. `alias_same`
+  /// is the limit for the decision.
   double alias_near = 0.8, alias_same = 0.9999;
-  /// Power of the window of the positions, as a share of its largest, above which two periods are compared in
-  /// full: do the readings distinguish them?
+  /// Limit for the power of the spectral window of the positions, as a share of its largest power. If the
+  /// power of the spectral window exceeds the limit, two periods are compared in full, to test whether the
+  /// readings distinguish them.
   double alias_partly = 0.9;
-  /// Smallest number of frequencies for a search.
+  /// Smallest number of tested frequencies for which the search for short periods is done.
   double fewest = 4;
-  /// Difference of chi^2 by which the highest peak may exceed a slower peak and still be its alias. Kass and
-  /// Raftery 1995: very strong.
+  /// Largest difference of chi^2 between the highest peak of the periodogram and a slower peak for which the
+  /// highest peak may be an alias of the slower peak. Source of the value 10: "very strong" evidence by Kass
+  /// and Raftery 1995.
   double nearly_as_well = 10;
-  /// Difference of chi^2 that distinguishes the periods that are scored in full: the required distance of
-  /// alternatives.
+  /// Difference of chi^2 that distinguishes two periods that are evaluated in full. The threshold for periods
+  /// equals the required distance of alternatives.
   double told_apart = 6;
 
   template <class Visit>
@@ -195,41 +212,44 @@ struct FinePeriodThresholds {
   }
 };
 
-/// Thresholds for a column to count, and the penalty of a candidate.
+/// Thresholds for the columns of candidates, and the penalties of candidates.
 struct PoolThresholds {
-  /// Share of a column's length that remains after projection on the orthogonal complement of the model's
-  /// free parameters. Below the first value the column is not visible in the data; below the second, a column
-  /// of a piecewise linear basis repeats the other columns. A thousandth of an effect of 100 um is the noise
-  /// of a laser.
+  /// Smallest share of a column's length that must remain after projection on the orthogonal complement of
+  /// the model's free parameters. Below `least_own` a column is not visible in the data. Below
+  /// `least_independent` a column of a piecewise linear basis repeats the other columns. A thousandth of an
+  /// effect of 100 um is as small as the noise of a laser interferometer.
   double least_own = 1e-3, least_independent = 1e-3;
-  /// Share of a column's square that remains after projection on the orthogonal complement of the columns of
-  /// a set. Below this value the column is a copy of the set.
+  /// Smallest share of a column's square that must remain after projection on the orthogonal complement of
+  /// the columns of a set. A column with a smaller share is a copy of the set.
   double least_pivot = 1e-5;
-  /// Preference for the form nearest to the axis among forms that fit equally well: a difference of the BIC
-  /// far below any evidence.
+  /// Preference for the form nearest to the axis if several forms fit equally well. The preference is a
+  /// difference of the BIC, far below any evidence.
   double step_of_place = 0.05;
-  /// Penalty of a form that the catalogue calls rare: twice the logarithm of its relative
-  /// frequency, a twentieth.
+  /// Penalty of a form that the catalogue marks as rare: twice the negative logarithm of its relative
+  /// frequency, which is one in twenty.
   double rare = 6;
-  /// Number of grid values that count as one test, because neighbouring values explain nearly the same.
+  /// Number of values of the search grid that count as one test, because neighbouring values explain nearly
+  /// the same.
   double points_per_try = 2.5;
-  /// Number of candidates that enter the pool with one scan, and smallest number for each effect. Source:
-  /// experiment.
+  /// Number of candidates that one scan adds to the pool, and smallest number of candidates for each effect.
+  /// Source: experiment.
   std::size_t most_at_once = 50, of_each_effect = 3;
-  /// Change of the BIC above which a candidate is refined before it enters the pool. A candidate below this
-  /// value never becomes significant.
+  /// Change of the BIC above which a candidate's scanned values are refined before the candidate is added to
+  /// the pool. A candidate with a smaller change of the BIC never becomes significant.
   double refined_above = -20;
-  /// Share of chi^2 per degree of freedom that counts as noise during the ranking; the other half is
-  /// attributed to an effect.
+  /// Share of chi^2 per degree of freedom that counts as noise when candidates are ranked. The other half of
+  /// chi^2 is attributed to an effect.
   double noise_share = 0.5;
-  /// Two periods of one location are different candidates if they differ by more than 1 part in this number.
+  /// Two periods at one location are different candidates if they differ by more than one part in
+  /// `periods_per_e` (here one eighth).
   double periods_per_e = 8;
-  /// First value: share of an item's squares that a span may lack and still contains the item. The second
-  /// value is the share for two items that count as equal.
+  /// `held_share`: a candidate is contained in a set of columns even if this share of its squares is outside
+  /// the span of the set. `same_share`: two candidates are equal if at most this share of their squares
+  /// differs.
   double held_share = 0.02, same_share = 1e-3;
   /// For rows without a standard uncertainty u, where any remaining structure counts as noise: the simpler
-  /// form is the cause if its decrease of chi^2 is more than this share of the decrease by the richer form.
-  /// In this case the remaining residual has another cause.
+  /// form is the cause if it achieves more than this share of the decrease of chi^2 by the richer form. If
+  /// the simpler form achieves this share, the remaining residual has another cause.
   double simple_share = 0.9;
 
   template <class Visit>
@@ -251,56 +271,64 @@ struct PoolThresholds {
   }
 };
 
-/// Requirements for accepting an effect.
+/// Thresholds that an effect must meet to be accepted.
 struct AcceptanceThresholds {
-  /// Decrease of the BIC that is evidence, and the required distance of an alternative for a named
-  /// cause. Kass and Raftery 1995: 6 is strong.
-  /// 2 ln 20 = 6: a cause that is more than 20 times less likely than the best one is rejected.
+  /// `evidence`: decrease of the BIC that counts as evidence for an effect. `distance`: increase of the BIC
+  /// by which an alternative must be worse for a named cause. Kass and Raftery 1995: a difference of 6 in the
+  /// BIC is strong evidence. The distance 6 is 2 ln 20: a cause that is more than 20 times less likely than
+  /// the best cause is rejected.
   double evidence = 6, distance = 6;
-  /// Distance by the linear estimate up to which an alternative is fitted in full. The fit decides whether
-  /// it is within `distance`.
+  /// Limit of an alternative's distance in the BIC by the linear estimate. An alternative whose linear
+  /// estimate of the distance is below the limit is fitted in full. The full fit decides whether the distance
+  /// of an alternative is below `distance`.
   double distance_of_fits = 12;
-  /// Required advantage of a named cause over the instrument alone. Kass and Raftery 1995: 10 is
-  /// very strong.
+  /// Required advantage in the BIC of a named cause over an error of the instrument alone. Kass and Raftery
+  /// 1995: a difference of 10 in the BIC is very strong evidence.
   double instrument_distance = 10;
-  /// Share of an effect's motion that changes from row to row. Below this value the effect is as slow as a
-  /// drift of the instrument (von Neumann 1941: 1 for random rows). Experiment: temperatures in a survey of
-  /// random rows are at 0.01 to 0.1, multiplied by an axis position at 0.3 to 1.
+  /// Smallest share of an effect's motion that must change from row to row. Below this share the effect is as
+  /// slow as a drift of the instrument (von Neumann 1941: the share is 1 for random rows). Source:
+  /// experiment. In a survey with rows in random order, temperatures have shares of 0.01 to 0.1; temperatures
+  /// multiplied by an axis position have 0.3 to 1.
   double slow_share = 0.15;
-  /// Share of the decrease on the fit rows that an effect must reach on held-out runs. An effect that was
-  /// fitted to noise does not reduce chi^2 of held-out runs; a true effect reduces chi^2 by nearly the same
-  /// amount as on the fit rows.
+  /// Share of the decrease of chi^2 on the fit rows that an effect must reach on held-out runs. An effect
+  /// that was fitted to noise does not reduce chi^2 of held-out runs. A true effect reduces chi^2 of held-out
+  /// runs nearly as much as chi^2 of the fit rows.
   double held_out_share = 0.2;
-  /// In this share of the held-out runs the contribution of an effect must keep its direction, by this cosine
-  /// (60 degrees).
+  /// `stable_runs`: share of the held-out runs in which the contribution of an effect must keep its
+  /// direction. `stable_cosine`: the required cosine (60 degrees).
   double stable_runs = 0.75, stable_cosine = 0.5;
-  /// Share of an effect in one block above which the other blocks cannot confirm the effect.
+  /// Limit for the share of an effect that is in one block. If more than the limit of an effect is in one
+  /// block, the other blocks cannot confirm the effect.
   double in_one_block = 0.8;
-  /// Number of blocks into which a single run is divided; a run with this share of the rows is divided too.
-  /// An effect of runs is tested on this many parts of each run.
+  /// `blocks_of_one_run`: number of blocks into which a single run is divided. `large_run`: a run with this
+  /// share of the rows is divided too. `parts_of_run`: an effect of runs is tested on this many parts of each
+  /// run.
   std::size_t blocks_of_one_run = 5;
   double large_run = 1.0 / 3;
   std::size_t parts_of_run = 4;
-  /// Share of the information on a direction that the other blocks must contain to determine the direction.
+  /// Share of the information about a direction in the parameters that the other blocks must contain to
+  /// determine this direction.
   double determined_share = 0.01;
-  /// Levels of a feed or a temperature are different if their distance is this share of the fastest feed, or
-  /// this many degC. A larger number of levels is a sweep, which is divided into this many parts.
+  /// Smallest distance between two levels: of the feed, as a share of the fastest feed; of a temperature, in
+  /// degC. If a quantity has more than `most_levels` levels, it is a sweep and is divided into
+  /// `parts_of_sweep` parts.
   double same_feed = 0.05, least_warmth_degC = 1;
   std::size_t most_levels = 8, parts_of_sweep = 3;
-  /// Largest size of a term as a share of the machine's reach, or of the travel of the rotary axis that
-  /// drives the term. This limit applies if the catalogue's own limit, made for machine tools, is smaller:
-  /// the eccentricity of a resolver, the sag of a long arm. Joints of humanoid robots yield by one degree in
-  /// fifty.
+  /// Largest size of a term: as a share of the machine's reach for a length, or of the travel of the rotary
+  /// axis that drives the term for an angle. The larger of two limits applies: this share or the limit of the
+  /// catalogue, which is made for machine tools. Examples of larger terms are the eccentricity of a resolver
+  /// and the sag of a long arm. Joints of humanoid robots deflect by one degree in fifty degrees of travel.
   double size_share = 0.02;
-  /// For touches: largest change of a term by the error of the touch in its positions, over that error: the
-  /// slope of the term. Errors of machines have slopes below a hundredth.
+  /// For touch rows: largest change of a term that the touch error in its positions causes, divided by the
+  /// touch error. The ratio of a term's change to the touch error is the slope of the term. Error terms of
+  /// real machines have slopes below 0.01.
   double share_of_touch_error = 0.2;
-  /// A product of the search is rejected in two cases: fewer readings than this support it, or this share of
-  /// its squares is in the span of failed effects.
+  /// A product of recorded quantities is rejected if fewer readings than `witnesses` support it, or if the
+  /// share `copy_of_failed` of its squares is in the span of failed effects.
   double witnesses = 10, copy_of_failed = 0.9;
-  /// Number of the best product terms that the search multiplies by one more factor.
+  /// Number of the best products of recorded quantities that the search multiplies by one more factor.
   std::size_t extended = 25;
-  /// Share of the noise by which two noise models may differ and still count as equal.
+  /// Largest difference between two noise models that count as equal, as a share of the noise.
   double same_noise = 0.1;
 
   template <class Visit>
@@ -331,22 +359,24 @@ struct AcceptanceThresholds {
   }
 };
 
-/// Minimum of the evidence from held-out rows, for a step and for the whole result.
+/// Minimum of the evidence from held-out rows, for one step of the stepwise model and for the whole result.
 struct ProofThresholds {
-  /// Logarithm of 20: an e-value of 20 is wrong for at most one in twenty absent steps, whatever was tested
-  /// before (Ville's inequality).
+  /// Natural logarithm of 20. Of absent steps, at most one in twenty reaches an e-value of 20, independent of
+  /// all earlier tests (Ville's inequality).
   double evidence = 2.996;
-  /// Expected evidence of a step below which the rows give no information about the step. A true step with so
-  /// little expected evidence would be rejected by chance one time in six.
+  /// Limit for the expected evidence of a step. If the expected evidence is below the limit, the held-out
+  /// rows give no information about the step. With an expected evidence of only 2, a true step is rejected by
+  /// chance one time in six.
   double least_expected = 2;
-  /// Evidence against such a step that counts as worse rows: chi^2 of the check rows increases by 1, their
-  /// standard deviation by 1/(2 n) of itself for n rows.
+  /// Evidence against a step with small expected evidence at which the step counts as wrong. Then chi^2 of
+  /// the check rows increases by 1, and their standard deviation by the factor 1/(2 n) for n rows.
   double worse = 0.5;
-  /// Number of standard deviations below the mean of the evidence that one true step in a hundred reaches.
+  /// Number of standard deviations below the mean of the evidence; one true step in a hundred has still less
+  /// evidence.
   double chance_sigmas = 2.33;
-  /// Limit for the mean square of the check rows, divided by the value that reading and model explain. If
-  /// this ratio exceeds 1 by more than this many of its standard deviations, the result is not confirmed on
-  /// held-out rows.
+  /// Limit for the mean square of the check rows divided by its expected value (uncertainty of reading and
+  /// model). A result is not confirmed on held-out rows if the mean square ratio exceeds 1 by more than the
+  /// given number of its standard deviations.
   double carries_sigmas = 4;
 
   template <class Visit>
@@ -359,47 +389,55 @@ struct ProofThresholds {
   }
 };
 
-/// Thresholds for the decision whether the residual of the stepwise model is noise, and from which source.
+/// Thresholds for the decision whether the residual of the stepwise model is noise, and which source the
+/// noise has.
 struct VerdictThresholds {
-  /// First value: chi^2 per degree of freedom up to this many of its standard deviations above 1 is noise.
-  /// Second value: up to this many standard deviations chi^2 alone is sufficient, for up to a given number of
-  /// effects.
+  /// `noise_sigmas`: the residual is noise if chi^2 per degree of freedom exceeds 1 by at most this number of
+  /// its standard deviations. `hit_sigmas`: chi^2 alone is sufficient for this decision up to this number of
+  /// standard deviations, if the model has at most `few_effects` effects.
   double noise_sigmas = 4, hit_sigmas = 2;
   std::size_t few_effects = 2;
-  /// Significance level below which the residual has structure, corrected for the number of tests. Also the
-  /// level of the runs test for excluded rows that follow each other: a step, not outliers.
+  /// Significance level of the tests for structure in the residual, corrected for the number of tests. The
+  /// runs test for excluded rows uses the same level. Excluded rows that follow each other are a step, not
+  /// outliers.
   double structure = 1e-4;
-  /// chi^2 per degree of freedom up to which the stated uncertainty may be too small: 1.4 of u. With a drift
-  /// and chi^2 above it, an accepted effect is a candidate only. Experiment (structures that warm through,
-  /// errors outside the catalogue): 1.0 to 1.3 beside the 18 true names, 2.0 to 3.5 beside 10 false ones.
+  /// Limit for chi^2 per degree of freedom up to which the stated uncertainty u may be too small (by a factor
+  /// of 1.4). If chi^2 per degree of freedom exceeds this limit and the noise has a drift, an accepted effect
+  /// is a candidate only. Source: experiment (structures during warm-up, errors outside the catalogue). With
+  /// the 18 true names chi^2 per degree of freedom is 1.0 to 1.3; with 10 false names it is 2.0 to 3.5.
   double doubtful_uncertainty = 2;
-  /// chi^2 per degree of freedom above which a too small uncertainty is excluded as the cause: a stated
-  /// uncertainty is not three times too small.
+  /// Limit for chi^2 per degree of freedom above which a too small stated uncertainty is not the cause. A
+  /// stated uncertainty is not too small by a factor of three.
   double implausible_uncertainty = 9;
   /// For rows without a standard uncertainty u: share of chi^2 that an accepted stepwise model must explain
   /// for a named cause.
   double mostly_explained = 0.5;
   /// For rows without a standard uncertainty u: factor by which chi^2 must increase if the named effect is
-  /// removed. The effect is then larger than the residual beside it.
+  /// removed. With an increase of chi^2 by the factor, the named effect is larger than the remaining
+  /// residual.
   double larger_than_rest = 2;
-  /// For rows without a standard uncertainty u: share of the check rows' mean square that confirmed steps
-  /// must remove for a named cause beside a rest that is not noise. The rest is then a small second cause.
+  /// For rows without a standard uncertainty u: share of the mean square of the check rows that confirmed
+  /// steps must remove. The limit applies to a named cause whose remaining residual is not noise. The
+  /// remaining residual then has a second, small cause.
   double explained_on_check = 0.95;
-  /// Number of degrees of freedom above which noise larger than the stated value is accepted. Experiment:
-  /// outside the catalogue, 160 rows of one reading do not show structure, 400 do.
+  /// Number of degrees of freedom above which a noise that is larger than the stated uncertainty is accepted.
+  /// Source: experiment with errors outside the catalogue. With one reading per row, 160 rows do not show the
+  /// structure of the residual, and 400 rows do.
   double enough_readings = 300;
-  /// Noise larger than the stated value is accepted only if no candidate is significant at this level.
+  /// Significance level of candidates. A noise larger than the stated uncertainty is accepted only if no
+  /// candidate is significant at this level.
   double stands_out = 1e-3;
-  /// The instrument is unstable if the correlated part of the errors is this share of the
-  /// independent noise, and -2 log likelihood decreases by this much for it.
+  /// The instrument is unstable if two limits are met: the correlated part of the errors relative to the
+  /// independent noise (`drift_share`), and the decrease of -2 log likelihood by this part (`drift_support`).
   double drift_share = 0.7, drift_support = 20;
-  /// Number of standard deviations beyond which a reading is an outlier: one in 5e8 of a normal distribution.
+  /// Number of standard deviations beyond which a reading is an outlier. A normal distribution exceeds the
+  /// outlier limit once in 5e8 readings.
   double outlier_spreads = 6;
-  /// Number of standard deviations beyond which a reading is an outlier if no u states the standard
-  /// deviation: the tails of an effect that was not found are longer.
+  /// Number of standard deviations beyond which a reading is an outlier if the rows have no u. The limit is
+  /// larger because an effect that was not found has long tails.
   double outlier_spreads_without_u = 8;
-  /// Share of the rows up to which outliers are the whole cause, and share up to which they are excluded
-  /// beside an effect.
+  /// Largest share of the rows that may be outliers if outliers are the whole cause, and if outliers are
+  /// excluded beside an effect.
   double outliers_alone = 0.05, outliers_beside = 0.15;
 
   template <class Visit>
@@ -424,40 +462,42 @@ struct VerdictThresholds {
   }
 };
 
-/// Thresholds for the test whether an accepted effect has the shape that its name states.
+/// Thresholds for the test whether an accepted effect really has the shape that its name states.
 struct ShapeThresholds {
-  /// Natural logarithm of the significance level for a doubt about a curve, and about a change along the
-  /// axes. The level is strict because every term is tested, so that chance rarely causes a doubt. The levels
-  /// are 1e-3 and 1e-4.
+  /// Natural logarithms of the significance levels for a doubt about a curve, and for a doubt about a term
+  /// that changes along the axes. The significance levels are strict, because every term is tested and chance
+  /// must rarely cause a doubt. The significance levels are 1e-3 (curve) and 1e-4 (change along the axes).
   double curve_chance = -6.9, change_chance = -9.2;
-  /// Half-waves of a smooth curve, at most and at least: an eighth of the range is the shortest
-  /// that a table of 17 stations corrects.
+  /// Largest and smallest number of half-waves in a smooth curve. An eighth of the range is the shortest
+  /// half-wave that a table of 17 stations can correct.
   std::size_t most_half_waves = 8, fewest_half_waves = 3;
-  /// Largest permitted share of the shorter half-waves in the decrease of chi^2 by all half-waves.
+  /// Largest permitted share of the short half-waves in the decrease of chi^2 by all half-waves.
   double fast_share = 0.15;
-  /// Number of coefficients above which a function of an axis is a curve.
+  /// Number of coefficients above which a function of an axis counts as a curve.
   double curve = 3;
-  /// Required number of independent functions of the axis in the readings: for each unknown of a curve, and
-  /// for each unknown of a period (a period is one of many that were tried).
+  /// Number of independent functions of the axis that the readings must show: for each unknown of a curve,
+  /// and for each unknown of a cyclic error (whose period is one of many tested periods).
   double seen_per_unknown = 1.5, seen_per_period = 2;
-  /// Positions closer than this share of the range count as one position.
+  /// Positions with a distance below this share of the range count as one position.
   double apart = 1.0 / 64;
-  /// Share of a column beside the others; a column with a smaller share is not independent.
+  /// Smallest share of a column that must remain beside the other columns. A column with a smaller share is
+  /// not independent.
   double own = 1e-3;
-  /// Number of positions along the axis at which a jump is tried.
+  /// Number of positions along the axis at which the test assumes a jump.
   std::size_t places_of_jump = 64;
-  /// Test for pieces of one function: largest numbers of functions that count as separate causes. The values
-  /// in order: for an effect of one axis; for an effect of the position, if rows have one reading; for an
-  /// effect beside a curve.
+  /// Largest numbers of functions that count as separate causes. More functions are likely pieces of one
+  /// function. In order, the numbers are for: effects of one axis; effects of the position if rows have one
+  /// reading; effects beside a curve.
   std::size_t most_of_one_axis = 2, most_of_one_reading = 3, most_beside_a_curve = 2;
-  /// Number of periods in the range above which a cyclic error is a separate cause (a worm, its gear) and not
-  /// a piece, and largest number of such cyclic errors.
+  /// `periods_of_a_wave`: number of periods in the range above which a cyclic error is a separate cause (a
+  /// worm or its gear) and not a piece of a function. `most_waves`: largest number of cyclic errors that are
+  /// separate causes.
   double periods_of_a_wave = 2;
   std::size_t most_waves = 3;
-  /// Share of the longer period by which a ratio of two may differ from an integer and be a
-  /// harmonic.
+  /// Tolerance for harmonics: difference of a ratio of two periods from an integer, as a share of the longer
+  /// period.
   double harmonic = 0.03;
-  /// Cosine above which two locations move the readings alike.
+  /// Cosine above which two locations in the chain count as moving the readings in the same way.
   double moves_alike = 0.9;
 
   template <class Visit>
@@ -496,7 +536,8 @@ struct DiagnoseThresholds {
   VerdictThresholds verdict;
   ShapeThresholds shape;
 
-  /// Calls visit("concern.name", number) for every threshold. Numbers are double or std::size_t.
+  /// Calls visit("concern.name", number) for every threshold of the diagnosis. The type of a threshold is
+  /// double or std::size_t.
   template <class Visit>
   void for_each(const Visit& visit) {
     evidence.for_each(visit);

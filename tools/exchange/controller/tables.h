@@ -11,48 +11,54 @@
 
 namespace vernier::exchange {
 
-/// Correction of one axis by the position of one axis: values at equal distances, mm, added to the command.
+/// Correction of one axis as a function of the position of one axis: values at equal distances, mm, which are
+/// added to the command.
 struct ControllerTable {
-  std::size_t input = 0, output = 0;  // 0 X, 1 Y, 2 Z
-  double from = 0, step = 1;          // position of the first value and distance of the values, mm
-  bool stairs = false;                // the nearest value applies; else a straight line between two values
+  std::size_t input = 0, output = 0;  // index of an axis: 0 X, 1 Y, 2 Z
+  double from = 0, step = 1;          // position of the first value, and distance between the values, mm
+  bool stairs = false;                // true: the nearest value is used; false: linear interpolation between
+                                      // two values
   std::vector<double> forward, reverse;
 
   double position(std::size_t point) const { return from + static_cast<double>(point) * step; }
-  /// Value at a position of the input axis; the end values are used outside. direction < 0: reverse.
+  /// Returns the value at a position of the input axis. Outside the table, the first or last value is used.
+  /// If direction < 0, the values `reverse` are used.
   double at(double position_mm, double direction) const;
 };
 
-/// The tables of a machine. Each is zero at the reference position (mean of both directions).
+/// All compensation tables of a machine. Each table is zero at the reference position (mean of both
+/// directions).
 struct ControllerTables {
   std::vector<ControllerTable> tables;
-  /// Correction in the positive minus the negative direction, one number for an axis, mm. 0 if the tables
-  /// have values for each direction.
+  /// Correction in the positive direction minus correction in the negative direction, one number for each
+  /// axis, mm. The reversal is 0 if the tables have separate values for each direction.
   std::array<double, 3> reversal{};
-  std::array<double, 3> reference{};   // positions at which the tables are zero, mm
-  std::array<double, 3> between_um{};  // largest error between the points of the tables of an input axis
+  std::array<double, 3> reference{};   // reference position at which the tables are zero, mm
+  std::array<double, 3> between_um{};  // for each input axis: largest error between the points of its tables
 
-  /// Table of an input and an output axis; nullptr if it is not written.
+  /// Returns the table for an input axis and an output axis; nullptr if there is no such table.
   const ControllerTable* find(std::size_t input, std::size_t output) const;
-  /// Commands of X, Y and Z with the corrections, a column each, mm. directions: -1 or +1 of each command.
+  /// Returns the commands of X, Y and Z with the corrections added, one column for each command, mm.
+  /// `directions`: direction of motion for each command, -1 or +1.
   Eigen::Matrix3Xd corrected(const Eigen::Matrix3Xd& commands, const Eigen::Matrix3Xd& directions) const;
 };
 
-/// Returns the states at commands of X, Y and Z, a column each, mm, and directions from -1 to +1 of each.
+/// Returns the states of the machine at commands of X, Y and Z (one column for each command, mm).
+/// `directions`: -1 to +1 for each command.
 model::States controller_states(const ThreeAxes& axes, const Eigen::Matrix3Xd& commands,
                                 const Eigen::Matrix3Xd& directions, const model::States& at);
 
-/// Errors of the tool point at positions of the whole volume, without the mean offset, um.
+/// Errors of the tool point at positions in the whole volume, without their mean, um.
 struct ControllerErrors {
-  std::array<double, 3> before_um{}, after_um{};  // largest of X, Y and Z
-  /// Largest error along an axis that arrived in its positive or negative direction.
+  std::array<double, 3> before_um{}, after_um{};  // largest error in X, Y and Z
+  /// Largest error along an axis after a motion of this axis in its positive or negative direction.
   std::array<double, 3> after_positive_um{}, after_negative_um{};
-  double rms_before_um = 0, rms_after_um = 0;  // of the three directions together
+  double rms_before_um = 0, rms_after_um = 0;  // rms error of X, Y and Z together
   std::size_t positions = 0;
 };
 
-/// Evaluates the chain with the corrected commands at positions between the points (4096, fixed seed), each
-/// axis in a random direction.
+/// Computes the errors with the chain at corrected commands. The errors are evaluated at 4096 positions
+/// between the points of the tables (fixed seed), each axis with a random direction.
 ControllerErrors controller_errors(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerTables& tables, const model::States& at);
 

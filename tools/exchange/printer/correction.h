@@ -13,71 +13,76 @@
 
 namespace vernier::exchange {
 
-/// A grid of heights over X and Y, bilinear between the points; the end values are used outside.
+/// A grid of heights over X and Y with bilinear interpolation between its points. Outside the grid, the
+/// values at its edge are used.
 struct HeightMesh {
   double x_low = 0, x_high = 0, y_low = 0, y_high = 0;
-  Eigen::MatrixXd z;  // rows along Y, columns along X, mm; added to the command of Z
+  Eigen::MatrixXd z;  // rows along Y, columns along X, mm; the height is added to the command of Z
 
   double at(double x, double y) const;
 };
 
-/// The correction that the firmware of a printer supports, in the order in which the firmware applies it to a
-/// command: skew, then heights, then the steps per mm.
+/// The corrections that the firmware of a 3D printer supports. The firmware applies them to a command in the
+/// order skew, heights, steps per mm.
 struct PrinterCorrection {
-  /// Added: x += xy*y + xz*z, y += yz*z. Tangents of the angles.
+  /// Skew, which is added to the command: x += xy*y + xz*z, y += yz*z. The three skew values are tangents of
+  /// angles.
   double xy = 0, xz = 0, yz = 0;
   HeightMesh mesh;
-  /// Factors of the steps per mm of X, Y and Z.
+  /// Factors for the steps per mm of X, Y and Z.
   std::array<double, 3> steps{1, 1, 1};
 
-  /// Commands of X, Y and Z, a column each, mm.
+  /// Returns the corrected commands of X, Y and Z, one column for each command, mm.
   Eigen::Matrix3Xd corrected(const Eigen::Matrix3Xd& commands) const;
 };
 
-/// Which parts a firmware has.
+/// Parts of a correction that a firmware supports.
 struct PrinterFeatures {
   bool skew = true, mesh = true;
-  bool steps = false;               // the user states the present steps per mm
-  std::vector<std::size_t> points;  // numbers of mesh points per axis that are tried, increasing
+  bool steps = false;               // true: the user states the present steps per mm
+  std::vector<std::size_t> points;  // numbers of mesh points per axis that are tested, in increasing order
 };
 
-/// The bed of a printer: a plane that the nozzle or a probe touched, as the last fit estimated it.
+/// The bed of a 3D printer: a plane that the nozzle or a probe touched, as the last fit estimated it.
 struct Bed {
   std::string name;
-  Eigen::Vector3d place_mm, normal;     // in workpiece coordinates
-  std::array<double, 2> low{}, high{};  // of X and Y, where it was touched and the machine works, mm
+  Eigen::Vector3d place_mm, normal;  // point and normal of the plane in workpiece coordinates
+  /// Range of X and Y in which the bed was touched and the machine works, mm
+  std::array<double, 2> low{}, high{};
 
-  /// Height at x and y of workpiece coordinates, mm.
+  /// Returns the height of the bed at x and y of workpiece coordinates, mm.
   double height(double x, double y) const;
 };
 
-/// Returns the bed of this name from the fit record of a machine. An empty name: the only touched plane, or
-/// nullopt if the record has no plane. Throws InputError: no plane of this name, several planes without a
-/// name, a plane that is nearly vertical.
+/// Returns the bed with the name `name` from the fit record of a machine. If the name is empty, the only
+/// touched plane is returned; nullopt if the record contains no plane. Throws InputError if no plane has this
+/// name, if there are several planes and no name, or if the plane is nearly vertical.
 std::optional<Bed> bed_of(const model::Machine& machine, const ThreeAxes& axes, const std::string& name);
 
-/// Returns the correction of a machine, by least squares over the working volume for skew and steps, and at
-/// the lowest position of Z for the heights. The number of points is the smallest one at which the heights
-/// between them are within tolerance_um, or the largest one. `at` (count 1): inputs, motion. Offsets of the
-/// axes are not corrected: homing sets them. A turn about Z is not corrected: it turns the part as a whole.
-/// With a bed the heights follow its slope, and the mesh covers the region where the bed was touched.
+/// Returns the correction of a machine. Skew and steps are fitted by least squares over the working volume;
+/// the heights are computed at the lowest position of Z. The number of mesh points is the smallest number at
+/// which the heights between the points are within tolerance_um, or the largest permitted number. `at` (one
+/// state): values of inputs and motion. Offsets of the axes are not corrected, because homing determines
+/// them. A rotation about Z is not corrected, because it rotates the whole part. If a bed is given, the
+/// heights follow its slope, and the mesh covers the region in which the bed was touched.
 PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
                                      const PrinterFeatures& features, const model::States& at,
                                      double tolerance_um, const std::optional<Bed>& bed = {});
 
-/// Errors of the tool point at positions of the whole volume, without the offset and without the turn about
-/// Z that fit them best, um. With a bed: of the region of the bed, and heights count from the bed.
+/// Errors of the tool point at positions in the whole volume, um. An offset and a rotation about Z are fitted
+/// and removed. If a bed is given, the errors are those in the region of the bed, with heights relative to
+/// the bed.
 struct PrinterErrors {
-  std::array<double, 3> before_um{}, after_um{};  // largest of each direction
-  double rms_before_um = 0, rms_after_um = 0;     // of the three directions together
+  std::array<double, 3> before_um{}, after_um{};  // largest error in X, Y and Z
+  double rms_before_um = 0, rms_after_um = 0;     // rms error of X, Y and Z together
   std::size_t positions = 0;
-  /// Largest error of the height over the whole travel, um; 0 without a bed. Outside the mesh the firmware
-  /// holds the end values.
+  /// Largest height error over the whole travel, um; 0 if no bed is given. Outside the mesh, the firmware
+  /// uses the values at the edge of the mesh.
   double beyond_bed_um = 0;
 };
 
-/// Evaluates the chain with the corrected commands at positions between the points of the mesh (4096, fixed
-/// seed).
+/// Computes the errors with the chain at corrected commands, at 4096 positions between the points of the mesh
+/// (fixed seed).
 PrinterErrors printer_errors(const model::Machine& machine, const ThreeAxes& axes,
                              const PrinterCorrection& correction, const model::States& at,
                              const std::optional<Bed>& bed = {});

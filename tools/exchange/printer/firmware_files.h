@@ -10,21 +10,22 @@
 
 namespace vernier::exchange {
 
-/// A firmware of printers and small machines.
+/// Firmware of 3D printers and small machines.
 enum class Firmware : std::uint8_t { kKlipper, kRepRap, kMarlin, kGrbl };
 
-/// Data of the user about the present configuration.
+/// Information from the user about the present configuration.
 struct PresentSetting {
-  /// X, Y, Z: steps per mm (M92, $100), or for Klipper mm per turn (rotation_distance).
+  /// For X, Y, Z: steps per mm (M92, $100), or for Klipper mm per turn (rotation_distance).
   std::optional<std::array<double, 3>> steps;
 };
 
 /// Returns the parts of a correction that a firmware supports.
 PrinterFeatures features_of(Firmware firmware, const PresentSetting& present);
 
-/// Returns the files of a firmware, and the correction with the rounding of these files. Sources, all in
-/// tools/docs/exchange.md: Klipper klippy/extras/skew_correction.py and bed_mesh.py; RepRapFirmware M556, M92
-/// and the height map file; Marlin M852, M420, M421, M92; grbl $100 to $102. machine_name: for comments.
+/// Returns the configuration files for a firmware. The values of `correction` are rounded in the same way as
+/// in these files. The sources are listed in tools/docs/exchange.md: Klipper klippy/extras/skew_correction.py
+/// and bed_mesh.py; RepRapFirmware M556, M92 and the height map file; Marlin M852, M420, M421, M92; grbl $100
+/// to $102. `machine_name`: name of the machine for comments in the files.
 std::vector<ConfigurationFile> firmware_files(Firmware firmware, const PresentSetting& present,
                                               const std::string& machine_name, PrinterCorrection& correction);
 

@@ -9,15 +9,17 @@
 
 namespace vernier::fit {
 
-/// Domains of validity of learned terms. A term that was learned on features is not valid outside its
-/// training data. The machine file contains such a term as `weight*term`, an ordinary expression with
-/// ordinary hidden statics. Model, fit, compile and board therefore need no special code. weight = product
-/// over the domain's quantities Q of max(0,1-max(0,max(D_Q_low-Q,Q-D_Q_high))/D_Q_fade). The weight is 1
-/// within the range of training and decreases to 0 over the fade. D is the domain's name.
+/// A domain is the range of quantities in which a learned term is valid. A term that was learned on features
+/// is not valid outside the range of its training data. The machine file contains a learned term as
+/// `weight*term`, an ordinary expression with ordinary hidden statics. Because a domain is only part of an
+/// expression, model, fit, compile and board need no special code. The weight is the product, over the
+/// quantities Q of the domain, of max(0,1-max(0,max(D_Q_low-Q,Q-D_Q_high))/D_Q_fade). The weight is 1 within
+/// the range of the training data and decreases linearly to 0 over the distance D_Q_fade. D is the name of
+/// the domain.
 std::string domain_weight(const std::string& domain, const std::vector<std::string>& quantities);
 
-/// Name, value and unit of the hidden statics of a new domain. The hidden statics are open (+-1e9) until a
-/// fit closes them.
+/// Name, value and unit of a hidden static of a new domain. The limits of a new domain are open (+-1e9) until
+/// a fit sets them.
 struct DomainStatic {
   std::string name, unit;
   double value = 0;
@@ -25,26 +27,28 @@ struct DomainStatic {
 std::vector<DomainStatic> open_domain(
     const std::string& domain, const std::vector<std::pair<std::string, std::string>>& quantity_and_unit);
 
-/// Range of one quantity in one domain of a machine. The code finds the hidden statics by their names.
+/// Range of validity of one quantity in one domain of a machine. The hidden statics of a range are found by
+/// their names.
 struct DomainRange {
   std::string domain, quantity;
   model::Symbol symbol;
   double low = 0, high = 0, fade = 0;
-  bool open = false;  // not trained yet
+  bool open = false;  // true: no fit has set the limits yet
 };
 std::vector<DomainRange> domain_ranges(const model::Machine& machine);
 
-/// Returns the text with every open range closed around the fit rows of a measurement. The limits are the
-/// lowest and highest value of the quantity. The fade is a tenth of the distance between the limits (of the
-/// value, if the quantity did not vary). Closed ranges are not changed.
+/// Returns the text of the machine file in which every open range has limits around the fit rows of a
+/// measurement. The limits of a range are the lowest and highest value of its quantity in the fit rows. The
+/// fade of a range is a tenth of the distance between its limits. If the quantity did not vary, the fade is a
+/// tenth of its value. A range whose limits are already set is not changed.
 std::string close_domains(const std::string& text, const model::Machine& machine,
                           const model::Measurement& measurement);
 
-/// Position of rows relative to a domain.
+/// Position of the rows of a measurement relative to the range of a domain.
 struct DomainUse {
   DomainRange range;
-  double least = 0, most = 0;       // of the quantity over all rows
-  std::size_t faded = 0, gone = 0;  // rows where the weight is below 1, and 0
+  double least = 0, most = 0;       // lowest and highest value of the quantity over all rows
+  std::size_t faded = 0, gone = 0;  // number of rows with a weight below 1, and with weight 0
 };
 std::vector<DomainUse> domain_use(const model::Machine& machine, const model::Measurement& measurement);
 

@@ -7,11 +7,13 @@
 
 namespace vernier::fit {
 
-/// Returns readings x, y, z of the tool point at every state, with value 0. These readings are for the
-/// evaluation of a machine, not for a fit. Messages name a row "point:N", N from 1.
+/// Returns a measurement with readings x, y, z of the tool point at every state; the value of each reading is
+/// 0. The point readings are used to evaluate a machine, not to fit it. In messages the row N of this
+/// measurement has the name "point:N". N begins at 1.
 model::Measurement point_readings(const model::States& states);
 
-/// Velocity of each point under the six rigid motions about the origin, 3 N x 6.
+/// Returns the velocity of each point under the six rigid motions about the origin, as a matrix of 3 N x 6
+/// elements.
 Eigen::MatrixXd rigid_motions(const Eigen::Matrix3Xd& points);
 
 }  // namespace vernier::fit

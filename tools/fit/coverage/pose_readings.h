@@ -8,20 +8,23 @@
 
 namespace vernier::fit {
 
-/// The six readings of a complete pose of one row: three of the position, mm, and three of the rotation
-/// vector, deg. The three readings of each are adjacent.
+/// The six readings of a complete pose in one row: three of the position, mm, and three of the rotation
+/// vector, deg. The three readings of the position are adjacent, and the three readings of the rotation
+/// vector are adjacent.
 struct SixReadings {
-  std::size_t point = 0, turn = 0;  // index of the first reading of the position and of the rotation
-  bool of_board = false;            // bx by bz brx bry brz; else x y z rx ry rz
+  std::size_t point = 0, turn = 0;  // index of the first reading of the position, and of the first reading of
+                                    // the rotation
+  bool of_board = false;            // true: the readings are bx by bz brx bry brz (board); false: x y z rx ry
+                                    // rz
 };
 
-/// Returns the complete poses, one for each row that has one.
+/// Returns the complete poses of a measurement, one for each row with six readings.
 std::vector<SixReadings> complete_poses(const model::Measurement& measurement);
 
-/// Returns the values of six readings as a motion.
+/// Returns the six readings of a pose as a rigid motion.
 maths::RigidMotion motion_read(const model::Measurement& measurement, const SixReadings& pose);
 
-/// Replaces each complete pose of a kind by its inverse.
+/// Replaces each complete pose by its inverse motion. `of_board` selects the kind of pose.
 void invert_poses(model::Measurement& measurement, bool of_board);
 
 }  // namespace vernier::fit

@@ -7,9 +7,10 @@
 
 namespace vernier::fit {
 
-/// Returns the direction of a length reading, a unit vector in workpiece coordinates. For x, y, z the set-up
-/// of the row gives the direction; for d the direction is the normal of the row. Zero for lengths to a centre
-/// or another row, which have many directions.
+/// Returns the direction of a length reading, a unit vector in workpiece coordinates. For a reading x, y or
+/// z, the set-up of the row gives the direction. For a reading d, the direction is the normal of the row. The
+/// direction is zero for a length to a centre or to another row, because such a length has no fixed
+/// direction.
 Eigen::Vector3d reading_direction(const model::Machine& machine, const model::Measurement& rows,
                                   const model::Observation& reading);
 

@@ -8,13 +8,16 @@
 
 namespace vernier::fit {
 
-/// What the readings of the fit rows show of each parameter, if the unknown values of the touched objects
-/// (`same`, `on`) follow it.
+/// Effect of each parameter on the readings of the fit rows, if the unknown values of the touched objects
+/// (`same`, `on`) are fitted too.
 struct SeenBesideThings {
-  /// Share (0 to 1) of the effect on the readings that is left. An unknown point that was touched four times
-  /// at one pose follows every error of the machine: share 0. 1 for a parameter without effect.
+  /// Share (0 to 1) of a parameter's effect on the readings that remains after the fit of the touched
+  /// objects. Example: an unknown point is touched four times at one pose. The fitted point absorbs every
+  /// error of the machine, so that the share is 0. The share is 0 for a parameter without effect on the
+  /// readings.
   Eigen::VectorXd share;
-  /// Sum of squares of what is left, with the weights of a fit, per square of the parameter's unit.
+  /// Sum of squares of the remaining effect on the readings, with the weights of a fit, per square of the
+  /// parameter's unit.
   Eigen::VectorXd squares;
 };
 SeenBesideThings seen_beside_things(const model::Machine& machine, const model::Measurement& rows,

@@ -10,19 +10,21 @@
 
 namespace vernier::fit {
 
-/// Returns for each parameter: true if it is a rotation of a BaseShift that the readings show only in second
-/// order. The first-order effect of such a rotation is zero, or equals the effect of the shift's lengths.
-/// Example: one coordinate along one line (a laser interferometer, a dial gauge). The cosine error of such a
-/// rotation cannot be distinguished from the scale of the axis, and a fit of both does not converge.
-/// reach_mm: size of the machine (convention.cpp).
+/// Returns one flag for each parameter: true if the parameter is a rotation of a BaseShift that affects the
+/// readings only in second order. The first-order effect of an unseen rotation on the readings is zero, or
+/// equals the effect of the lengths of the shift. Example: an instrument that measures one coordinate along
+/// one line (a laser interferometer, a dial gauge). The cosine error of an unseen rotation cannot be
+/// distinguished from the scale of the axis, and a fit of both does not converge. `reach_mm`: size of the
+/// machine (convention.cpp).
 std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measurement& rows,
                                const model::ParameterSet& parameters, double reach_mm);
 
-/// Standard deviation of a rotation that is fixed: 0.02 um at a distance of 1 m, far below the uncertainty of
-/// any reading.
+/// Standard uncertainty of a rotation that is fixed. The corresponding motion is 0.02 um at a distance of 1
+/// m, far below the uncertainty of any reading.
 inline constexpr double kHeldTurn_deg = 1e-6;
 
-/// Fixes these parameters at their values in `at`, with a standard uncertainty of a millionth of a degree.
+/// Fixes the parameters `held` at their values in `at`, with a standard uncertainty of a millionth of a
+/// degree.
 void hold_at(FitProblem& problem, const std::vector<bool>& held, const Eigen::VectorXd& at);
 
 }  // namespace vernier::fit

@@ -8,36 +8,37 @@
 
 namespace vernier::fit {
 
-/// Shows which parameters a weighted Jacobian determines, and how well. Observability is computed on columns
-/// scaled to unit length.
+/// Result of an analysis which parameters a weighted Jacobian determines, and how well. The analysis uses the
+/// columns of the Jacobian, scaled to unit length.
 struct Observability {
   Eigen::Index rank = 0;
-  double condition = 0;  // of the scaled Jacobian, over the identified directions
-  /// (J^T W^2 J)^+ over the identified directions, in parameter units; to be multiplied by the variance
-  /// factor.
+  double condition = 0;  // condition number of the scaled Jacobian over the identified directions
+  /// Covariance of the parameters in their units, without the variance factor: (J^T W^2 J)^+ over the
+  /// identified directions.
   Eigen::MatrixXd covariance;
   std::vector<char>
       determined;  // per parameter: true if the parameter has no part in an unidentified direction
-  /// The identified combination of parameters that the data determine least. Contains the singular value
-  /// divided by the largest, and the participating parameters, largest part first. There are at most three
-  /// such combinations, weakest first.
+  /// A combination of parameters that the data identify, but only weakly. `ratio`: its singular value divided
+  /// by the largest singular value. `parts`: indices of the participating parameters, largest part first. The
+  /// list has at most three weak combinations, the weakest first.
   struct Weak {
     double ratio = 0;
     std::vector<std::size_t> parts;
   };
   std::vector<Weak> weakest;
-  /// Combinations that the data do not determine; indices of the participating parameters, largest
-  /// part first.
+  /// Combinations of parameters that the data do not determine. Each combination lists the indices of its
+  /// parameters, largest part first.
   std::vector<std::vector<std::size_t>> unidentifiable;
 };
 
-/// A direction counts as unidentified if its scaled singular value is below this share of the largest. The
-/// limit is far above the rounding error of an exact dependence (1e-8) and below any direction that real data
-/// determine.
+/// Limit for a scaled singular value as a share of the largest. A direction below the limit counts as
+/// unidentified. The limit for unidentified directions is far above the rounding error of an exact dependence
+/// (1e-8) and below any direction that real data determine.
 inline constexpr double kUnseenShare = 1e-5;
 
-/// normal: J^T W^2 J, n x n. Above 200 parameters, observe() uses pivoted Cholesky and inverse iteration. The
-/// full eigen-decomposition follows only if they give no clear rank.
+/// `normal`: the normal matrix J^T W^2 J, n x n. Above 200 parameters, observe() uses pivoted Cholesky and
+/// inverse iteration. The full eigen-decomposition follows only if the pivoted Cholesky method gives no clear
+/// rank.
 Observability observe(const Eigen::MatrixXd& normal, double cutoff = kUnseenShare);
 
 }  // namespace vernier::fit

@@ -10,45 +10,45 @@
 
 namespace vernier::fit {
 
-/// Unweighted statistics of the observations of one role, lengths in um, rotations in urad. nullopt if there
-/// are no observations.
+/// Unweighted statistics of the observations of one role (fit or check): lengths in um, rotations in urad. A
+/// value is nullopt if there are no observations of its kind.
 struct RoleStatistics {
   std::optional<double> rms_um, max_um, rms_urad, max_urad;
-  std::size_t count = 0;  // lengths and rotations
+  std::size_t count = 0;  // number of observations, lengths and rotations together
 };
 
-/// Returns residual = measured - predicted, one per observation, mm or deg.
+/// Returns the residual (measured - predicted) of each observation, mm or deg.
 Eigen::VectorXd residuals(const model::Machine& machine, const model::Measurement& measurement);
 
-/// residual: measured - model, one per observation of `m`, mm or deg. `check`: the role of the
-/// observations.
+/// `residual`: measured - model of each observation of `m`, mm or deg. `check`: true selects the check rows;
+/// false selects the fit rows.
 RoleStatistics role_statistics(const model::Measurement& m, const Eigen::VectorXd& residual, bool check);
 
-/// Returns all values of a row that were set or logged, except time and the measured values. Rows with the
-/// same conditions are repeats. The correction of a board is not included: a reading contains it, a residual
-/// does not.
+/// Returns all values of a row that were set or logged, except time and the measured values. Rows with equal
+/// conditions are repeats of one measurement. The conditions do not include the correction of a board,
+/// because a residual does not contain this correction.
 std::vector<double> row_conditions(const model::Measurement& m, std::size_t row);
 
-/// Returns the noise of the measurement, um: rms of u over the fit rows' lengths. If the rows have no
-/// standard uncertainty u, the noise is estimated from repeats: rows with the same axes, corrections, motion,
-/// inputs and candidates in any run (pooled standard deviation, at least 5 degrees of freedom). If the rows
-/// have neither a standard uncertainty u nor repeats, the result is nullopt.
+/// Returns the noise of the length readings, um: the rms of the standard uncertainty u over the fit rows. If
+/// the rows have no u, the noise is estimated from repeats (pooled standard deviation, at least 5 degrees of
+/// freedom). Repeats are rows with the same axes, corrections, motion, inputs and candidates in any run. The
+/// noise is nullopt if the rows have neither a standard uncertainty u nor repeats.
 std::optional<double> noise_um(const model::Measurement& m);
-/// The same for the rotations, urad.
+/// Returns the noise of the rotation readings, urad. The method is that of noise_um().
 std::optional<double> noise_urad(const model::Measurement& m);
 
 /// Returns the length and the angle that a weighted reading of 1 represents: the rms of u over the fit rows,
-/// or 1 mm and 1 deg without u.
+/// or 1 mm and 1 deg if u is absent.
 NoiseUnit noise_unit(const model::Measurement& m);
 
-/// Returns the weight of each observation in a fit: 1/u, 1 if u is absent, 0 for check rows. The weight
-/// multiplies the residual.
+/// Returns the weight of each observation in a fit: 1/u; 1 if u is absent; 0 for check rows. The fit
+/// multiplies the residual of an observation by this weight.
 Eigen::VectorXd fit_weights(const model::Measurement& m);
 
-/// Returns the indices of the readings of the fit rows: their weight is not zero.
+/// Returns the indices of the readings of the fit rows, whose weight is not zero.
 std::vector<std::size_t> fitted_readings(const Eigen::VectorXd& weights);
 
-/// True if u is given for every fit row.
+/// True if every fit row has a standard uncertainty u.
 bool has_uncertainty(const model::Measurement& m);
 
 }  // namespace vernier::fit

@@ -7,14 +7,15 @@
 
 namespace vernier::fit {
 
-/// Number of readings times the square of the number of fitted columns. Above this limit, an evaluation of
-/// the likelihood uses only the number of fitted columns, not their values.
+/// Limit for the number of readings times the square of the number of fitted columns. Above the limit, an
+/// evaluation of the likelihood uses only the number of fitted columns, not their values.
 inline constexpr double kMostNoiseProducts = 6e7;
 
-/// Estimates the noise model of a residual beside the fitted columns by restricted maximum likelihood
-/// (Patterson and Thompson 1971). residual: weighted, first limited to a few robust standard deviations.
-/// fitted: orthonormal columns that were fitted to the readings. A component is included if the likelihood
-/// decreases by more than chance explains. `with_u`: all components together are not below 1.
+/// Estimates the noise model from a residual by restricted maximum likelihood (Patterson and Thompson 1971),
+/// which accounts for the fitted columns. `residual`: the weighted residual; large values are first limited
+/// to a few robust standard deviations. `fitted`: orthonormal columns that were fitted to the readings. A
+/// noise component is included if -2 log likelihood decreases by more than chance explains. `with_u`: true if
+/// u is given. The standard deviation of all components together is then at least 1.
 NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                           const Eigen::MatrixXd& fitted, bool with_u, const NoiseThresholds& limits = {});
 

@@ -6,9 +6,9 @@
 
 namespace vernier::importer {
 
-/// Reads a result file (.b5r, XML) of Renishaw Ballbar 20. Indices are 0-based and END is inclusive. Throws
-/// InputError with file, line and word: not XML, a missing or odd element, a view other than +A+B, indices
-/// outside the readings.
+/// Reads a result file (.b5r, XML) of Renishaw Ballbar 20. In a .b5r file the sample indices begin at 0, and
+/// the index END belongs to the last sample of the arc. Throws InputError with file, line and word for: text
+/// that is not XML, a missing or unexpected element, a view other than +A+B, indices outside the readings.
 BallbarFile read_b5r(const std::string& path);
 
 }  // namespace vernier::importer

@@ -9,8 +9,9 @@
 namespace vernier::importer {
 
 struct BallbarCsvOptions {
-  /// Time between the records of two runs, s, if the instrument does not record it. The default is the time
-  /// of the dwell (5 s) and of the feeds in and out between the runs of the usual program.
+  /// Time between the last sample of a run and the first sample of the next run, s. The assumed time between
+  /// two runs is used because the instrument does not record it. The default time is the dwell (5 s) plus the
+  /// feed-in and feed-out motions between two runs of the usual test program.
   double pause_s = 9.0;
 };
 
@@ -20,9 +21,10 @@ struct BallbarCsv {
   std::vector<std::string> run_labels;
 };
 
-/// Writes ball-bar files as one measurement file (CSV): positions, motion, clock, length with its centre, run
-/// and role. Samples in start..end have the role `fit`, samples before and after it the role `check`. An axis
-/// becomes a column if the plane of a file contains the axis.
+/// Writes ball-bar files as one measurement file (CSV). The columns of the file are positions, motion, clock,
+/// the length with its centre, run and role. Samples from `start` to `end` of a run have the role `fit`.
+/// Samples before and after this arc have the role `check`. An axis has a column if the plane of at least one
+/// file contains the axis.
 BallbarCsv ballbar_csv(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options);
 
 }  // namespace vernier::importer

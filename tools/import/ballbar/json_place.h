@@ -7,10 +7,11 @@
 
 namespace vernier::importer {
 
-/// Parses JSON. Throws InputError with the line and the word of the first error in the text.
+/// Parses a JSON text. If the text is not JSON, throws InputError with the line and the word of the first
+/// error.
 nlohmann::json parse_json(const std::string& path, std::string_view text);
 
-/// Returns the line (from 1) on which the value at `pointer` ("/Runs/0/Readings/3") begins or ends; 0 if the
+/// Returns the line (from 1) with the value at the JSON pointer `pointer` ("/Runs/0/Readings/3"); 0 if the
 /// text has no such value.
 std::size_t json_line(std::string_view text, const std::string& pointer);
 

@@ -12,24 +12,26 @@ namespace vernier::importer {
 
 inline constexpr const char* kDiagnosticsAnalysis = "RENISHAW_DIAGNOSTICS";
 
-/// Computed results, each with its data and its printed name. Remarks on names state why a result cannot be
-/// computed, or may differ.
+/// Results that were computed again from the data of a file, by the name of their data and their printed
+/// name. The member `why` states, by name, why a result cannot be computed, or why it may differ from the
+/// printed result.
 struct RecomputedResults {
   std::map<std::string, std::map<std::string, double>> values;
   std::map<std::string, std::string> why;
 };
 
-/// Mean of the feeds of a test's passes, mm/min; `nullopt` if a pass has no feed.
+/// Returns the mean feed of all passes of a test, mm/min; nullopt if a pass has no feed.
 std::optional<double> mean_feed_mm_min(const CircularResult& circle);
 
-/// Returns the model curve of the file as samples of a test: its SIMULATION series, both on the grid of the
-/// clockwise run, one sample in the middle of each step. Source: found by recomputing
-/// (tests/data/ballbar/README.md).
+/// Returns the model curve of a ball-bar file as samples of a test. The model curve is the SIMULATION series
+/// of the file, for both directions on the grid of the clockwise run, with one sample in the middle of each
+/// step. The meaning of this grid was found by recomputing the diagnostics (tests/data/ballbar/README.md).
 std::vector<DiagnosticsSample> model_curve(const BallbarFile& file);
 
-/// Computes again the diagnostics that the ball bar's software wrote into the file. The linear diagnostics
-/// and cyclic errors come from the model curve of the file. Values at the ends, shares and ranks follow from
-/// these; roundness and the other results come from the readings.
+/// Computes the diagnostics again that the software of the ball bar wrote into the file. The linear
+/// diagnostics and the cyclic errors are computed from the model curve of the file. Values at the ends,
+/// shares and ranks are computed from these diagnostics. Roundness and the other results are computed from
+/// the readings.
 RecomputedResults recompute_diagnostics(const BallbarFile& file, const BallbarAnalysis& analysis,
                                         const CircularResult& circle);
 

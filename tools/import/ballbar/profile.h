@@ -6,17 +6,20 @@
 
 namespace vernier::importer {
 
-inline constexpr Eigen::Index kProfilePoints = 720;  // of a turn, half a degree each
+inline constexpr Eigen::Index kProfilePoints = 720;  // number of points of one turn, at a distance of half a
+                                                     // degree
 
-/// Returns the mean reading of a run with a clock by angle (from +A towards +B), um: kProfilePoints values,
-/// all turns on the circle together, without centre and radius. Angles without a reading are interpolated.
+/// Returns the mean reading of a run as a function of the angle (from +A towards +B), um. The kProfilePoints
+/// values combine all turns on the circle, without the least-squares centre and radius. The run must have a
+/// clock. At angles without a reading, the mean reading is interpolated.
 Eigen::VectorXd angle_profile(const BallbarRun& run);
 
-/// Shift between two profiles.
+/// Angular shift between the profiles of two runs.
 struct ProfileShift {
-  double deg = 0;              // of `second` against `first`, -90..90
-  double correlation = 0;      // at that shift, smoothed over 10 deg
-  double uncertainty_deg = 0;  // half the width in which the correlation is not significantly less
+  double deg = 0;              // shift of `second` relative to `first`, -90..90
+  double correlation = 0;      // correlation at this shift, of profiles that are smoothed over 10 deg
+  double uncertainty_deg = 0;  // half the width of the range of shifts in which the correlation is not
+                               // significantly smaller
 };
 ProfileShift profile_shift(const Eigen::VectorXd& first, const Eigen::VectorXd& second);
 

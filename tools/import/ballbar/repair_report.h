@@ -9,17 +9,20 @@
 
 namespace vernier::importer {
 
-/// A repaired file and its repeating error, before and after the repair.
+/// A ball-bar file with a repaired time base, and its repeating error before and after the repair.
 struct RepairReport {
   TimeRepair repair;
   std::vector<RepeatingError> before,
-      after;  // one per repaired run: by the file's angles, by the repaired angles
+      after;  // one entry per repaired run; before: with the angles of the file; after: with the repaired
+              // angles
 };
 
-/// Repairs a file and fits the repeating error of each repaired run, on the same samples before and after.
+/// Repairs the time base of a file. After the repair, the function fits the repeating error of each repaired
+/// run, on the same samples before and after the repair.
 RepairReport repair_and_judge(const BallbarFile& file);
 
-/// Returns the changes by a repair and their gain: repair_json for programs, print_repair for people.
+/// Writes the changes by a repair and the reduction of the error: repair_json for programs, print_repair for
+/// people.
 nlohmann::ordered_json repair_json(const RepairReport& report);
 void print_repair(std::FILE* out, const RepairReport& report);
 

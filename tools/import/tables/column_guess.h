@@ -12,28 +12,29 @@
 
 namespace vernier::importer {
 
-/// True for a name of the measurement file that is accepted as it is written. Numbers under a name of a later
-/// version of the format may be a user's column.
+/// True if `name` is a name of the measurement format that is accepted without any change. Exception: a
+/// column of numbers with a name from a later version of the format may be a column of the user.
 bool is_known_name(const std::string& name);
-/// True for a column of words, such as `run`.
+/// True if the column `name` contains words (labels), for example `run`.
 bool is_label(const std::string& name);
-/// True for an approach direction, such as `dirX`.
+/// True if the column `name` contains an approach direction, for example `dirX`.
 bool is_sense(const std::string& name);
-/// True for a column that is a pure number.
+/// True if the column `name` contains numbers without unit.
 bool is_pure(const std::string& name);
-/// True for a unit of angles.
+/// True if `unit` is a unit of angles.
 bool is_angle(const std::string& unit);
-/// True if a column needs a unit.
+/// True if the column must have a unit.
 bool wants_unit(const SheetColumn& column);
-/// Returns the name of the reading along or about an axis: x, y, z of X, Y, Z; rx, ry, rz of A, B, C; nullopt
-/// for other axes.
+/// Returns the name of the reading that belongs to an axis: x, y, z for X, Y, Z (along the axis); rx, ry, rz
+/// for A, B, C (about the axis); nullopt for other axes.
 std::optional<std::string> reading_of(const std::string& axis);
 
-/// True if a heading names a correction, the opposite of a deviation: nominal - actual (JCGM 200:2012, 2.53).
-/// "Abweichung nach Korrektur" is a deviation, and so is a column that states its formula.
+/// True if a heading names a correction: nominal - actual, the opposite of a deviation (JCGM 200:2012, 2.53).
+/// The heading "Abweichung nach Korrektur" (deviation after correction) names a deviation. A heading with its
+/// own formula is a deviation too.
 bool names_correction(const sheet::Heading& heading);
 
-/// Names of columns, to find each in a time that does not depend on their number.
+/// Index of the columns by name, so that the time to find a column does not depend on the number of columns.
 class Readings {
  public:
   explicit Readings(const std::vector<SheetColumn>& columns) {
@@ -41,7 +42,7 @@ class Readings {
       if (one.use == SheetColumn::Use::kColumn)
         header_.emplace(one.name, format::CsvColumn{one.name, one.unit});
   }
-  /// Is a column a reading among these?
+  /// True if `column` is a reading among the columns of this table.
   bool contain(const SheetColumn& column) const {
     return format::is_reading({column.name, column.unit},
                               [&](std::string_view name) -> const format::CsvColumn* {
@@ -54,14 +55,16 @@ class Readings {
   std::map<std::string, format::CsvColumn, std::less<>> header_;
 };
 
-/// The meaning of a column by its heading.
+/// Finds the meaning of a column from its heading.
 class Guess {
  public:
   explicit Guess(const SheetWishes& wishes) : wishes_(wishes) {}
 
-  /// True for the name of an axis: of the machine if it is known, else a usual name.
+  /// True if `word` is the name of an axis: an axis of the machine if the machine is known, otherwise a usual
+  /// axis name.
   bool is_axis(const std::string& word) const;
-  /// Taken for an axis by its letter alone: U may be a voltage, A a current.
+  /// True if `word` counts as an axis only because of its letter, and may mean something else: U a voltage, A
+  /// a current.
   bool may_be_no_axis(const std::string& word) const {
     return wishes_.axes.empty() && is_axis(word) && word != "X" && word != "Y" && word != "Z";
   }
@@ -81,7 +84,7 @@ class Guess {
   /// rotation about Y by the right-hand rule. nullopt for any other heading.
   std::optional<SheetColumn> component_error(const sheet::Heading& heading) const;
 
-  /// Words of a heading that names no axis: "Soll", "Pos", "Istposition".
+  /// Kind of a heading that names no axis: "Soll" (target), "Pos", "Istposition" (actual position).
   enum class Bare { kOther, kTarget, kActual };
   static Bare bare(const std::string& name);
 

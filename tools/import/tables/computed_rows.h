@@ -7,17 +7,18 @@
 
 namespace vernier::importer {
 
-/// True if a cell names a row that a spreadsheet computes from the rows above: "Mittelwert", "Std. dev.",
-/// "Max".
+/// True if a cell is the label of a row that a spreadsheet computes from the rows above: "Mittelwert" (mean),
+/// "Std. dev.", "Max".
 bool says_computed_row(const std::string& cell);
 
-/// Removes the rows of data that a spreadsheet computed (mean, spread, largest and smallest value), and
-/// writes a note for each into the sheet. A label column may have the words min and max as the names of
-/// states: there only a word that occurs once, behind all other words, names a computed row.
+/// Removes the rows that a spreadsheet computed (mean, standard deviation, largest and smallest value), and
+/// writes a note for each of these rows into the sheet. The words min and max in a label column may be names
+/// of states. The word min or max is the label of a computed row only if it occurs once, after all other
+/// words.
 void leave_computed_rows(sheet::Sheet& sheet, const sheet::SheetTable& table);
 
-/// Writes a note for each row of data with fewer cells than headings. Throws InputError if blanks separate
-/// the columns, because the missing cell can then be any.
+/// Writes a note for each row of data that has fewer cells than there are headings. If blanks separate the
+/// columns, throws InputError for a row with fewer cells, because any of its cells can be missing.
 void note_short_rows(sheet::Sheet& sheet, const sheet::SheetTable& table);
 
 }  // namespace vernier::importer

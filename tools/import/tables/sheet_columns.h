@@ -6,8 +6,9 @@
 
 namespace vernier::importer {
 
-/// Returns the meaning of each column: as assigned, else by its heading, and where that leaves it open by its
-/// values. Throws InputError for a wish that fits no column.
+/// Returns the meaning of each column of a sheet. The meaning comes from the assignment of the user,
+/// otherwise from the heading, and if the heading is ambiguous from the values. Throws InputError if an
+/// assignment of the user matches no column.
 std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                           const SheetWishes& wishes);
 

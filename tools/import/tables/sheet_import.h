@@ -10,37 +10,40 @@
 
 namespace vernier::importer {
 
-/// Description of a spreadsheet by the user, in the words of `vernier import table`; empty: detected.
+/// Options with which the user describes a spreadsheet, in the words of `vernier import table`. An empty
+/// option is detected from the file.
 struct SheetWords {
   std::string separator, decimal, comment, sheet, unit;
   std::optional<std::size_t> skip, table;
   std::vector<std::string> columns, deviations, constants, left;
-  std::vector<std::string> fill;  // headings
+  std::vector<std::string> fill;  // headings of columns whose empty cells have the value above them
   bool one_motion = false;
-  std::vector<std::string> axes;  // of the machine, if it is known
+  std::vector<std::string> axes;  // axes of the machine, if the machine is known
 };
 
-/// A spreadsheet after it is understood: headings, columns and their meaning, without the rows of data.
+/// Result of reading a spreadsheet: headings, columns and their meaning, before the rows of data are
+/// converted.
 struct SheetReading {
   SheetWishes wishes;
   sheet::Sheet sheet;
   sheet::SheetTable table;
   std::vector<SheetColumn> columns;
-  std::size_t runs = 0;  // columns of runs that were made one (unfold_runs)
+  std::size_t runs = 0;  // number of columns that were joined because each was one run (unfold_runs)
 };
 
-/// Reads text or workbook. `wishes`: the settings of a profile; `words` override them. Throws InputError with
-/// file, line and word.
+/// Reads a spreadsheet from text or from a workbook. `wishes`: the settings of a profile. Options in `words`
+/// have priority over these settings. If the spreadsheet is not valid, throws InputError with file, line and
+/// word.
 SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
                            SheetWishes wishes = {});
 
-/// "UTF-8, columns separated by semicolon, decimal comma".
+/// Returns the text format of a sheet for people, for example "UTF-8, columns separated by semicolon, decimal
+/// comma".
 std::string how_read(const sheet::Sheet& sheet);
-/// Returns the description of the use of a column: "x[mm]", "position of X + this, [um]", "left out".
+/// Returns a text that describes the use of a column: "x[mm]", "position of X + this, [um]", "left out".
 std::string becomes(const SheetColumn& column);
-/// [{heading, use: column
-/// deviation
-/// left, name, unit, why}], with sign if the sign of a deviation was reversed.
+/// Returns the use of all columns as JSON: [{heading, use: column deviation left, name, unit, why}]. An
+/// element has also a sign if the sign of a deviation was reversed.
 nlohmann::ordered_json columns_json(const SheetReading& reading);
 
 }  // namespace vernier::importer

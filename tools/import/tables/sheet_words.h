@@ -9,39 +9,44 @@
 
 namespace vernier::importer {
 
-/// The words of a heading; X_ist and X-ist are two.
+/// Returns the words of a heading; "X_ist" and "X-ist" have two words.
 std::vector<std::string> heading_words(const std::string& name);
 
-// Meaning of a word, in small letters, for a column, in the languages of shop floors.
+// Functions that return the meaning of a word in a heading. The word is in small letters, in one of the
+// languages that are usual in workshops.
 bool says_target(const std::string& word);
 bool says_measured(const std::string& word);
-/// A mean or a spread, which a spreadsheet computes from its readings: "Mittelwert".
+/// True for a statistic that a spreadsheet computes from its readings (a mean or a standard deviation), for
+/// example "Mittelwert".
 bool says_statistic(const std::string& word);
 bool says_deviation(const std::string& word);
-/// The opposite of a deviation: "Korrektur", "Korrekturtabelle".
+/// True for a correction, the opposite of a deviation: "Korrektur", "Korrekturtabelle".
 bool says_correction(const std::string& word);
-/// A word of "after the correction", "without compensation": the column states no correction.
+/// True for a word of "after the correction" or "without compensation". A column with a heading of this kind
+/// ("after the correction") does not contain a correction.
 bool says_state_of_correction(const std::string& word);
 /// An error across the motion ("Geradheit") or a rotation beside the motion ("Pitch"), without its direction.
 bool says_straightness(const std::string& word);
 bool says_tilt(const std::string& word);
-/// A column that counts or names the rows: "Nr".
+/// True for a column with a number or a name of each row: "Nr".
 bool says_counting(const std::string& word);
 
 /// True for a cell without a value: empty, "-", "n/a" …
 bool is_missing(const std::string& cell);
 
-/// 1 for forward, +, hin …; -1 for back, -, zurück …; 0: no direction.
+/// Returns the approach direction that a word states: 1 for forward, +, hin …; -1 for back, -, zurück …; 0
+/// for other words.
 int sense_said(std::string_view word);
 
-/// True if a deviation is described as nominal - actual: "(nominal-actual)", "= Soll - Ist". `whole`: also
-/// true if the text is only this description; "Soll-Ist-Vergleich" gives no sign.
+/// True if a text describes a deviation as nominal - actual: "(nominal-actual)", "= Soll - Ist". `whole`:
+/// true if the text may also be only this description; "Soll-Ist-Vergleich" (comparison) defines no sign.
 bool says_nominal_less_actual(std::string_view text, bool whole);
 
-/// The cells above the headings of a table.
+/// Returns the cells above the headings of a table.
 std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table);
 
-/// The only axis that the titles name ("Achse: X", "X-Achse", "Axis X"); empty: no axis or several.
+/// Returns the only axis that the cells above the headings name ("Achse: X", "X-Achse", "Axis X"); empty if
+/// they name no axis or several axes.
 std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table);
 
 }  // namespace vernier::importer

@@ -7,12 +7,13 @@
 
 namespace vernier::importer {
 
-/// Converts a sheet with a column for each run and approach direction ("Pos | 1+ | 1- | 2+ …", "Run 1 fwd",
-/// "hin 1", "Messung 1 ↑") to a sheet with one row per reading and the columns run and sense. A reading is a
-/// deviation if its heading or a title says this. Otherwise a reading is a position if its values spread as
-/// the positions do, else a deviation. Returns the number of columns that were joined; 0 if the sheet is of
-/// another kind and is not changed. Throws InputError: the same run and direction twice, a table that would
-/// be too large.
+/// Converts a sheet with one column for each run and approach direction to a sheet with one row per reading
+/// and the columns run and sense. Examples of headings are "Pos | 1+ | 1- | 2+ …", "Run 1 fwd", "hin 1",
+/// "Messung 1 ↑". A reading is a deviation if its heading or a title states this. If neither heading nor
+/// title states the meaning, a reading is a position if its values vary as much as the positions do;
+/// otherwise it is a deviation. Returns the number of columns that were joined; 0 if the sheet has another
+/// form and is not changed. Throws InputError if the same run and direction occurs twice, or if the table
+/// would be too large.
 std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table);
 
 }  // namespace vernier::importer

@@ -8,15 +8,16 @@
 
 namespace vernier::model {
 
-/// Tool points and orientations of N states in workpiece coordinates (no BaseShift).
+/// Tool points and tool orientations of N states in workpiece coordinates, without a BaseShift.
 struct Poses {
   Eigen::Matrix3Xd position;              // mm
-  std::vector<Eigen::Matrix3d> rotation;  // workpiece <- tool
+  std::vector<Eigen::Matrix3d> rotation;  // rotation from tool coordinates to workpiece coordinates
 };
 
-/// Forward kinematics of the chain: p = W^-1 * T * (0,0,0,1), FORMATS section 1. Exact, in double
-/// precision. Throws InputError if an expression is not finite. The message names transform,
-/// degree of freedom and state.
+/// Computes the forward kinematics of the chain: p = W^-1 * T * (0,0,0,1), FORMATS section 1. The result of
+/// forward() has no linearisation error and is in double precision. Throws InputError if the value of an
+/// expression is not finite. The message of the error names the transform, the degree of freedom and the
+/// state.
 Poses forward(const Machine& machine, const States& states);
 
 /// Returns the deviation of each state: position of `machine` minus position of the nominal chain of

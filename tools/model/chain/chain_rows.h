@@ -9,46 +9,47 @@
 
 namespace vernier::model {
 
-/// A frame: rotation and origin, in the coordinates of the frame below.
+/// A coordinate frame: rotation and origin, in the coordinates of the previous frame of the chain.
 struct Frame {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // mm
 };
 
-/// Motion of a rigid body per unit of a parameter: velocity of the tool point (mm) and angular
-/// velocity (rad).
+/// Motion of a rigid body per unit of a parameter: velocity of the tool point (mm per unit) and angular
+/// velocity (rad per unit).
 struct Twist {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
 };
 
-/// Returns the frame of a sixdof, T(X,Y,Z)*Rx(rX)*Ry(rY)*Rz(rZ); mm and deg.
+/// Returns the frame of a sixdof transform, T(X,Y,Z)*Rx(rX)*Ry(rY)*Rz(rZ); values in mm and deg.
 Frame sixdof_frame(const std::array<double, 6>& value);
 
-/// Returns the twists of a point per mm and per deg of the six degrees of freedom, in the frame of
-/// `value`. `point`: the moved point in that frame.
+/// Returns the twist (motion) of a point by each of the six degrees of freedom, per mm or per deg, in the
+/// frame of `value`. `point`: coordinates of the moved point in this frame.
 std::array<Twist, 6> sixdof_twists(const std::array<double, 6>& value, const Eigen::Vector3d& point);
 
-/// The chain of a machine, evaluated at states. The columns of the degrees of freedom are computed once. A
-/// pose is then computed for each state.
+/// The chain of a machine, evaluated at states. The values of the degrees of freedom are computed once, for
+/// all states. The function pose() then computes the pose of one state.
 class ChainRows {
  public:
-  /// `active` as for Evaluator: the derivatives that twists() reports. Throws InputError if an
-  /// expression is not finite. The message names transform, degree of freedom and row.
+  /// `active`: flags of the derivatives that pose() returns as twists, as for Evaluator. Throws InputError if
+  /// the value of an expression is not finite. The message of the error names the transform, the degree of
+  /// freedom and the row.
   ChainRows(const Machine& machine, const States& states, std::vector<char> active = {});
 
   /// Returns the tool frame in workpiece coordinates at state i.
   Frame pose(std::size_t i) const;
 
-  /// Returns the pose of state i and the twist of the tool point in workpiece coordinates by each active key.
-  /// `keys()` gives the key of each entry of `twists`.
+  /// Returns the pose of state i, and the twist of the tool point by each active parameter, in workpiece
+  /// coordinates. keys() returns the parameter key of each entry of `twists`.
   Frame pose(std::size_t i, std::vector<Twist>& twists) const;
   const std::vector<std::size_t>& keys() const { return keys_; }
 
  private:
   struct Dof {
     Value value;
-    std::vector<std::pair<std::size_t, Value>> by;  // position in keys_, derivative
+    std::vector<std::pair<std::size_t, Value>> by;  // position in keys_, and derivative
   };
   struct Link {
     TransformKind kind;

@@ -11,7 +11,7 @@
 
 namespace vernier::model {
 
-/// A number for each state, or one number for all states.
+/// A value of an expression: a number for each state, or one number for all states.
 class Value {
  public:
   Value() = default;
@@ -29,19 +29,21 @@ class Value {
   bool varies_ = false;
 };
 
-/// A value and its derivatives by the quantities that a fit may change. Keys of the derivatives. Static: its
-/// index. Table value: statics.size() + axis * 6 + column; the weights of the stations are applied later,
-/// because they are equal for all columns. Scale factor: statics.size() + 6 * axes.size() + axis.
+/// A value and its derivatives with respect to the quantities that a fit may change. Each derivative has a
+/// key, which identifies the parameter. The key of a static is its index. The key of a table value is
+/// statics.size() + axis * 6 + column. The weights of the stations are applied later, because they are equal
+/// for all columns. The key of a scale factor is statics.size() + 6 * axes.size() + axis.
 struct ValueAndSlopes {
   Value value;
   std::vector<std::pair<std::size_t, Value>> by;
 };
 
-/// Evaluates expressions of one machine at all states together, with derivatives if they are
-/// requested. The evaluation is column by column, because lag needs the whole run.
+/// Evaluates expressions of one machine at all states together, with derivatives if the caller requests them.
+/// The evaluation is column by column, because the function lag needs all rows of a run.
 class Evaluator {
  public:
-  /// `active`: true for each key whose derivative is requested. Empty: no derivatives.
+  /// `active`: flag for each key; true if the derivative by this parameter is requested. If `active` is
+  /// empty, no derivatives are computed.
   Evaluator(const Machine& machine, const States& states, std::vector<char> active = {});
 
   ValueAndSlopes operator()(const Expr& expr);
@@ -61,14 +63,14 @@ class Evaluator {
   const Machine& machine_;
   const States& states_;
   std::vector<char> active_;
-  std::unordered_map<std::size_t, std::vector<Column>> table_columns_;  // axis -> six columns
+  std::unordered_map<std::size_t, std::vector<Column>> table_columns_;  // the six columns of each axis' table
 };
 
 /// Returns the value of an expression of the machine at every state.
 Column evaluate(const Machine& machine, const Expr& expr, const States& states);
 
-/// True if an expression of the machine uses lag. Rows of such a machine must be evaluated together, in time
-/// order.
+/// True if an expression of the machine uses the function lag. The rows of a machine with lag must be
+/// evaluated together, in time order.
 bool uses_lag(const Machine& machine);
 
 }  // namespace vernier::model

@@ -14,39 +14,41 @@
 
 namespace vernier::model {
 
-/// Adjacent parameters with common weights: the free columns of a table (one weight for each station that
-/// contributes at a row), statics, or the components of a BaseShift or a ToolShift (weight
-/// 1).
+/// A group of adjacent parameters with common weights. The parameters are the free columns of a table (one
+/// weight for each station that contributes at a row), statics, or the components of a BaseShift or a
+/// ToolShift (weight 1).
 struct ParameterGroup {
-  Eigen::Index slot = 0, width = 0;                           // rows of RowLinear::gradient
-  std::vector<std::pair<Eigen::Index, double>> first_weight;  // parameter of the first column, weight
+  Eigen::Index slot = 0, width = 0;                           // slot, width: first row and number of rows of
+                                                              // RowLinear::gradient
+  std::vector<std::pair<Eigen::Index, double>> first_weight;  // index of the parameter in the first column,
+                                                              // and its weight
 };
 
-/// One row of a measurement, linear in the parameters:
-/// d predicted(o) / d parameter(first + k) = sum over the groups of weight * gradient(slot + k, o).
+/// The linearised prediction of one row of a measurement: d predicted(o) / d parameter(first + k) = sum over
+/// the groups of weight * gradient(slot + k, o).
 struct RowLinear {
   std::size_t first_observation = 0;
-  Eigen::VectorXd predicted;           // of the row's observations, mm or deg
+  Eigen::VectorXd predicted;           // predicted observations of the row, mm or deg
   Eigen::MatrixXd gradient;            // observations x slots
-  std::vector<ParameterGroup> groups;  // by increasing parameter
+  std::vector<ParameterGroup> groups;  // in the order of increasing parameter index
 };
 
-/// Linearises the rows of a measurement one by one. A station table is represented by a few
-/// weights times six columns. Data that do not depend on the parameters' values (stations and
-/// weights of every row) are computed once. Keeps a reference to `measurement`.
+/// Linearises the rows of a measurement one by one. A station table is represented by a few station weights
+/// times six columns. Data that do not depend on the values of the parameters (stations and weights of every
+/// row) are computed once. The Linearizer keeps a reference to `measurement`.
 class Linearizer {
  public:
   Linearizer(const Machine& machine, const Measurement& measurement, const ParameterSet& parameters);
 
-  /// Calls visit(const RowLinear&) for every row that has an observation. `machine` is the machine
-  /// of the constructor with other parameter values. Throws InputError if an expression is not
-  /// finite.
+  /// Calls visit(const RowLinear&) for every row that has an observation. `machine` is the machine of the
+  /// constructor with other parameter values. Throws InputError if the value of an expression is not finite.
   template <class Visit>
   void each_row(const Machine& machine, const Visit& visit) const {
     each_row(machine, visit, [](const ThingsAt&) {});
   }
-  /// Works as the function above, and then calls end(const ThingsAt&) with the estimates of the touched
-  /// objects for this machine. The derivatives of the rows are for fixed values of the touched objects.
+  /// Works as the function each_row with two arguments, and then calls end(const ThingsAt&) with the
+  /// estimates of the touched objects for this machine. The derivatives of the rows are for fixed values of
+  /// the touched objects.
   template <class Visit, class End>
   void each_row(const Machine& machine, const Visit& visit, const End& end) const {
     Pass pass(*this, machine);
@@ -58,9 +60,11 @@ class Linearizer {
  private:
   struct TableGroup {
     std::size_t axis = 0;
-    ParameterGroup group;                                  // first_weight is filled row by row
-    std::vector<std::size_t> start;                        // of each row in `weights`
-    std::vector<std::pair<Eigen::Index, double>> weights;  // first parameter of the station, weight
+    ParameterGroup group;                                  // first_weight is set for each row
+    std::vector<std::size_t> start;                        // index of the first weight of each row in
+                                                           // `weights`
+    std::vector<std::pair<Eigen::Index, double>> weights;  // index of the first parameter of the station, and
+                                                           // weight of the station
   };
   class Pass {
    public:
@@ -70,18 +74,20 @@ class Linearizer {
     const ThingsAt& things() const { return things_; }
 
    private:
-    /// Computes how a row's observations depend on the pose of row `at`. `at` is the row itself, or the row
-    /// at the other end of a distance. `other_end`: position of the end that is not evaluated.
+    /// Computes the derivatives of a row's observations with respect to the pose of row `at`. `at` is `row`
+    /// itself, or the row at the other end of a distance reading. `other_end`: position of the other end of
+    /// the distance, at which nothing is evaluated.
     void fill(std::size_t row, std::size_t at, const Eigen::Vector3d& other_end);
     Eigen::Vector3d point_at(std::size_t row) const;
-    /// Adds the influence of the pose at the other end of the row's distance. After that, every parameter of
-    /// both rows has a separate slot.
+    /// Adds the influence of the pose at the other end of a distance reading. After join_other_end(), every
+    /// parameter of both rows has a separate slot.
     void join_other_end(std::size_t row, std::size_t other);
     const SetUpOfRow& set_up_of(std::size_t row) const {
       const States& states = all_.measurement_.states;
       return set_ups_[states.of(states.setup, row)];
     }
-    /// Adds the group of six set-up parameters that begins at `slot`; none if they are held.
+    /// Adds the group of six set-up parameters that begins at `slot`. If the parameters are fixed, no group
+    /// is added.
     void add_set_up(const std::vector<std::array<Eigen::Index, 6>>& parameters,
                     const std::vector<BaseShift>& shifts, const BaseShift* shift, Eigen::Index slot);
 
@@ -99,14 +105,15 @@ class Linearizer {
 
   const Measurement& measurement_;
   Things things_;
-  std::vector<std::size_t> start_;         // first observation of each row
-  std::vector<char> active_;               // keys of Evaluator
-  std::vector<Eigen::Index> slot_of_key_;  // by key of Evaluator
+  std::vector<std::size_t> start_;         // index of the first observation of each row
+  std::vector<char> active_;               // flags of the requested derivatives, by key of Evaluator
+  std::vector<Eigen::Index> slot_of_key_;  // slot of each parameter, by key of Evaluator
   std::vector<ParameterGroup> static_groups_;
   std::vector<TableGroup> tables_;
   std::vector<std::array<Eigen::Index, 6>> base_parameter_,
-      tool_parameter_;      // per BaseShift, ToolShift: parameter of each component, -1: held
-  Eigen::Index slots_ = 0;  // without the twelve of the set-up
+      tool_parameter_;      // for each BaseShift and ToolShift: index of the parameter of each component; -1:
+                            // fixed
+  Eigen::Index slots_ = 0;  // number of slots without the twelve slots of the set-up
 };
 
 }  // namespace vernier::model

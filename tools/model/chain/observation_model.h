@@ -8,10 +8,11 @@
 
 namespace vernier::model {
 
-/// Predicts the observations of one row from the tool's pose in workpiece coordinates and the two places of
-/// the row's set-up. Readings that do not depend on the set-up are of the tool itself; all others are of what
-/// the ToolShift places in the frame of the tool. gravity: direction of gravity in the machine file, unit
-/// vector. Keeps references.
+/// Predicts the observations of one row from the pose of the tool in workpiece coordinates, and from the
+/// BaseShift and the ToolShift of the row's set-up. A reading that does not depend on the set-up is a reading
+/// of the tool itself. Every other reading is of the object that the ToolShift places in the frame of the
+/// tool. `gravity`: direction of gravity in the machine file, as a unit vector. The ObservationModel keeps
+/// references to its arguments.
 class ObservationModel {
  public:
   ObservationModel(const Measurement& measurement, const std::array<double, 3>& gravity,
@@ -19,42 +20,45 @@ class ObservationModel {
 
   /// Returns the measured point in the measuring frame, mm: the tool point moved by the ToolShift.
   const Eigen::Vector3d& point() const { return seen_.origin; }
-  /// Sets the position of the other end of the row's distance. Call set_other_end() before predicted() of a
-  /// distance.
+  /// Sets the position of the other end of a distance reading. For a distance reading, call set_other_end()
+  /// before predicted().
   void set_other_end(const Eigen::Vector3d& point) { other_end_ = point; }
 
-  /// Returns the predicted value: mm, or deg for rotations. Rotation vectors repeat every 360 deg. The vector
-  /// nearest to the reading is used. The predicted rotation of a board is the reading minus the small
-  /// rotation, about the axes of the camera, from the prediction to the reading: the residual is this
-  /// rotation vector for any orientation, and equal uncertainties about three axes are equal for all
-  /// readings.
+  /// Returns the predicted value of an observation: mm, or deg for rotations. Rotation vectors that differ by
+  /// 360 deg are equivalent. Of the equivalent rotation vectors, the vector nearest to the reading is the
+  /// prediction. For a board, the predicted rotation is the reading minus the small rotation from the
+  /// prediction to the reading, about the axes of the camera. The residual is therefore this small rotation
+  /// vector, for any orientation of the board.
   double predicted(const Observation& observation);
 
-  /// Returns the sensitivity of the observation to a motion of the tool in the measuring frame: point .
-  /// gradient.point (mm) + rotation . gradient.rotation (rad). `point` is the motion of the tool point, also
-  /// with a ToolShift. For a rotation, call predicted() of an observation of this row before this function.
+  /// Returns the sensitivity of an observation to a motion of the tool in the measuring frame. The change of
+  /// the observation is point . gradient.point (mm) + rotation . gradient.rotation (rad). `point` is the
+  /// motion of the tool point, also if the set-up has a ToolShift. For a rotation reading, call predicted()
+  /// for an observation of the same row before gradient().
   Twist gradient(const Observation& observation) const;
 
-  /// Twists of the tool in the measuring frame by the six components of the BaseShift.
+  /// Returns the motions (twists) of the tool in the measuring frame by the six components of the BaseShift.
   std::array<Twist, 6> base_twists() const { return sixdof_twists(base_value_, point_); }
-  /// Twists of the tool in the measuring frame that have the effect of the six components of the ToolShift.
+  /// Returns the motions (twists) of the tool in the measuring frame that have the same effect as the six
+  /// components of the ToolShift.
   std::array<Twist, 6> tool_twists() const;
   const Eigen::Matrix3d& base_rotation() const { return base_.rotation; }
 
  private:
   Eigen::Vector3d normal(Eigen::Index row) const;
   const Eigen::Vector3d& rotation_vector(std::size_t row);
-  /// Returns the measured direction and two directions across it. If the row has no measured direction,
-  /// sight() uses the axes of the tool.
+  /// Returns the measured direction and two directions perpendicular to it. If the row has no measured
+  /// direction, sight() returns the axes of the tool.
   Eigen::Matrix3d sight(Eigen::Index row) const;
-  /// Returns the rotation vector, rad, from the predicted to the measured rotation of the board, about the
-  /// axes of the camera.
+  /// Returns the small rotation vector from the predicted to the measured rotation of the board, about the
+  /// axes of the camera, rad.
   const Eigen::Vector3d& board_error(std::size_t row);
-  /// Returns the measured rotation vector of the kinds first, first + 1 and first + 2 in this row, rad.
+  /// Returns the measured rotation vector of a row, from the reading kinds first, first + 1 and first + 2,
+  /// rad.
   Eigen::Vector3d measured_rotation(std::size_t row, ObservationKind first) const;
-  /// Returns the axis of the tool (z of what is measured) in the measuring frame.
+  /// Returns the direction of the tool axis (z axis of the measured object) in the measuring frame.
   Eigen::Vector3d tool_axis() const { return seen_.rotation.col(2); }
-  /// gradient() of a reading that depends on the set-up, by a motion of what is measured.
+  /// Returns the sensitivity of a reading that depends on the set-up to a motion of the measured object.
   Twist gradient_of_seen(const Observation& observation) const;
 
   const Measurement& m_;
@@ -62,12 +66,12 @@ class ObservationModel {
   Eigen::Vector3d up_;
   Frame base_;
   std::array<double, 6> base_value_{};
-  Frame seen_;                          // what is measured, in the measuring frame
-  std::array<double, 6> tool_value_{};  // of the ToolShift
+  Frame seen_;                          // frame of the measured object in the measuring frame
+  std::array<double, 6> tool_value_{};  // values of the ToolShift
   bool has_tool_shift_ = false;
-  Eigen::Vector3d point_, phi_ = Eigen::Vector3d::Zero();  // measuring frame: mm, rad
-  Eigen::Vector3d board_error_ = Eigen::Vector3d::Zero();  // axes of the camera, rad
-  Eigen::Vector3d other_end_ = Eigen::Vector3d::Zero();    // mm
+  Eigen::Vector3d point_, phi_ = Eigen::Vector3d::Zero();  // in the measuring frame: mm, rad
+  Eigen::Vector3d board_error_ = Eigen::Vector3d::Zero();  // about the axes of the camera, rad
+  Eigen::Vector3d other_end_ = Eigen::Vector3d::Zero();    // position of the other end of a distance, mm
   bool has_phi_ = false, has_board_error_ = false;
 };
 

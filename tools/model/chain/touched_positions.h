@@ -7,14 +7,15 @@
 
 namespace vernier::model {
 
-/// Returns the positions of each axis at which the tool point would be exactly on the object that the row
-/// touched (`same`, `on`), with the objects at their best estimates for this machine. Other rows keep their
-/// positions. The axes stopped where the tool touched, so that recorded positions contain the error of the
-/// touch: any function of them that is steep enough explains it. The returned positions do not contain it;
-/// they differ by the size of the error, which no true function of the positions sees.
+/// Returns corrected axis positions for rows that touch an object (`same`, `on`). At these positions the tool
+/// point is exactly on the object, with the object at its best estimate for this machine. Rows that touch no
+/// object keep their positions. The axes stopped at the touch, so that the recorded positions contain the
+/// error of the touch. A function of the recorded positions with a large slope would explain this error. The
+/// returned positions do not contain the error of the touch. A true error function of the positions hardly
+/// changes by this small difference.
 std::vector<Column> touched_positions(const Machine& machine, const Measurement& measurement);
 
-/// Extent (diagonal, mm) of the points at which the tool was in these rows.
+/// Returns the extent (diagonal of the box, mm) of the tool points in the given rows.
 double extent_of_points(const Machine& machine, const Measurement& measurement,
                         const std::vector<std::size_t>& rows);
 

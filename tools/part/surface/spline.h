@@ -13,20 +13,22 @@ struct CurvePoint {
   Eigen::Vector3d second = Eigen::Vector3d::Zero();    // mm per unit of u^2
 };
 
-/// A cubic B-spline with clamped ends, equal knot spans and weights 1. Knots: {0 x4, 1/n ... (n-1)/n, 1 x4}
-/// for n = control points - 3 spans. Piegl and Tiller, The NURBS Book, 2nd ed., algorithms A3.1 and A3.2.
+/// A cubic B-spline with clamped ends, equal knot spans and all weights equal to 1. The knots are {0 x4, 1/n
+/// ... (n-1)/n, 1 x4}, with n = control points - 3 spans. The algorithms are A3.1 and A3.2 of Piegl and
+/// Tiller, The NURBS Book, 2nd ed.
 class Spline {
  public:
-  /// control: at least 4 points, mm. Throws std::invalid_argument for fewer.
+  /// `control`: at least 4 control points, mm. Throws std::invalid_argument if there are fewer than 4 control
+  /// points.
   explicit Spline(std::vector<Eigen::Vector3d> control);
 
-  /// u: 0..1; outside this range the end span continues. The second derivative is continuous, the third jumps
-  /// at knots.
+  /// `u`: 0..1. For u outside 0..1, the polynomial of the end span is used. The second derivative of the
+  /// spline is continuous; the third derivative jumps at knots.
   CurvePoint at(double u) const;
   const std::vector<Eigen::Vector3d>& control() const { return control_; }
   std::size_t spans() const { return control_.size() - 3; }
-  /// Returns the length of the whole curve, mm; Gauss-Legendre quadrature in each knot span, relative error
-  /// below 1e-9.
+  /// Returns the length of the whole curve, mm. The method is Gauss-Legendre quadrature in each knot span,
+  /// with a relative error below 1e-9.
   double length_mm() const;
 
  private:

@@ -9,16 +9,17 @@
 
 namespace vernier::workbench {
 
-/// Powers of mm, deg, degC, s, V, N, kg.
+/// Exponents of the base units mm, deg, degC, s, V, N, kg in a unit.
 using UnitPowers = std::array<int, 8>;
 
-/// Powers of a unit of FORMATS section 2 ("mm/s", "1/mm"); `nullopt` for any other unit.
+/// Returns the exponents of a unit of FORMATS section 2 ("mm/s", "1/mm"); nullopt for any other unit.
 std::optional<UnitPowers> unit_powers(const std::string& unit);
-/// "mm/degC", "mm", "1" for no unit.
+/// Returns the text of a unit: "mm/degC", "mm"; "1" for a pure number.
 std::string unit_text(const UnitPowers& powers);
 
-/// Returns the unit of an expression, with `unknown` taken as a pure number; `nullopt` if the unit is not
-/// determined (a static without unit, a power that is no number). warnings: units that do not match.
+/// Returns the unit of an expression in which `unknown` counts as a pure number. The function
+/// expression_unit() returns nullopt if the unit is not determined (a static without unit, an exponent that
+/// is not a number). `warnings`: receives messages about units that do not match.
 std::optional<UnitPowers> expression_unit(const model::Machine& machine, const model::Expr& expr,
                                           const std::string& unknown, std::vector<std::string>& warnings);
 

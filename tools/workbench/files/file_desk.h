@@ -8,15 +8,15 @@
 
 namespace vernier::workbench {
 
-/// All functions of the workbench that read a machine, a measurement or a term. These functions run in a
-/// separate process: a harmful file ends that process and not the server.
+/// Contains all functions of the workbench that read a machine, a measurement or a term. The functions that
+/// read files run in a separate process. A harmful file therefore ends only this process and not the server.
 class FileDesk {
  public:
   explicit FileDesk(const Project& project) : project_(project), cache_(project) {}
 
-  /// True if FileDesk answers this request. Data to be stored (PUT) are only checked here.
+  /// True if FileDesk answers this request. For a request to store data (PUT), FileDesk only checks the data.
   static bool answers(const ApiRequest& request);
-  /// Answers a request and never throws, like Api::reply.
+  /// Answers a request and never throws an exception, like Api::reply.
   ApiReply reply(const ApiRequest& request);
 
  private:

@@ -8,43 +8,45 @@
 
 namespace vernier::workbench {
 
-/// Kind of a file of a project, by its name.
+/// Kind of a file in a project, which follows from the name of the file.
 enum class FileKind : std::uint8_t { kMachine, kMeasurement, kInstrument, kReport, kImage, kKey, kOther };
-/// Returns the name of a kind as the page writes it: "machine" ...
+/// Returns the name of a file kind for the page: "machine" ...
 const char* kind_name(FileKind kind);
 
 struct ProjectFile {
-  std::string name;  // relative to the project, parts joined by '/'
+  std::string name;  // path relative to the project folder, with '/' between the parts
   FileKind kind = FileKind::kOther;
   std::uint64_t bytes = 0;
-  std::int64_t modified_s = 0;  // since 1970
+  std::int64_t modified_s = 0;  // time of the last change, s since 1970
 };
 
-/// True if the name is allowed for a file of a project: one to three parts between '/', each of 1 to 120
-/// bytes, without control characters, '\' and ':', not starting with '.', '-', '~' or a blank.
+/// True if a name is permitted for a file of a project. The name has one to three parts between '/', each of
+/// 1 to 120 bytes. A part contains no control characters, '\' or ':', and does not start with '.', '-', '~'
+/// or a blank.
 bool is_project_name(std::string_view name);
 
-/// Throws InputError with the name if `path` is a symbolic link, a device or a pipe.
+/// Throws InputError with `name` if `path` is a symbolic link, a device or a pipe.
 void refuse_special(const std::filesystem::path& path, const std::string& name);
 
-/// The folder that the workbench reads and writes; the workbench accesses no file outside the folder. Names
-/// are checked as above, and no part of a name may be a symbolic link, a device or a pipe.
+/// The project folder that the workbench reads and writes. The workbench accesses no file outside this
+/// folder. Names of files must be permitted (is_project_name), and no part of a name may be a symbolic link,
+/// a device or a pipe.
 class Project {
  public:
   /// Throws InputError if `directory` is not a folder.
   explicit Project(const std::string& directory);
 
   const std::filesystem::path& root() const { return root_; }
-  /// Returns the path of an existing file or folder. Throws InputError with the name: a name that is not
-  /// allowed, a link, no such file.
+  /// Returns the path of an existing file or folder. Throws InputError with the name if the name is not
+  /// permitted, contains a link, or does not exist.
   std::filesystem::path existing(const std::string& name) const;
-  /// Returns a path that may be written; the file need not exist. Throws InputError as above, and if a folder
-  /// contains a link, a device or a pipe.
+  /// Returns the path of a file that may be written. The file need not exist. Throws InputError if the name
+  /// is not permitted, or if the path contains a link, a device or a pipe.
   std::filesystem::path writable(const std::string& name) const;
-  /// Writes a file; a reader gets either the old file or the complete new file.
+  /// Writes a file. Another program reads either the old file or the complete new file.
   void save(const std::string& name, const std::string& bytes) const;
-  /// Returns the files in the folder and one level below, by name; without hidden files and links, and only
-  /// the first 2000.
+  /// Returns the files in the project folder and one level below, sorted by name. Hidden files and links are
+  /// excluded, and only the first 2000 files are returned.
   std::vector<ProjectFile> list() const;
 
  private:

@@ -12,12 +12,12 @@
 
 namespace vernier::workbench {
 
-/// A request of the page whose origin was verified.
+/// A request of the page. The server has already verified the origin of the request.
 struct ApiRequest {
-  std::string method, path;  // "GET", "/api/rows"
+  std::string method, path;  // for example "GET" and "/api/rows"
   std::multimap<std::string, std::string> query;
   std::string body;
-  /// Returns the value of a query word, empty if the word is absent.
+  /// Returns the value of a query parameter; empty if the parameter is absent.
   std::string word(const std::string& name) const;
   std::vector<std::string> words(const std::string& name) const;
 };
@@ -31,12 +31,13 @@ struct ApiReply {
 ApiReply json_reply(const nlohmann::ordered_json& json, int status = 200);
 ApiReply blob_reply(std::string bytes);
 
-/// The result of `answer`. If `answer` throws: bad input is 422 with {"message"}, an internal error is 500.
-/// The project's folder is removed from messages.
+/// Returns the result of the function `answer`. If `answer` throws an exception, the status of the reply is
+/// 422 with {"message"} for bad input, and 500 for an internal error. The path of the project folder is
+/// removed from the messages.
 ApiReply reply_of(const Project& project, const std::function<ApiReply()>& answer);
 
-/// Returns the JSON object in the body of a request. body_json and the functions below throw InputError with
-/// the word.
+/// Returns the JSON object in the body of a request. body_json and the following functions throw InputError
+/// with the wrong word.
 nlohmann::json body_json(const ApiRequest& request);
 std::string text_at(const nlohmann::json& json, const char* key);
 std::vector<std::string> texts_at(const nlohmann::json& json, const char* key);

@@ -13,22 +13,23 @@
 
 namespace vernier::workbench {
 
-/// A machine and rows of a project, as read.
+/// A machine and measurement rows that were read from the files of a project.
 struct LoadedRows {
-  std::string text;        // of the machine file
-  model::Machine machine;  // with its set-up fitted to the rows, if requested
+  std::string text;        // text of the machine file
+  model::Machine machine;  // the machine; if requested, with its set-up fitted to the rows
   bool datum = false;
   model::Measurement measurement;
 };
 
-/// Reads machines with their measurements, and stores the last few in memory as long as their files do not
-/// change. May be called from several threads.
+/// Reads machines with their measurements. The last few results stay in memory as long as their files do not
+/// change. Several threads may call the functions of RowCache.
 class RowCache {
  public:
   explicit RowCache(const Project& project) : project_(project) {}
-  /// The names are those in the project. `datum`: the machine's set-up is fitted to the rows first (`compare
-  /// --datum`). Rows that were measured with a correction on need its image in the project. Throws InputError
-  /// with file, line and word.
+  /// Returns a machine with its measurements; all file names are relative to the project. `datum`: true if
+  /// the set-up of the machine is fitted to the rows first (as with `compare --datum`). If rows were measured
+  /// with an active correction, the image of this correction must be in the project. If a file is not valid,
+  /// throws InputError with file, line and word.
   std::shared_ptr<const LoadedRows> get(const std::string& machine,
                                         const std::vector<std::string>& measurements, bool datum);
 
@@ -44,20 +45,20 @@ class RowCache {
   std::vector<Entry> kept_;
 };
 
-/// Returns everything that the page draws of a machine and rows (Blob): columns, runs, roles, lines, tool
-/// points, directions of lengths, observations with residuals in um or urad, circles, numbers.
+/// Returns all data that the page draws for a machine and its rows (format Blob): columns, runs, roles,
+/// lines, tool points, directions of lengths, observations with residuals in um or urad, circles, numbers.
 std::string rows_blob(const LoadedRows& rows);
 
-/// Residuals and figures with some parameters changed; no file is written.
+/// Returns residuals and statistics with some parameters changed. No file is written.
 std::string prediction_blob(const LoadedRows& rows, const std::map<std::string, double>& values);
 
-/// Returns the change of the residual of the fitted model if an effect is added and fitted, per observation,
-/// um or urad. add: a candidate's `add` string.
+/// Returns the change of each residual of the fitted model, um or urad, if one effect is added and fitted.
+/// `add`: the `add` string of the effect.
 std::string explanation_blob(const LoadedRows& rows, const std::string& add);
 
-/// Returns the free parameters: {name, value, unit, nominal, std, from}. std and from (data, convention,
-/// prior) are from the fit that wrote the file; null if there was no fit, or if the value was changed after
-/// the fit.
+/// Returns the free parameters as JSON: {name, value, unit, nominal, std, from}. The entries std and from
+/// (data, convention, prior) come from the fit that wrote the file. The entries std and from are null if
+/// there was no fit, or if the value was changed after the fit.
 nlohmann::ordered_json parameters_json(const LoadedRows& rows);
 
 }  // namespace vernier::workbench

@@ -7,18 +7,19 @@
 
 namespace vernier::workbench {
 
-/// True if the first line of the text is that of a measurement file: names with units, separated by commas. A
-/// text without such a line may be a spreadsheet.
+/// True if the first line of a text is that of a measurement file: names with units, separated by commas. A
+/// text with another first line may be a spreadsheet.
 bool begins_as_measurement(const std::string& text);
 
-/// Returns the interpretation of a spreadsheet: {how, separator, decimal, heading_line, columns
+/// Returns how a spreadsheet is read, as JSON: {how, separator, decimal, heading_line, columns
 /// (columns_json), rows: the first as cells, csv: the first lines of the measurement file, n_rows, message:
-/// reason why it is not a measurement yet}. Throws InputError if the bytes are not a table.
+/// reason why it is not a measurement yet}. Throws InputError if the file does not contain a table.
 nlohmann::ordered_json sheet_preview(const std::string& bytes, const std::string& file,
                                      const importer::SheetWords& words);
 
-/// The words of a request, with the names of the options of `vernier import table`: separator, decimal,
-/// comment, sheet, unit (texts), skip (number), column, deviation, leave, set (lists). Throws InputError.
+/// Returns the options in a request, with the names of the options of `vernier import table`: separator,
+/// decimal, comment, sheet, unit (texts), skip (number), column, deviation, leave, set (lists). Throws
+/// InputError if an option of the request is not valid.
 importer::SheetWords sheet_words(const nlohmann::json& request);
 
 }  // namespace vernier::workbench

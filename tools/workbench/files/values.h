@@ -9,12 +9,12 @@
 
 namespace vernier::workbench {
 
-/// Returns the free parameters of a machine with all its BaseShifts: the BaseShift of each run or set-up, and
-/// the BaseShift without `run` and `setup`.
+/// Returns the free parameters of a machine with all its BaseShifts: those of each run or set-up, and the
+/// BaseShift without `run` and `setup`.
 model::ParameterSet all_parameters(const model::Machine& machine);
 
-/// Sets parameters by name (as in the result of fit), including hidden statics. Throws InputError
-/// with a name that the machine does not have.
+/// Sets parameters of a machine by name (names as in the result of fit). Hidden statics can be set too.
+/// Throws InputError if the machine has no parameter with one of the names.
 void set_values(model::Machine& machine, const std::map<std::string, double>& values);
 
 }  // namespace vernier::workbench

@@ -8,21 +8,24 @@
 
 namespace vernier::workbench {
 
-/// The steps of a project, in order. The file `.vernier/history.json` contains the steps. The shell script
-/// `history.sh` contains the steps that are not undone, and repeats them. Commands to a board are comments in
-/// the script.
+/// History of a project: the commands that were executed, in their order. The history is stored in the file
+/// `.vernier/history.json`. The shell script `history.sh` repeats the commands that were not undone. In this
+/// script, commands to a board are comments.
 class CommandHistory {
  public:
-  /// Reads the history of an earlier session. Throws InputError if the history cannot be read.
+  /// Reads the history that an earlier session stored. Throws InputError if the file of the history cannot be
+  /// read.
   explicit CommandHistory(const Project& project);
 
-  /// Adds an entry. result: JSON of the command; the entry stores rms_um and check_rms_um of this JSON.
+  /// Adds a command to the history. `result`: JSON result of the command. The history stores its values
+  /// rms_um and check_rms_um.
   void add(const std::string& typed, const PlannedCommand& command, const nlohmann::ordered_json& result);
-  /// undo: undoes the last entry (its files stay, and the script omits the entry). redo: restores the first
-  /// undone entry. Throws InputError if no such entry exists.
+  /// undo() marks the last command as undone. The files of the command stay, and the script omits the
+  /// command. redo() restores the first undone command. Throws InputError if there is no command to undo or
+  /// to redo.
   void undo();
   void redo();
-  /// [{"command", "name", "at", "undone", "outputs", "rms_um", "check_rms_um"}].
+  /// Returns the history as JSON: [{"command", "name", "at", "undone", "outputs", "rms_um", "check_rms_um"}].
   nlohmann::ordered_json entries() const;
   std::string script() const;
 

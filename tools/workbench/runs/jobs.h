@@ -14,21 +14,23 @@
 
 namespace vernier::workbench {
 
-/// Runs commands of the page as processes of this program in the project's folder, each in a thread that
-/// waits for it. The page gets the same result as a terminal. A bad file affects only its job; cancelling
-/// ends the job immediately.
+/// Runs commands of the page as processes of this program in the project folder. For each process there is
+/// one thread that waits for its end. The result on the page is the same as in a terminal. A bad file affects
+/// only the job that reads it. Cancelling a job ends its process immediately.
 class Jobs {
  public:
-  /// program: the `vernier` to run. References are kept.
+  /// `program`: path of the `vernier` program. The object Jobs keeps references to `project` and `history`.
   Jobs(std::string program, const Project& project, CommandHistory& history);
   ~Jobs();
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
-  /// Starts a command; returns the number of its job. Throws InputError if too many jobs are running already.
+  /// Starts a command as a job and returns the number of the job. Throws InputError if too many jobs are
+  /// running.
   std::uint64_t start(const PlannedCommand& command);
-  /// {"id", "command" as typed, "state": "running" | "done" | "failed" | "cancelled", "fraction", "step",
-  /// "seconds", "exit", "message", "text", "outputs", "result"}. Throws InputError for an unknown number.
+  /// Returns the state of a job as JSON: {"id", "command" as typed, "state": "running" | "done" | "failed" |
+  /// "cancelled", "fraction", "step", "seconds", "exit", "message", "text", "outputs", "result"}. Throws
+  /// InputError if no job has this number.
   nlohmann::ordered_json state(std::uint64_t id);
   void cancel(std::uint64_t id);
 

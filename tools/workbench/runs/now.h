@@ -4,9 +4,9 @@
 
 namespace vernier::workbench {
 
-/// Returns s since an arbitrary moment, never decreasing: for durations.
+/// Returns the time in s since an arbitrary moment, for durations. The time never decreases.
 double steady_s();
-/// Returns s since 1970: for dates.
+/// Returns the time in s since 1970, for dates.
 std::int64_t unix_s();
 
 }  // namespace vernier::workbench
