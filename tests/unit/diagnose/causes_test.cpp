@@ -195,11 +195,21 @@ TEST(Causes, HaveNoGrowthThatNoMaterialHas) {
   }
 }
 
-/// A search with a backlash that is clearly accepted, and its alternatives.
+/// The temperature of a slide, and that of its cover, which follows the slide.
+double slide_degC(int run, int row) { return 20 + 0.25 * std::sin(0.011 * (82 * run + row)); }
+double cover_degC(int run, int row) { return slide_degC(run, row) + 0.05 * std::sin(0.3 * row + run); }
+
+/// A search with a growth that is clearly accepted, and its alternatives: two thermometers show nearly the
+/// same.
 class Decision : public testing::Test {
  protected:
   Decision()
-      : survey_(runs_of(4, [](double, int sense, int, int) { return 0.0004 * sense; })),
+      : survey_(runs_of(
+            4, [](double x, int, int run, int row) { return 11.5e-6 * x * (slide_degC(run, row) - 20); },
+            ",T_slide[degC],T_cover[degC]",
+            [](int run, int row) {
+              return fmt::format(",{:.4f},{:.4f}", slide_degC(run, row), cover_degC(run, row));
+            })),
         fitted_(fit::fit(survey_.machine, survey_.rows)),
         finder_(fitted_.machine, survey_.rows, effects_, 5, [](double, const std::string&) {}) {
     finder_.find();
