@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -186,6 +187,27 @@ TEST_F(Pages, CameraRunsAsPrinted) {
                               std = {0.037, 0.076, 0.34, 0.0081, 0.0049, 0.064};
   for (std::size_t i = 0; i < 6; ++i)
     EXPECT_NEAR(machine.tool_shifts[0].value[i], truth[i], 2.5 * std[i]) << i;
+}
+
+TEST_F(Pages, RTestRunsAsPrinted) {
+  std::string script;
+  for (const std::string& block : blocks(page("tools/docs/import.md"), "sh"))
+    if (block.find("tests/data/rtest") != std::string::npos) script += block;
+  ASSERT_EQ(run(script), 0) << said_;
+  // The truth (tests/data/rtest/make.py).
+  const model::Machine machine = model::read_machine(folder_ + "/build/rtest_fitted.xml");
+  constexpr double kPosition_mm = 0.002, kDirection_deg = 2.0 / 3600;  // as the page says
+  const std::map<std::string, double> truth = {{"xB", 0.012},   {"zB", -0.018},  {"xC", 0.031},
+                                               {"yC", -0.044},  {"rxB", 0.0023}, {"rzB", -0.0201},
+                                               {"rxC", 0.0042}, {"ryC", -0.0057}};
+  for (const auto& [name, value] : truth)
+    EXPECT_NEAR(machine.statics[*machine.find_static(name)].value, value,
+                name[0] == 'r' ? kDirection_deg : kPosition_mm)
+        << name;
+  // Without the options the deviations are taken along the axes of the machine: the command says so.
+  ASSERT_EQ(run("vernier import table tests/data/rtest/rtest.csv --preview"), 0) << said_;
+  EXPECT_NE(said_.find("note: the axis C rotates"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("--column \"x[um]=dX [um]\""), std::string::npos) << said_;
 }
 
 TEST_F(Pages, ReadmeRunsAsPrinted) {

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "tools/format/columns.h"
+#include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/computed_rows.h"
 #include "tools/import/tables/wide_sheet.h"
 #include "tools/sheet/several_tables.h"
@@ -95,6 +97,35 @@ void note_sparse_columns(SheetReading& reading) {
   }
 }
 
+/// Notes deviations beside a rotary axis that moves: sensors on the rotating part measure in their own frame,
+/// and then a deviation is not along the axis that its heading names.
+void note_rotating_frame(SheetReading& reading) {
+  const auto moves = [&](std::size_t k) {
+    std::set<std::string> values;
+    for (std::size_t row = reading.table.first_data; row < reading.sheet.rows.size(); ++row)
+      if (!sheet::is_blank(reading.sheet.rows[row])) values.insert(reading.sheet.rows[row][k]);
+    return values.size() > 1;
+  };
+  std::string rotary, columns;
+  for (std::size_t k = 0; k < reading.columns.size(); ++k) {
+    const SheetColumn& column = reading.columns[k];
+    const std::string& heading = reading.table.headings[k].text;
+    if (column.use == SheetColumn::Use::kColumn && is_angle(column.unit) && column.name.size() == 1 &&
+        moves(k))
+      rotary = column.name;
+    if (column.use != SheetColumn::Use::kDeviation || column.why != "by its heading" || is_angle(column.unit))
+      continue;
+    columns += fmt::format(" --column \"{}[{}]={}\"", text::in_small_letters(column.name),
+                           column.unit.empty() ? "um" : column.unit, heading);
+  }
+  if (!rotary.empty() && !columns.empty())
+    reading.sheet.notes.push_back(
+        fmt::format("the axis {} rotates: if the instrument is fixed on the part that rotates (R-test), its "
+                    "deviations are not "
+                    "along the axes of the machine; then give{}",
+                    rotary, columns));
+}
+
 }  // namespace
 
 SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
@@ -122,6 +153,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   result.columns = columns_of_sheet(result.sheet, result.table, result.wishes);
   fill_down(result);
   note_sparse_columns(result);
+  note_rotating_frame(result);
   return result;
 }
 
