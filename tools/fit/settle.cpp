@@ -310,7 +310,8 @@ class Settler {
     }
     model::SparseRows jacobian;
     const VectorXd residual = problem_.weighted_residuals(result_.point, &jacobian)(fitted);
-    const MatrixXd j = MatrixXd(jacobian)(fitted, Eigen::all);
+    // As many numbers as readings times parameters: only where they are needed.
+    const auto dense = [&]() -> MatrixXd { return MatrixXd(jacobian)(fitted, Eigen::all); };
     const NoiseLayout layout = noise_layout(rows, fitted);
     if (noise_) {
       result_.noise = *noise_;
@@ -320,12 +321,14 @@ class Settler {
       const bool whole = unknowns > 0 && n * std::pow(p + unknowns, 2) < kMostNoiseProducts;
       MatrixXd of_things(residual.size(), 0);
       if (whole) of_things = problem_.things_jacobian(result_.point)(fitted, Eigen::all);
-      if (whole || n * p * p < kMostNoiseProducts) basis = fitted_directions(j, of_things, residual.norm());
+      if (whole || n * p * p < kMostNoiseProducts) basis = fitted_directions(dense(), of_things, residual.norm());
       // The scales leave a part of the fitted directions in the residual, which is no noise.
-      const VectorXd beside = residual - basis * (basis.transpose() * residual);
+      VectorXd beside = residual;
+      if (basis.cols() > 0) beside -= basis * (basis.transpose() * residual);
       result_.noise = estimate_noise(layout, beside, basis, with_u_);
     }
     if (result_.noise.independent()) return result_.variance * data;
+    const MatrixXd j = dense();
     MatrixXd hanging = j.transpose() * covariance_times(layout, result_.noise, j);
     hanging.diagonal() += stated_unit() * stated_.weight;
     if (const MatrixXd known = problem_.known_normal(result_.point); known.size() > 0) hanging += known;
