@@ -222,17 +222,18 @@ class CatalogueReader {
     if (effect.size)
       for (const std::string& name : effect.size->unknowns)
         if (effect.find_unknown(name) == nullptr)
-          fail_at(first_line_, name, "size: this effect has no unknown of this name");
+          fail_at(first_line_, name, "size: this effect declares no unknown (coefficient) of this name");
     std::set<std::string> used;
     for (std::size_t i = 0; i < effect.forms.size(); ++i) {
       const std::set<std::string> here = unknowns_of(effect, effect.forms[i], form_line_[i]);
       if (here.empty())
-        fail_at(form_line_[i], effect.forms[i].term, "the term has no unknown of this effect");
+        fail_at(form_line_[i], effect.forms[i].term,
+                "the term of this form contains no unknown (coefficient) that this effect declares");
       used.insert(here.begin(), here.end());
     }
     for (const UnknownRule& rule : effect.unknowns)
       if (!used.contains(rule.name))
-        fail_at(first_line_, rule.name, "no form of the effect uses this unknown");
+        fail_at(first_line_, rule.name, "no form of the effect contains this unknown (coefficient)");
   }
 
   /// Returns the unknowns that a form uses. Throws if its term contains something that a term may

@@ -69,7 +69,8 @@ text::Assurance assurance_of(const fit::FitResult& result) {
                                      : result.absurd);
   if (result.check_ratio)
     word.at_most("check-rows", *result.check_ratio, 1,
-                 "Ratio of the residuals of the check rows: fitted machine to nominal machine.");
+                 "Residual of the check rows (held-out rows) with the fitted machine, divided by their "
+                 "residual with the nominal machine.");
   else {
     word.not_covered(
         "The fit was not tested on held-out rows, because there are fewer than twelve check readings.");

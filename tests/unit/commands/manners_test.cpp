@@ -47,11 +47,11 @@ class Manners : public testing::Test {
 
 TEST_F(Manners, MistypedCommandIsNamedWithTheOneMeant) {
   EXPECT_EQ(run("vernier fti m.xml rows.csv"), 1);
-  EXPECT_TRUE(said("\"fti\": there is no command vernier fti; did you mean vernier fit?")) << said_;
+  EXPECT_TRUE(said("\"fti\" is not a command of vernier; did you mean vernier fit?")) << said_;
   EXPECT_EQ(run("vernier import tabel x"), 1);
   EXPECT_TRUE(said("did you mean vernier import table?")) << said_;
   EXPECT_EQ(run("vernier frobnicate"), 1);
-  EXPECT_TRUE(said("\"frobnicate\": there is no command") && said("vernier help")) << said_;
+  EXPECT_TRUE(said("\"frobnicate\" is not a command of vernier") && said("vernier help")) << said_;
   EXPECT_EQ(run("vernier fit m.xml rows.csv --outptu x.xml"), 1);
   EXPECT_TRUE(said("\"--outptu\": no option of this command; did you mean --output?")) << said_;
 }

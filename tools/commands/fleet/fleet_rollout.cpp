@@ -105,8 +105,9 @@ text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet
   const auto total = static_cast<double>(states.size());
   const auto kept =
       std::count_if(states.begin(), states.end(), [](const auto& s) { return s.state == "kept"; });
-  assurance.at_least("kept", static_cast<double>(kept), total,
-                     fmt::format("{} of {} machines keep their image", kept, states.size()));
+  assurance.at_least(
+      "kept", static_cast<double>(kept), total,
+      fmt::format("{} of {} machines confirmed their correction image after its trial", kept, states.size()));
   assurance.at_least(
       "in-effect", static_cast<double>(end->in_effect.size()), total,
       fmt::format("{} of {} boards answered at the end of the call as the board of their machine, "

@@ -135,7 +135,7 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   if (const auto& tilt = json["tilt_deg"]; !tilt.is_null())
     fmt::print(out, "tool tilted by  {:.4g} deg on average by the modelled errors, {:.4g} deg at most\n",
                tilt["rms"].get<double>(), tilt["max"].get<double>());
-  fmt::print(out, "{} observations, {} of them check, {} rows excluded\n",
+  fmt::print(out, "{} readings, {} of them in check rows (held-out rows); {} rows excluded\n",
              json["n_obs"].get<std::size_t>() + json["n_check"].get<std::size_t>(),
              json["n_check"].get<std::size_t>(), json["n_excluded"].get<std::size_t>());
   print_stretches(out, json["stretches"]);

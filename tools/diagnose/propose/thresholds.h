@@ -193,8 +193,9 @@ struct FinePeriodThresholds {
   /// highest peak may be an alias of the slower peak. Source of the value 10: "very strong" evidence by Kass
   /// and Raftery 1995.
   double nearly_as_well = 10;
-  /// Difference of chi^2 that distinguishes two periods that are evaluated in full. The threshold for periods
-  /// equals the required distance of alternatives.
+  /// Smallest difference of chi^2 at which the readings distinguish two periods, if both periods are
+  /// evaluated in full. The value is the same as `distance`, the required difference of the BIC between a
+  /// cause and an alternative cause.
   double told_apart = 6;
 
   template <class Visit>
@@ -287,8 +288,8 @@ struct AcceptanceThresholds {
   double instrument_distance = 10;
   /// Smallest share of an effect's motion that must change from row to row. Below this share the effect is as
   /// slow as a drift of the instrument (von Neumann 1941: the share is 1 for random rows). Source:
-  /// experiment. In a survey with rows in random order, temperatures have shares of 0.01 to 0.1; temperatures
-  /// multiplied by an axis position have 0.3 to 1.
+  /// experiment. In a survey with rows in random order, the share that changes from row to row is 0.01 to 0.1
+  /// for a temperature. For a temperature multiplied by an axis position this share is 0.3 to 1.
   double slow_share = 0.15;
   /// Share of the decrease of chi^2 on the fit rows that an effect must reach on held-out runs. An effect
   /// that was fitted to noise does not reduce chi^2 of held-out runs. A true effect reduces chi^2 of held-out
@@ -368,7 +369,8 @@ struct ProofThresholds {
   /// rows give no information about the step. With an expected evidence of only 2, a true step is rejected by
   /// chance one time in six.
   double least_expected = 2;
-  /// Evidence against a step with small expected evidence at which the step counts as wrong. Then chi^2 of
+  /// Limit of the evidence against a step of the stepwise model, for a step whose expected evidence is small.
+  /// If the evidence against this step reaches the limit, the step counts as wrong. At the limit, chi^2 of
   /// the check rows increases by 1, and their standard deviation by the factor 1/(2 n) for n rows.
   double worse = 0.5;
   /// Number of standard deviations below the mean of the evidence; one true step in a hundred has still less
@@ -486,8 +488,9 @@ struct ShapeThresholds {
   /// Number of positions along the axis at which the test assumes a jump.
   std::size_t places_of_jump = 64;
   /// Largest numbers of functions that count as separate causes. More functions are likely pieces of one
-  /// function. In order, the numbers are for: effects of one axis; effects of the position if rows have one
-  /// reading; effects beside a curve.
+  /// function. `most_of_one_axis`: largest number of functions of one axis. `most_of_one_reading`: largest
+  /// number of functions of position, if all readings are of one kind. `most_beside_a_curve`: the same if one
+  /// of the functions is a curve.
   std::size_t most_of_one_axis = 2, most_of_one_reading = 3, most_beside_a_curve = 2;
   /// `periods_of_a_wave`: number of periods in the range above which a cyclic error is a separate cause (a
   /// worm or its gear) and not a piece of a function. `most_waves`: largest number of cyclic errors that are

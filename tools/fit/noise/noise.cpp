@@ -147,7 +147,7 @@ std::string in_words(const NoiseModel& model, const NoiseUnit& unit) {
     count += 1.0 / 3;
   }
   if (count > 0)
-    text += fmt::format(", what is touched shifts by {:.3g} um from set-up to set-up",
+    text += fmt::format(", the touched object shifts by {:.3g} um rms from set-up to set-up",
                         std::sqrt(set_ups / count) * unit.um);
   for (const NoiseStep& step : model.steps) {
     if (step.of_set_up()) continue;
