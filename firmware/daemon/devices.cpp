@@ -367,8 +367,9 @@ std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
     std::string error;
     auto input = open_sensor(source, lines, error);
     routes[i] = {input.get(), 0};
-    note(name, error,
-         [input = input.get()] { return input->sample() == HalFault::kNone ? "" : "gives no number"; });
+    note(name, error, [input = input.get()] {
+      return input->sample() == HalFault::kNone ? "" : "the sensor gives no number";
+    });
     if (input) sensors.push_back(std::move(input));
   }
   return routes;
@@ -513,7 +514,8 @@ std::vector<std::string> Devices::not_looked_at() const {
   for (const AxisEntry& axis : file.axes) {
     const std::string name = std::string("axis.") + axis.wiring.name.c_str();
     if (axis.position.kind != "sim")
-      lines.push_back(name + ".position: whether the position is right; one reading came");
+      lines.push_back(
+          name + ".position: one reading came, but the check does not know whether this position is right");
     const auto output = std::find_if(parts_->real_outputs.begin(), parts_->real_outputs.end(),
                                      [&](const RealOutput& one) { return &file.axes[one.axis] == &axis; });
     if (output != parts_->real_outputs.end())

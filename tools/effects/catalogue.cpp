@@ -70,9 +70,9 @@ class CatalogueReader {
   void take(std::string rest) {
     const std::string key = next_word(rest);
     if (key == "effect") return begin(rest);
-    if (effects_.empty()) fail(key, "an entry begins with a line \"effect ID\"");
+    if (effects_.empty()) fail(key, "the first line of an effect must be \"effect ID\"");
     Effect& now = effects_.back();
-    if (rest.empty()) fail(key, "nothing behind this word");
+    if (rest.empty()) fail(key, "this line has no text after its first word");
     if (key == "title")
       now.title = rest;
     else if (key == "short")
@@ -111,7 +111,7 @@ class CatalogueReader {
     if (!effects_.empty()) check(effects_.back());
     if (id.empty() || id.find_first_of(" \t:,=") != std::string::npos) fail(id, "not an effect id");
     for (const Effect& other : effects_)
-      if (other.id == id) fail(id, "this effect occurs twice");
+      if (other.id == id) fail(id, "the catalogue has this effect twice");
     effects_.push_back({});
     effects_.back().id = id;
     first_line_ = line_;
@@ -145,7 +145,7 @@ class CatalogueReader {
       fail(rest, error.what());
     }
     for (const EffectForm& other : effect.forms)
-      if (other.label == form.label) fail(form.label, "this form occurs twice");
+      if (other.label == form.label) fail(form.label, "the effect has two forms of this label");
     effect.forms.push_back(form);
     form_line_.push_back(line_);
   }
@@ -165,7 +165,7 @@ class CatalogueReader {
       const std::string label = next_word(rest);
       const auto form = std::find_if(effect.forms.begin(), effect.forms.end(),
                                      [&](const EffectForm& f) { return f.label == label; });
-      if (form == effect.forms.end()) fail(label, "no earlier form has this label");
+      if (form == effect.forms.end()) fail(label, "the effect has no form of this label before this line");
       form->rare = true;
     }
   }

@@ -259,9 +259,10 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   if (lack_um.maxCoeff() > 0) {
     constexpr double kPlainly = 1.1;  // times the noise: visible with two digits
     const double times = times_the_noise(result);
-    const std::string what = times > kPlainly ? fmt::format("The residual is {:.2g} times the noise", times)
-                                              : "The residuals along one direction, or of the check rows, "
-                                                "are larger than the noise of their readings";
+    const std::string what = times > kPlainly
+                                 ? fmt::format("The residual is {:.2g} times the noise", times)
+                                 : "The residuals along one direction, or the residuals of the check rows "
+                                   "(held-out rows), are larger than the noise of their readings";
     list.push_back(
         {"something-missing", times,
          fmt::format("{}: something is missing from this model, {:.3g}, {:.3g}, {:.3g} um in x, y, z.", what,

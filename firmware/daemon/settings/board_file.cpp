@@ -246,8 +246,10 @@ void require_limits(Table& settings, AxisEntry& axis, TimeUs tick) {
   };
   require("max_correction",
           "max_correction = 0.1  # " + unit + ", the largest correction that the board adds to the command");
-  require("max_speed", "max_speed = 500  # " + unit +
-                           "/s of the axis; a correction uses the share correction_share of it");
+  require(
+      "max_speed",
+      "max_speed = 500  # " + unit +
+          "/s, the largest speed of the axis; a correction may use the part correction_share of this speed");
   if (settings.has("max_step")) return;
   const std::string step = number_text(default_step(settings, axis, tick));
   axis.default_step = "max_step = " + step + "  # " + unit + " in one tick";
@@ -558,7 +560,8 @@ void refuse_duplicates(const BoardFile& board) {
       return true;
     };
     const auto found = std::find_if(used.begin(), used.end(), same);
-    if (found != used.end()) source.fail("the device of " + (*found)->where + " too: one device has one use");
+    if (found != used.end())
+      source.fail("the device of " + (*found)->where + " is the same: one device can have only one use");
     used.push_back(&source);
   };
   for (const AxisEntry& axis : board.axes)

@@ -332,8 +332,8 @@ std::string ModbusOutput::attempt(std::uint32_t) {
 }
 
 std::string ModbusOutput::trial() const {
-  return "blocks with valid bits 0 were written, with the values that the registers had (at most the range); "
-         "the controller removes a correction that it has";
+  return "the check wrote blocks with valid bits 0 and the present values of the registers (at most the "
+         "range); the controller removes its present correction";
 }
 
 std::string ModbusOutput::account() const {

@@ -118,7 +118,8 @@ TEST_F(Manners, RecordsInAnglesOnlyHaveFiguresInAngles) {
             (i % 4 == 3 ? "check" : "fit") + "\n";
   write_file(folder_ + "/a.csv", rows);
   EXPECT_EQ(run("vernier improve a.xml a.csv -o out --yes --json r.json"), 0) << said_;
-  EXPECT_TRUE(said("the model as given, fitted: fit rows ") && said("urad") && !said("rows -")) << said_;
+  EXPECT_TRUE(said("the given model after a fit: rms of fit rows ") && said("urad") && !said("rows -"))
+      << said_;
   const std::string json = read_file(folder_ + "/r.json");
   for (const char* key : {"rms_before_urad", "rms_urad", "check_rms_urad", "noise_urad"})
     EXPECT_EQ(json.find(std::string("\"") + key + "\": null"), std::string::npos) << key;

@@ -149,7 +149,7 @@ TEST_F(RolloutTest, TrialOfACallerThatWasKilledIsTakenUpAgainWhenItsLockEnds) {
   ended(beside);
   // THEN its lock holds another caller off, nothing is changed ...
   EXPECT_EQ(roll(""), 2);
-  EXPECT_NE(said().find("another caller is at work on this machine"), std::string::npos) << said();
+  EXPECT_NE(said().find("another call works on this machine"), std::string::npos) << said();
   EXPECT_NE(slots(1).trial, kNoSlot);
   // ... until its lease ends; the trial is then known as the rollout's own.
   std::this_thread::sleep_for(std::chrono::milliseconds(5500));
@@ -161,7 +161,7 @@ TEST_F(RolloutTest, OfTwoCallersOneIsRefusedAndNothingIsTakenBack) {
   const pid_t beside = roll_beside("--watch 2 --json first.json");
   ASSERT_TRUE(wait_for([&] { return slots(1).trial != kNoSlot; }));
   EXPECT_EQ(roll(""), 2) << said();
-  EXPECT_NE(said().find("m1: another caller is at work on this machine"), std::string::npos) << said();
+  EXPECT_NE(said().find("m1: another call works on this machine"), std::string::npos) << said();
   // Another rollout of one of the machines is held off as well.
   EXPECT_EQ(
       vernier("fleet rollout autumn --registry fleet.db --images 'image_{machine}' --key key --signed-by x "
