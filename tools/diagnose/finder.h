@@ -35,8 +35,8 @@ struct Alternatives {
 /// makes no new fit.
 class Finder {
  public:
-  /// `fitted`: the machine at its best fit. `progress`: receives the completed share of the diagnosis (0 to
-  /// 1) and the name of the current step.
+  /// `fitted`: the machine at its best fit. `progress`: receives the completed fraction of the diagnosis (0
+  /// to 1) and the name of the current operation.
   Finder(const model::Machine& fitted, const model::Measurement& measurement,
          const std::vector<effects::Effect>& effects, std::size_t most_effects,
          std::function<void(double, const std::string&)> progress, const DiagnoseThresholds& thresholds = {});

@@ -29,8 +29,8 @@ class Scanner {
   Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates);
 
   /// Returns the best values on the grid for every candidate that is visible in the data. The order is that
-  /// of the list, beginning at `first_candidate`. `progress`: receives the completed share of the scan (0 to
-  /// 1).
+  /// of the list, beginning at `first_candidate`. `progress`: receives the completed fraction of the scan (0
+  /// to 1).
   std::vector<Scored> scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
                            std::size_t first_candidate = 0);
 
