@@ -343,7 +343,7 @@ class AddReader {
       if (key.rfind("start.", 0) != 0) continue;
       const std::string name = key.substr(6);
       if (choice_.effect->find_unknown(name) == nullptr)
-        fail(name, "this effect has no unknown of this name");
+        fail(name, "this effect has no unknown (coefficient) of this name");
       choice_.start[name] = number(key, value);
       taken_.push_back(key);
     }

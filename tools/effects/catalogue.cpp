@@ -174,8 +174,8 @@ class CatalogueReader {
     UnknownRule rule;
     rule.name = next_word(rest);
     if (!text::is_name(rule.name) || model::is_reserved_word(rule.name))
-      fail(rule.name, "this name cannot be used for an unknown");
-    if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "this unknown occurs twice");
+      fail(rule.name, "an unknown cannot have this name, because the name is reserved");
+    if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "the effect declares this unknown twice");
     rule.unit = next_word(rest);
     const std::string kind = next_word(rest);
     const auto number = [&] {
@@ -210,15 +210,16 @@ class CatalogueReader {
     } else {
       fail(kind, "expected linear, time, travel, period or grid");
     }
-    if (!rest.empty()) fail(rest, "this line has too many words");
+    if (!rest.empty()) fail(rest, "this line has more words than the keyword allows");
     effect.unknowns.push_back(rule);
   }
 
   void check(const Effect& effect) const {
-    if (effect.forms.empty()) fail_at(first_line_, effect.id, "an effect needs a form");
+    if (effect.forms.empty()) fail_at(first_line_, effect.id, "the effect has no form; add a line with form");
     if (effect.title.empty() || effect.signature.empty())
       fail_at(first_line_, effect.id, "title or signature is missing");
-    if (effect.unknowns.empty()) fail_at(first_line_, effect.id, "an effect needs an unknown");
+    if (effect.unknowns.empty())
+      fail_at(first_line_, effect.id, "the effect has no unknown; add a line with unknown");
     if (effect.size)
       for (const std::string& name : effect.size->unknowns)
         if (effect.find_unknown(name) == nullptr)

@@ -452,7 +452,7 @@ MeasuredFeature fit_kind(const Touches& touches, const FeatureSetup& setup) {
     case FeatureKind::kBlock:
       return fit_block(touches, setup);
   }
-  throw text::InputError("no such feature");
+  throw text::InputError("this kind of feature is unknown");
 }
 
 // Expansion and temperature are the same for all touches. They increase the uncertainty of sizes

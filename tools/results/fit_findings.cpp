@@ -111,7 +111,7 @@ text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Mach
     const std::string name = safety::rule_name(one.rule);
     const std::string culprit = one.culprit.empty() ? "" : fmt::format(" ({})", one.culprit);
     if (!one.value)
-      word.not_covered(fmt::format("Rule {}: the machine file has no figure for it.", name));
+      word.not_covered(fmt::format("Rule {}: the machine file has no value for this rule.", name));
     else
       word.at_most(name, *one.value, one.limit,
                    fmt::format("Rule {}: {:.3g} {}, limit {:g}{}; {}.", name, *one.value, one.unit, one.limit,

@@ -35,10 +35,11 @@ class PartSheet {
       const auto unit = format::find_unit(column.unit);
       const bool number = column.name != "feature" && column.name != "kind" && column.name != "datum";
       if (!is_known(column.name))
-        throw text::InputError(head(), column.name,
-                               "a list of features has no such column: see `vernier part conformity --help`");
+        throw text::InputError(
+            head(), column.name,
+            "a list of features cannot have this column: see `vernier part conformity --help`");
       if (!column.unit.empty() && (!number || !unit || unit->dimension != format::Dimension::kLength))
-        throw text::InputError(head(), column.unit, "a part's numbers are lengths");
+        throw text::InputError(head(), column.unit, "this column of a part must have a unit of length");
     }
     std::vector<const char*> needed = {"feature", "kind"};
     needed.insert(needed.end(), format::columns::kPoint.begin(), format::columns::kPoint.end());

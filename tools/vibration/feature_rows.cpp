@@ -48,7 +48,7 @@ double rate_of(const format::CsvFile& file, const std::vector<double>& t_s) {
 const Signal& signal_named(const VibrationRecord& record, const std::string& name) {
   for (const Signal& signal : record.signals)
     if (signal.name == name) return signal;
-  throw text::InputError(fmt::format("\"{}\": the accelerometer record has no such signal", name));
+  throw text::InputError(fmt::format("\"{}\": the accelerometer record has no signal of this name", name));
 }
 
 std::string header_of(const Signal& signal, std::size_t feature) {

@@ -229,7 +229,7 @@ TEST_F(Manners, ImportThatFailsSaysWhatItUnderstood) {
   write_file(folder_ + "/odd.csv", "Soll;Ist\n0;0,1\n5;5,1\n");
   EXPECT_EQ(run("vernier import table odd.csv -o odd_read.csv"), 1);
   EXPECT_TRUE(said("columns separated by semicolon, decimal comma") &&
-              said("nothing measured among the columns") &&
+              said("no column of the table is a reading") &&
               said("--column \"X[mm]=Soll\" --column \"x[mm]=Ist\" for a measured position"))
       << said_;
   EXPECT_FALSE(said("this command reads it")) << said_;

@@ -43,7 +43,7 @@ std::array<double, 3> point_of(const std::string& text, char separator, const st
 
 std::vector<create::DhRow> arm_of(const NewArguments& arguments) {
   if (!arguments.dh.empty() && !arguments.joints.empty())
-    throw text::InputError("the arm is given twice: --dh and --joint");
+    throw text::InputError("--dh and --joint both describe the arm: give only one of the two options");
   if (!arguments.dh.empty()) return create::parse_dh_table(text::read_file(arguments.dh), arguments.dh);
   std::vector<create::DhRow> rows;
   for (const std::string& words : arguments.joints) rows.push_back(create::parse_dh_row(words));
