@@ -108,7 +108,7 @@ TrialEnd ImageTrial::of_kept() {
   const KeptLook look = look_at_kept(machine_, options_, locks_, stop_);
   if (look.why.empty()) return {Kind::kKept, ""};
   return {look.away ? Kind::kAway : Kind::kNotInEffect,
-          "the board has the confirmed image, but: " + look.why};
+          "the image is already permanent on the board, but: " + look.why};
 }
 
 /// Reverts a running trial of this rollout, left by a call that was interrupted. Returns the reason if it
