@@ -235,7 +235,7 @@ void Devices::Parts::make_counter(std::uint32_t axis, std::vector<Route<AxisRead
   routes[axis] = {counter.get(), 0};
   note(std::string("axis.") + file.axes[axis].wiring.name.c_str() + ".position  counter", error,
        [this, counter = counter.get()] {
-         return hear_position(clock, *counter, 0) ? "" : "the counter gives no count in its range";
+         return hear_position(clock, *counter, 0) ? "" : "the counter gives no count within its range";
        });
   if (counter) counters.push_back(std::move(counter));
 }
@@ -411,7 +411,8 @@ void Devices::Parts::make_features() {
                                              requests, file.service.upload.tick);
   if (features->refused() != kNoInput)
     file.inputs[requests[features->refused()].input].source.fail(
-        "the settings do not give a window or a filter: see the limits of window and corner_Hz");
+        "the settings `window` or `corner_Hz` are outside their limits, so the feature has neither a window "
+        "nor a filter");
   for (const FeatureRequest& request : requests) {
     const InputEntry& input = file.inputs[request.input];
     note("input." + input.name + "  " + input.source.text("feature") + " of " + input.source.text("of"), "");

@@ -553,7 +553,7 @@ TEST_F(CanopenBus, OffsetIsFourBytesLittleEndian) {
 }
 
 TEST_F(CanopenBus, SilentDriveIsNamedAndGetsNothing) {
-  EXPECT_EQ(output_.attempt(0), "no SYNC comes");
+  EXPECT_EQ(output_.attempt(0), "no SYNC arrives");
   EXPECT_EQ(output_.write_correction(0, AxisTravel(0)), HalFault::kNone);
   EXPECT_EQ(cable_.receive().can_id, 0u) << "nothing is sent";
   EXPECT_EQ(output_.write_correction(0, AxisTravel(1'000)), HalFault::kNone);

@@ -54,17 +54,18 @@ class Reader {
       throw text::InputError({machine_.file, line_at(at)}, word_at(at), result.description());
     }
     TooDeep too_deep;
-    if (!document_.traverse(too_deep)) fail(too_deep.found, too_deep.found.name(), "nested too deeply");
+    if (!document_.traverse(too_deep))
+      fail(too_deep.found, too_deep.found.name(), "the elements of the file are nested too deeply");
     pugi::xml_node root;
     for (const pugi::xml_node node : document_.children()) {
       if (node.type() == pugi::node_doctype)
         fail(node, "DOCTYPE", "a document type is not part of a machine file");
       if (node.type() != pugi::node_element)
         fail(node, node.value(), "the file has text outside the element <machine>");
-      if (root) fail(node, node.name(), "a second root element");
+      if (root) fail(node, node.name(), "the file has a second root element");
       root = node;
     }
-    if (!root) throw text::InputError({machine_.file, 1}, "", "no <machine> in this file");
+    if (!root) throw text::InputError({machine_.file, 1}, "", "the file has no element <machine>");
     read_root(root);
     check_names();
     resolve_all();
@@ -123,7 +124,7 @@ class Reader {
       }
     }
     if (machine_.tool.empty() && machine_.workpiece.empty())
-      fail(root, root.name(), "no <transforms> with a transform");
+      fail(root, root.name(), "the file has no element <transforms> with a transform");
   }
 
   FitRecord::Noise read_noise(const pugi::xml_node& node) {

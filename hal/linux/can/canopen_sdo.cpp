@@ -53,7 +53,7 @@ std::string CanopenSdo::read(CanopenObject object, std::uint32_t& value) {
   frame.data[3] = object.subindex;
   silent_ = true;
   if (::send(socket_, &frame, sizeof frame, MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof frame))
-    return "the bus takes no frame";
+    return "the bus accepts no frame";
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kWaitMs);
   for (auto now = std::chrono::steady_clock::now(); now < end; now = std::chrono::steady_clock::now()) {
     pollfd waiting{socket_, POLLIN, 0};

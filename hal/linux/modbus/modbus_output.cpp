@@ -87,7 +87,7 @@ std::string ModbusOutput::begin() {
   }
   if (healthy_) return "";
   return foreign_ > 0 ? "in use: another board writes the sequence number"
-                      : "the controller does not return the sequence number: does its program run?";
+                      : "the controller does not return the sequence number; test whether its program runs";
 }
 
 /// Registers of the block, as far as the last place that has an axis.

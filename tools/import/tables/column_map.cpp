@@ -187,7 +187,8 @@ std::vector<double> ImportTable::numbers(const std::string& name) const {
   const format::Unit unit = *format::find_unit(column.unit);
   std::vector<double> result;
   for (std::size_t i = 0; i < line.size(); ++i) {
-    if (column.cells[i].empty()) throw text::InputError({file, line[i]}, "", "an empty cell, for " + name);
+    if (column.cells[i].empty())
+      throw text::InputError({file, line[i]}, "", "the row has an empty cell, for " + name);
     result.push_back(*text::parse_number(column.cells[i]) * unit.factor + unit.offset);
   }
   return result;
@@ -235,7 +236,7 @@ std::string measurement_csv(const ImportTable& table) {
   }
   const format::CsvFile back = format::parse_csv(text, table.file);
   if (back.rows.size() != table.line.size())
-    throw text::InputError({table.file, 0}, "", "a row has only empty cells");
+    throw text::InputError({table.file, 0}, "", "the row has only empty cells");
   return text;
 }
 
