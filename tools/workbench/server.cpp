@@ -128,7 +128,7 @@ bool WorkbenchServer::Inside::welcome(const httplib::Request& request, httplib::
 WorkbenchServer::Inside::Handled WorkbenchServer::Inside::guard(const httplib::Request& request,
                                                                 httplib::Response& response) const {
   if (!is_ours(request)) {
-    refuse(response, 403, "not from this page");
+    refuse(response, 403, "the request does not come from this page");
     return Handled::Handled;
   }
   if (welcome(request, response)) return Handled::Handled;
@@ -138,7 +138,7 @@ WorkbenchServer::Inside::Handled WorkbenchServer::Inside::guard(const httplib::R
   }
   if (request.method == "GET") return Handled::Unhandled;
   if (!request.has_header("X-Vernier")) {
-    refuse(response, 403, "not from this page");
+    refuse(response, 403, "the request does not come from this page");
     return Handled::Handled;
   }
   // Bodies have a known length and are not compressed: their size is limited.

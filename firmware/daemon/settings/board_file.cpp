@@ -276,7 +276,7 @@ AxisEntry read_axis_settings(BoardFile& board, const std::string& name, Table& s
   axis.wiring.rollover = settings.flag("rollover", false);
   axis.low = settings.number("low", 0, -1e6, 1e6);
   axis.high = settings.number("high", 0, -1e6, 1e6);
-  if (axis.low > axis.high) settings.fail("low is above high");
+  if (axis.low > axis.high) settings.fail("low must not be above high");
   board.service.limits.axis[board.axes.size()] =
       setting_of(settings, axis.wiring.rotary, board.service.upload.tick);
   return axis;
@@ -327,7 +327,7 @@ void read_input(BoardFile& board, const std::string& name, const toml::table& ta
   if (settings.has("low")) limits.low = counts(kMicro * settings.number("low", 0, -1e9, 1e9));
   if (settings.has("high")) limits.high = counts(kMicro * settings.number("high", 0, -1e9, 1e9));
   if (settings.has("max_step")) limits.step = counts(kMicro * settings.number("max_step", 0, 0, 1e9));
-  if (limits.low > limits.high) settings.fail("low is above high");
+  if (limits.low > limits.high) settings.fail("low must not be above high");
   input.reference = settings.number("reference", 0, -1e9, 1e9);
   input.source = source_of(settings.table("source"), board.path, "input." + name + ".source");
   if (input.source.kind.empty()) settings.fail("source is missing");

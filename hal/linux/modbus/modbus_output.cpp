@@ -74,7 +74,7 @@ std::string ModbusOutput::begin() {
   for (const auto end = Clock::now() + kLookForAnother; Clock::now() < end;) {
     std::this_thread::sleep_for(span_of(settings_.period));
     if (!look(after)) return "the controller gives no valid answer any more: " + line_->why();
-    if (before != after) return "in use: another board writes the sequence number";
+    if (before != after) return "another board writes the sequence number of this block";
   }
   if (!take_left_overs()) return "the controller gives no valid answer any more: " + line_->why();
   found_ = before;
@@ -86,7 +86,7 @@ std::string ModbusOutput::begin() {
     std::this_thread::sleep_for(span_of(settings_.period));
   }
   if (healthy_) return "";
-  return foreign_ > 0 ? "in use: another board writes the sequence number"
+  return foreign_ > 0 ? "another board writes the sequence number of this block"
                       : "the controller does not return the sequence number; test whether its program runs";
 }
 
