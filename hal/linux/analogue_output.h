@@ -34,7 +34,7 @@ class AnalogueOutput : public OutputDevice {
   bool lock() noexcept override { return attribute_.lock(); }
   HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept override;
   std::string attempt(std::uint32_t axis) override;
-  std::string trial() const override { return "the check wrote only the present value of the output again"; }
+  std::string trial() const override { return "only the value that it has was written again"; }
   std::uint64_t held_at_end(std::uint32_t) const noexcept override { return held_at_end_; }
   const AnalogueScale& scale(std::uint32_t) const noexcept override { return converter_.scale(); }
 

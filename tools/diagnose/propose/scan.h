@@ -17,9 +17,9 @@ struct Scored {
   std::size_t candidate = 0;    // index of the candidate in the scanned list
   std::vector<double> scanned;  // values of the candidate's scanned unknowns
   double gain = 0;              // decrease of chi^2
-  double own_share =
-      0;  // smallest fraction, over the candidate's columns, that the model's free parameters do not explain
-  Eigen::Index unknowns = 0;  // number of coefficients and scanned values
+  double own_share = 0;         // smallest fraction of a column of the candidate that the free parameters of
+                                // the model do not explain
+  Eigen::Index unknowns = 0;    // number of coefficients and scanned values
 };
 
 /// Computes the scores of all candidates for a residual. `beside`: orthonormal columns of the accepted
