@@ -478,7 +478,7 @@ class Reader {
       item.name = new_name(node);
       item.line = line(node);
       const auto value = attribute(node, "value");
-      if (!value) fail(node, node.name(), "a static must have the attribute value");
+      if (!value) fail(node, node.name(), "a static needs a value");
       if (text::equal_no_case(*value, "true") || text::equal_no_case(*value, "false")) {
         item.value = text::equal_no_case(*value, "true") ? 1 : 0;
         item.hidden = true;
@@ -653,7 +653,7 @@ class Reader {
     check_attributes(node, {"loc", "X", "Y", "Z", "rX", "rY", "rZ", "note"});
     Station station;
     const auto loc = attribute(node, "loc");
-    if (!loc) fail(node, node.name(), "a station must have the attribute loc");
+    if (!loc) fail(node, node.name(), "a station needs a position (loc)");
     station.loc_text = *loc;
     station.loc = number(node, "loc", 0);
     for (std::size_t i = 0; i < 6; ++i) station.value[i] = number(node, kSixDofNames[i], 0);
