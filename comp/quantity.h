@@ -81,7 +81,8 @@ using VisitCount = Quantity<unit::Visit, std::int64_t>;
 using WeightQ16 = Quantity<unit::WeightQ16, std::int32_t>;
 
 constexpr WeightQ16 kFullWeight{65536};
-/// Number of counts in one turn of a rotary axis.
+/// Number of position counts in one turn of a rotary axis: one count is 2^-32 turn. The counts of an encoder
+/// are a different unit.
 constexpr std::int64_t kTurnCounts = std::int64_t{1} << 32;
 
 /// Converts a temperature reading to the value of an input that is declared in degC. `absolute`: temperature

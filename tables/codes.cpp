@@ -58,43 +58,43 @@ const char* describe(UploadFault fault) noexcept {
     case UploadFault::kTrialRuns:
       return "an image is on trial: confirm or revert it first";
     case UploadFault::kTooLarge:
-      return "larger than a slot of the board";
+      return "the image is larger than a slot of the board";
     case UploadFault::kOutOfOrder:
-      return "a piece out of order";
+      return "a piece of the image arrived out of order";
     case UploadFault::kIncomplete:
-      return "bytes are missing";
+      return "bytes of the image are missing";
     case UploadFault::kStore:
       return "the board's store is full or broken";
     case UploadFault::kNotAnUpload:
-      return "not a signed upload";
+      return "the data are not a signed upload";
     case UploadFault::kNoKey:
       return "the board has no public key";
     case UploadFault::kForeignKey:
-      return "signed with a key that the board does not trust";
+      return "the image is signed with a key that the board does not trust";
     case UploadFault::kSignature:
-      return "the signature does not fit the bytes";
+      return "the signature does not match the bytes of the image";
     case UploadFault::kImage:
-      return "image refused";
+      return "the image is not valid";
     case UploadFault::kFingerprint:
-      return "the header names another equation";
+      return "the header contains the fingerprint of another equation";
     case UploadFault::kForeignMachine:
-      return "of another machine";
+      return "the image does not match this board";
     case UploadFault::kOlder:
-      return "not newer than the newest image that was ever tried";
+      return "the image is not newer than the newest image that was ever on trial";
     case UploadFault::kNoTrial:
       return "no image is on trial";
     case UploadFault::kTooMuchWork:
-      return "more work than this board does in its share of a tick";
+      return "the image needs more work than this board can do in its share of a tick";
     case UploadFault::kOtherBoard:
-      return "signed for another board";
+      return "the image is signed for another board or class";
     case UploadFault::kSecurity:
-      return "below the board's security counter";
+      return "the security counter of the image is below that of the board";
     case UploadFault::kAbsurdTime:
-      return "signed at a time that cannot be";
+      return "the signing time of the image is impossible";
     case UploadFault::kOldForm:
-      return "signed in a form that names no board: sign it again";
+      return "the image is signed in an old form that names no board: sign it again";
     case UploadFault::kKeyMayNot:
-      return "signed with a key that may not upload";
+      return "the image is signed with a key that may not upload";
   }
   return "unknown";
 }
@@ -104,13 +104,13 @@ const char* describe(BindFault fault) noexcept {
     case BindFault::kNone:
       return "none";
     case BindFault::kTick:
-      return "compiled for another cycle time";
+      return "the image is compiled for another cycle time";
     case BindFault::kUnknownAxis:
-      return "the board has no such axis";
+      return "the board has no axis of this name";
     case BindFault::kAxisKind:
-      return "the board's axis of that name is of another kind (linear, rotary, rollover)";
+      return "the board's axis of this name is of another kind (linear, rotary, rollover)";
     case BindFault::kUnknownInput:
-      return "the board has no such sensor";
+      return "the board has no sensor of this name";
   }
   return "unknown";
 }

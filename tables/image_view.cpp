@@ -233,49 +233,49 @@ const char* describe(ImageFault fault) noexcept {
     case ImageFault::kNone:
       return "no fault";
     case ImageFault::kMisaligned:
-      return "buffer: not aligned to 8 bytes";
+      return "buffer: the image does not begin at a multiple of 8 bytes";
     case ImageFault::kTruncated:
-      return "length: the image is cut off";
+      return "length: the end of the image is missing";
     case ImageFault::kMagic:
-      return "magic: this is no machine image";
+      return "magic: the data are not a correction image";
     case ImageFault::kFormatVersion:
-      return "format version: compiled for another version";
+      return "format version: the image is compiled for another version";
     case ImageFault::kHeader:
       return "header: sizes or reserved words are wrong";
     case ImageFault::kChecksum:
-      return "checksum: bytes changed on the way";
+      return "checksum: bytes of the image have changed";
     case ImageFault::kSection:
-      return "section: out of order, misplaced or outside the image";
+      return "section: a section is out of order, misaligned or outside the image";
     case ImageFault::kFingerprint:
-      return "fingerprint: the equation is not the one the header names";
+      return "fingerprint: the equation is not that of the fingerprint in the header";
     case ImageFault::kAxis:
-      return "axis record: name (also a repeated name), flags or range";
+      return "axis record: the name (also a repeated name), the flags or the range is wrong";
     case ImageFault::kInput:
-      return "input record: name, unit or range";
+      return "input record: the name, the unit or the range is wrong";
     case ImageFault::kRange:
-      return "table: its records leave their section";
+      return "table: records of the table are outside their section";
     case ImageFault::kTooMany:
-      return "tables: more than there is room for";
+      return "tables: the image has more tables than the memory can contain";
     case ImageFault::kProgramTooLong:
-      return "program: more registers, lags, axes or inputs than there is room for";
+      return "program: the program has more registers, lags, axes or inputs than the memory can contain";
     case ImageFault::kProgramChannel:
-      return "program: channel index, limits, shift or multiplier";
+      return "program: a channel index, limit, shift or multiplier is out of range";
     case ImageFault::kProgramTable:
-      return "program: stations, reciprocals or grid of a table inconsistent";
+      return "program: the stations, reciprocals or grid of a table are inconsistent";
     case ImageFault::kProgramWrap:
-      return "program: period of an axis inconsistent";
+      return "program: the period of an axis is inconsistent";
     case ImageFault::kProgramOpCode:
-      return "program: unknown operation";
+      return "program: an operation is unknown";
     case ImageFault::kProgramOperand:
-      return "program: an operand that is not there yet";
+      return "program: an operand is a register that is not yet written";
     case ImageFault::kProgramShift:
-      return "program: shift or factor out of range";
+      return "program: a shift or factor is out of range";
     case ImageFault::kProgramOverflow:
-      return "program: a result could overflow";
+      return "program: a result can exceed the range of int32";
     case ImageFault::kProgramLag:
-      return "program: lag states do not match";
+      return "program: the state of a lag is used twice or never";
     case ImageFault::kProgramOutput:
-      return "program: output axis, source or limits";
+      return "program: an output axis, source or limit is out of range";
   }
   return "unknown fault";
 }

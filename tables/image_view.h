@@ -34,7 +34,7 @@ enum class ImageFault : std::uint8_t {
   kProgramOutput = 22,
 };
 
-/// Returns the cause as one line of text for people: "checksum: bytes changed on the way".
+/// Returns the cause as one line of text for people: "checksum: bytes of the image have changed".
 const char* describe(ImageFault fault) noexcept;
 
 /// Memory for the verification of an image. The memory for the verification is not on the stack, because the

@@ -47,7 +47,7 @@ constexpr std::uint32_t kOperatorPlace = 2, kOperatorRecordCount = 2;
 /// therefore keeps the weight of each axis. The number of an axis is never 0. Not real-time safe.
 std::uint32_t operator_axis(const char* name, std::uint32_t size) noexcept;
 
-/// A record, and the place in the store where it must be written.
+/// A record, and the number of the place in the slot store to which it must be written.
 struct OperatorChange {
   std::uint32_t place;
   OperatorRecord record;
@@ -61,7 +61,7 @@ using OperatorPlace = StoredPlace<OperatorRecord>;
 /// intact with the state before or after the change, or is damaged.
 class OperatorRecords {
  public:
-  /// Loads the newer valid record of both places. Not real-time safe.
+  /// Loads the newer of the two valid records. Not real-time safe.
   static OperatorRecords load(const OperatorPlace& first, const OperatorPlace& second) noexcept;
   /// Returns the state of the places after load() and the changes that were stored since. A damaged pair of
   /// records is intact again after at most two changes.
@@ -70,8 +70,8 @@ class OperatorRecords {
   /// operator).
   bool known() const noexcept { return now_.sequence != 0; }
   const OperatorState& state() const noexcept { return now_.state; }
-  /// True if load() found the state in one place only: the second write was not done, or the first write is
-  /// not yet on the medium.
+  /// True if load() found the state in only one of the two records. Then the second write was not done, or
+  /// the first write is not yet on the medium.
   bool once() const noexcept { return once_; }
   /// Returns the change that is necessary to store another state. Not real-time safe.
   OperatorChange change_to(const OperatorState& state) const noexcept;

@@ -62,7 +62,7 @@ constexpr std::uint32_t kSlotMagicV1 = 0x544f4c53;  // "SLOT"
 
 using SlotPlace = StoredPlace<SlotRecord>;
 
-/// A record, and the place (0 or 1) where it must be stored.
+/// A record, and the number of the place (0 or 1) in the slot store to which it must be written.
 struct SlotChange {
   std::uint32_t place;
   SlotRecord record;
@@ -78,13 +78,13 @@ struct SlotChange {
 ///                                                          └──── revert, or a reset ──► confirmed A
 class Slots {
  public:
-  /// Loads the newer valid record of both places. If there is no valid record, there is no confirmed image. A
+  /// Loads the newer of the two valid records. If there is no valid record, there is no confirmed image. A
   /// damaged pair of records has no trial, because a reset of the board ends the trial. Not real-time safe.
   static Slots load(const SlotPlace& first, const SlotPlace& second) noexcept;
   /// Returns the state of the places after load() and the changes that were stored since. A damaged pair of
   /// records is intact again after at most two changes.
   StoredPair places() const noexcept { return places_; }
-  /// True if load() found the state in one place only.
+  /// True if load() found the state in only one of the two records.
   bool once() const noexcept { return once_; }
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }

@@ -4,8 +4,8 @@
 
 namespace vernier {
 
-/// Content of one place in the store. Each record is stored in two places. A change overwrites the older
-/// record.
+/// Content of one numbered place of a slot store. A place has room for one record. Each record is stored in
+/// two places, and a change overwrites the older of the two records.
 template <class Record>
 struct StoredPlace {
   bool written = false;  // true: the place contains data, valid or not; erased flash memory (ones) is not

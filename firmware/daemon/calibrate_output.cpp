@@ -68,7 +68,7 @@ std::vector<CalibrationPoint> calibrate_output(CorrectionWriter& output, const A
     points.push_back({code, measured});
   }
   if (!mover.move_to(scale.zero) || !good)
-    throw BoardError{"calibration: the output refuses a code; check the driver and the range of the output"};
+    throw BoardError{"calibration: the output refuses a code; test the driver and the range of the output"};
   return points;
 }
 

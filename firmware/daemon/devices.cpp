@@ -235,7 +235,7 @@ void Devices::Parts::make_counter(std::uint32_t axis, std::vector<Route<AxisRead
   routes[axis] = {counter.get(), 0};
   note(std::string("axis.") + file.axes[axis].wiring.name.c_str() + ".position  counter", error,
        [this, counter = counter.get()] {
-         return hear_position(clock, *counter, 0) ? "" : "the counter gives no count in its range";
+         return hear_position(clock, *counter, 0) ? "" : "the counter gives no count within its range";
        });
   if (counter) counters.push_back(std::move(counter));
 }
@@ -367,8 +367,9 @@ std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
     std::string error;
     auto input = open_sensor(source, lines, error);
     routes[i] = {input.get(), 0};
-    note(name, error,
-         [input = input.get()] { return input->sample() == HalFault::kNone ? "" : "gives no number"; });
+    note(name, error, [input = input.get()] {
+      return input->sample() == HalFault::kNone ? "" : "the sensor gives no number";
+    });
     if (input) sensors.push_back(std::move(input));
   }
   return routes;
@@ -410,7 +411,8 @@ void Devices::Parts::make_features() {
                                              requests, file.service.upload.tick);
   if (features->refused() != kNoInput)
     file.inputs[requests[features->refused()].input].source.fail(
-        "the settings do not give a window or a filter: see the limits of window and corner_Hz");
+        "the settings `window` or `corner_Hz` are outside their limits, so the feature has neither a window "
+        "nor a filter");
   for (const FeatureRequest& request : requests) {
     const InputEntry& input = file.inputs[request.input];
     note("input." + input.name + "  " + input.source.text("feature") + " of " + input.source.text("of"), "");
@@ -513,7 +515,8 @@ std::vector<std::string> Devices::not_looked_at() const {
   for (const AxisEntry& axis : file.axes) {
     const std::string name = std::string("axis.") + axis.wiring.name.c_str();
     if (axis.position.kind != "sim")
-      lines.push_back(name + ".position: whether the position is right; one reading came");
+      lines.push_back(
+          name + ".position: one reading came, but the check does not know whether this position is right");
     const auto output = std::find_if(parts_->real_outputs.begin(), parts_->real_outputs.end(),
                                      [&](const RealOutput& one) { return &file.axes[one.axis] == &axis; });
     if (output != parts_->real_outputs.end())

@@ -50,7 +50,8 @@ GrantReport ask_for_realtime(bool wanted, int priority) {
   if (!wanted) return {};
   const RealtimeGrant grant = become_realtime(priority);
   const auto say = [](int error, const char* what) {
-    if (error != 0) std::fprintf(stderr, "vernierd: note: no %s: %s\n", what, std::strerror(error));
+    if (error != 0)
+      std::fprintf(stderr, "vernierd: note: the system does not grant %s: %s\n", what, std::strerror(error));
   };
   say(grant.memory_error, "locked memory");
   say(grant.schedule_error, "SCHED_FIFO: wake-ups will be late");
@@ -296,7 +297,7 @@ int calibrate(const Arguments& arguments, const BoardFile& file) {
       pwm ? source.whole("period_ns", 2, 1'000'000'000) : source.whole("codes", 1, (1 << 24) - 1);
   const std::vector<CalibrationPoint> points = measured_points(arguments, *axis, codes);
   if (arguments.measured.empty() && points.size() != static_cast<std::size_t>(2 * arguments.steps - 1)) {
-    std::fputs("vernierd: calibration ended early; no file is written\n", stderr);
+    std::fputs("vernierd: the calibration ended before its last point, so no file is written\n", stderr);
     return kAnswerIsNo;
   }
   const Calibration found = fit_calibration(points, codes, axis->wiring.rotary);
@@ -340,7 +341,7 @@ int run_board(const Arguments& arguments) {
   keep_stacks_small();
   const GrantReport grant = ask_for_realtime(arguments.realtime, file.priority);
   if (const std::string missing = devices.start_watchdog(); !missing.empty()) {
-    std::fprintf(stderr, "vernierd: missing: watchdog: %s\n", missing.c_str());
+    std::fprintf(stderr, "vernierd: the watchdog is missing: %s\n", missing.c_str());
     return kAnswerIsNo;
   }
   auto duties = std::make_unique<Duties>(*service, devices, manager, grant.fifo ? file.priority - 1 : 0);

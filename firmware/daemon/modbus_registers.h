@@ -34,8 +34,8 @@ std::string modbus_block(const SignalSource& source);
 /// Checks that different uses of the registers of one Modbus device do not conflict. All registers of a peer
 /// and unit are one address space. A block of `modbus-out` must have no register in common with another
 /// block, an echo, or a holding register that an input reads. An echo must not belong to two blocks. A serial
-/// line with a block that is written must have no other use. If two uses conflict, throws BoardError with the
-/// lines of both settings. Not real-time safe.
+/// line over which the board writes a block of registers must have no other use in the board file. If two
+/// uses conflict, throws BoardError with the lines of both settings. Not real-time safe.
 void refuse_shared_registers(const BoardFile& board);
 
 }  // namespace vernier

@@ -182,7 +182,8 @@ OutputOpener modbus_out_of(const std::vector<OutputAxis>& axes) {
   for (const OutputAxis& axis : axes) {
     const auto place = static_cast<int>(axis.source->whole("place", 0, 0, ModbusOutputSettings::kPlaces - 1));
     for (const auto& other : settings.axes)
-      if (other.place == place) axis.source->fail("another axis uses the same place of the block");
+      if (other.place == place)
+        axis.source->fail("another axis uses the same `place` (position of a value in the register block)");
     settings.axes.push_back({number_scale(*axis.source, axis.rotary), place, axis.most_per_tick});
     places = std::max(places, place + 1);
   }

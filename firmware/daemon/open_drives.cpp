@@ -72,10 +72,9 @@ void refuse_further_rpdos(const SignalSource& source, std::uint32_t rpdo, std::u
       source.fail_at("rpdo", std::string("rpdo: the identifier belongs to ") + use.use + ", node " +
                                  std::to_string(rpdo & kNodeMask));
     if (use.first != kRpdo4.first && source.text("pdo_test", "sdo") == "none")
-      source.fail_at("rpdo",
-                     std::string("rpdo: ") + use.use +
-                         " have a controlword by default, and pdo_test = \"none\" does not read what the "
-                         "drive takes from it: use pdo_test = \"sdo\", or RPDO 4");
+      source.fail_at("rpdo", std::string("rpdo: ") + use.use +
+                                 " have a controlword by default, and with pdo_test = \"none\" the board "
+                                 "does not read the mapping of this RPDO: use pdo_test = \"sdo\", or RPDO 4");
   }
 }
 
@@ -88,7 +87,8 @@ void refuse_equal_identifiers(const SignalSource& source, const CanopenSettings&
   for (const auto* a = std::begin(all); a != std::end(all); ++a)
     for (const auto* b = a + 1; b != std::end(all); ++b)
       if (a->second == b->second)
-        source.fail(std::string(a->first) + " and " + b->first + " have one identifier");
+        source.fail(std::string(a->first) + " and " + b->first +
+                    " have the same identifier; each must have its own");
 }
 
 CanopenSettings settings_of(const SignalSource& source) {

@@ -32,7 +32,7 @@ bool is_letter(char c) {
 
 bool is_good(const char* argument, const char* name, Refusal& refusal) {
   const std::string_view text(name);
-  if (text.empty()) refusal.say(argument, name, "an empty name");
+  if (text.empty()) refusal.say(argument, name, "a name is empty");
   if (text.size() >= kImageNameBytes) refusal.say(argument, name, "longer than 23 characters");
   for (const char c : text)
     if (!is_letter(c)) refusal.say(argument, name, "a name may contain only letters, digits, _ and -");
@@ -69,7 +69,7 @@ void check_rotary(const LoadArguments& arguments, const Wiring& wiring, Refusal&
   const bool only_none = arguments.rotary.size() < 2 || arguments.rotary[1] == nullptr;
   for (const char* const name : arguments.rotary) {
     if (name == nullptr || is_axis(wiring, name)) continue;
-    if (!only_none || std::strcmp(name, kNone) != 0) refusal.say("rotary", name, "none of the axes");
+    if (!only_none || std::strcmp(name, kNone) != 0) refusal.say("rotary", name, "this name is not in axes");
   }
 }
 

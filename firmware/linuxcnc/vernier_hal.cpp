@@ -88,7 +88,7 @@ Introduction introduction_of(const HelperArguments& arguments, std::size_t given
   if (!fill(introduction.nonce) || !fill(introduction.seed))
     throw BoardError{"the system gives no random numbers: signed requests are not possible"};
   const std::string store = std::filesystem::canonical(arguments.store).string();
-  if (store.size() >= sizeof(introduction.store)) throw BoardError{store + ": too long a path"};
+  if (store.size() >= sizeof(introduction.store)) throw BoardError{store + ": the path is too long"};
   std::copy(store.begin(), store.end(), introduction.store);
   return introduction;
 }

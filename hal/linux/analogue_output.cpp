@@ -92,7 +92,7 @@ HalFault AnalogueOutput::rewrite() noexcept {
 std::string AnalogueOutput::attempt(std::uint32_t) {
   const HalFault fault = rewrite();
   if (fault == HalFault::kRefused) return "the device refused a write of its present value";
-  return fault == HalFault::kNone ? "" : "its present value cannot be read";
+  return fault == HalFault::kNone ? "" : "the present value of the device cannot be read";
 }
 
 }  // namespace vernier

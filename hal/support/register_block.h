@@ -3,8 +3,8 @@
 
 namespace vernier {
 
-/// Layout of the block of registers that a controller reads: sequence number, valid bits (bit p for place p),
-/// and then two registers for each place.
+/// Layout of the block of registers that a controller reads: sequence number, valid bits, and then two
+/// registers for each value. Bit p of the valid bits belongs to value p.
 struct RegisterBlock {
   static constexpr int kSequence = 0, kValid = 1, kValues = 2, kPlaces = 16;
 };

@@ -553,7 +553,7 @@ TEST_F(CanopenBus, OffsetIsFourBytesLittleEndian) {
 }
 
 TEST_F(CanopenBus, SilentDriveIsNamedAndGetsNothing) {
-  EXPECT_EQ(output_.attempt(0), "no SYNC comes");
+  EXPECT_EQ(output_.attempt(0), "no SYNC arrives");
   EXPECT_EQ(output_.write_correction(0, AxisTravel(0)), HalFault::kNone);
   EXPECT_EQ(cable_.receive().can_id, 0u) << "nothing is sent";
   EXPECT_EQ(output_.write_correction(0, AxisTravel(1'000)), HalFault::kNone);
@@ -664,11 +664,12 @@ TEST(CanopenPdos, AreComparedWithThoseOfTheDrive) {
   EXPECT_EQ(static_cast<std::int32_t>(value), -77);
   EXPECT_EQ(sdo.check_offset(0x502, {}), "no active RPDO of the drive has the identifier 0x502");
   EXPECT_EQ(sdo.check_offset(0x501, {0x2010, 3}),
-            "RPDO 0x1603: object 0x60B00020 is mapped, needed is 0x20100320");
+            "RPDO 0x1603: object 0x60B00020 is mapped, but the required object is 0x20100320");
   drive.set(0x1403, 2, 255);
-  EXPECT_EQ(sdo.check_offset(0x501, {}), "RPDO 0x1403: transmission type 255, needed is 1: with each SYNC");
+  EXPECT_EQ(sdo.check_offset(0x501, {}),
+            "RPDO 0x1403: transmission type 255, but the required type is 1: with each SYNC");
   drive.set(0x1403, 2, 0), drive.set(0x1603, 0, 2);
-  EXPECT_EQ(sdo.check_offset(0x501, {}), "RPDO 0x1603: 2 mapped objects, needed are 1");
+  EXPECT_EQ(sdo.check_offset(0x501, {}), "RPDO 0x1603: 2 mapped objects, but the required number is 1");
   EXPECT_EQ(sdo.read({0x2000, 0}, value), "0x2000:00 cannot be read (abort 0x06020000)");
   drive.deaf = true;
   EXPECT_EQ(sdo.read({}, value), "the drive does not answer a request for 0x60B0:00");
@@ -679,16 +680,18 @@ TEST(CanopenPdos, OfTwentyNineBitsOrRareOrWrittenTwiceAreRefused) {
   CanopenSdo sdo = drive.client();
   const std::uint32_t rpdo = 0x501, tpdo = 0x381;
   drive.set(0x1403, 1, rpdo | 0x20000000);
-  EXPECT_EQ(sdo.check_offset(rpdo, {}), "RPDO 0x1403: the identifier 0x501 has 29 bits, needed are 11");
+  EXPECT_EQ(sdo.check_offset(rpdo, {}),
+            "RPDO 0x1403: the identifier 0x501 has 29 bits, but 11 bits are required");
   drive.set(0x1403, 1, rpdo), drive.set(0x1403, 2, 240);
   EXPECT_EQ(sdo.check_offset(rpdo, {}), "") << "each synchronous type of an RPDO: with the next SYNC";
   drive.set(0x1802, 1, tpdo | 0x20000000);
-  EXPECT_EQ(sdo.check_position(tpdo), "TPDO 0x1802: the identifier 0x381 has 29 bits, needed are 11");
+  EXPECT_EQ(sdo.check_position(tpdo),
+            "TPDO 0x1802: the identifier 0x381 has 29 bits, but 11 bits are required");
   drive.set(0x1802, 1, tpdo);
   for (const std::uint32_t type : {0u, 2u, 240u}) {
     drive.set(0x1802, 2, type);
-    EXPECT_EQ(sdo.check_position(tpdo),
-              "TPDO 0x1802: transmission type " + std::to_string(type) + ", needed is 1: with each SYNC");
+    EXPECT_EQ(sdo.check_position(tpdo), "TPDO 0x1802: transmission type " + std::to_string(type) +
+                                            ", but the required type is 1: with each SYNC");
   }
   drive.set(0x1400, 1, 0x201), drive.set(0x1600, 0, 2), drive.set(0x1600, 1, 0x60400010);
   EXPECT_EQ(sdo.check_offset(rpdo, {}), "");

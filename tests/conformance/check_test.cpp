@@ -126,7 +126,7 @@ TEST_F(Check, NamesAConverterThatIsNotThere) {
 
 TEST_F(Check, NamesAConverterThatRefuses) {
   files_.break_writes("iio:device3/out_voltage1_raw");
-  expect_missing("missing  axis.Y.output  iio-dac: its present value cannot be read");
+  expect_missing("missing  axis.Y.output  iio-dac: the present value of the device cannot be read");
 }
 
 TEST_F(Check, LeavesNoEmptyFolderOfTheStore) {
@@ -191,7 +191,7 @@ TEST_F(Check, NamesAPulseOutputThatIsNotExported) {
 
 TEST_F(Check, NamesASensorThatIsSilent) {
   files_.put("iio:device4/in_temp_input", "");
-  expect_missing("missing  input.T  iio: gives no number");
+  expect_missing("missing  input.T  iio: the sensor gives no number");
 }
 
 TEST_F(Check, HearsASensorsBufferAndNamesOneThatIsSilent) {
@@ -428,7 +428,8 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
        "board.toml:18: output of X: object: '60B0' is no object"},
       {board_of(sim, output + "object = \"0x60B0:1g\"", sync), "'0x60B0:1g' is no object"},
       {board_of(sim, output + "pdo_test = \"no\"", sync), "pdo_test: 'no' is neither sdo nor none"},
-      {board_of(sim, output + "rpdo = 0x81", sync), "the emergency message and rpdo have one identifier"},
+      {board_of(sim, output + "rpdo = 0x81", sync),
+       "the emergency message and rpdo have the same identifier; each must have its own"},
       {board_of(sim, output + "rpdo = 0x201", sync),
        "board.toml:18: output of X: rpdo: 0x201 belongs to RPDO 1, the controller's controlword (0x201 to "
        "0x27F)"},
@@ -443,10 +444,13 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
       {board_of(sim, output + "object = \"0x60B1\"", sync), "'0x60B1' is no position offset"},
       {board_of(sim, output + "object = \"0x60B0:01\"", sync), "'0x60B0:01' is no position offset"},
       {board_of(sim, output + "rpdo = 0x000", sync), "rpdo must be a whole number from 1 to 2047"},
-      {board_of(sim, output + "rpdo = 0x080", sync), "sync and rpdo have one identifier"},
-      {board_of(sim, output + "rpdo = 0x701", sync), "the heartbeat and rpdo have one identifier"},
+      {board_of(sim, output + "rpdo = 0x080", sync),
+       "sync and rpdo have the same identifier; each must have its own"},
+      {board_of(sim, output + "rpdo = 0x701", sync),
+       "the heartbeat and rpdo have the same identifier; each must have its own"},
       {board_of(sim, output + "rpdo = 0x702", sync), "rpdo: 0x702 belongs to heartbeats"},
-      {board_of(sim, output + "tpdo = 0x501", sync), "tpdo and rpdo have one identifier"},
+      {board_of(sim, output + "tpdo = 0x501", sync),
+       "tpdo and rpdo have the same identifier; each must have its own"},
       {board_of(sim, output + "tpdo = 0x082", sync),
        "board.toml:18: output of X: tpdo: 0x082 belongs to emergency messages"},
       {board_of(replaced(drive, "scale", "tpdo = 0x100\nscale"), output, sync),

@@ -302,7 +302,8 @@ class Judge {
     answer_.explanation = fmt::format("No evidence for a change ({:.3g}, alarm threshold {:g}).",
                                       answer_.evidence, answer_.alarm);
     if (!answer_.not_seen.empty())
-      answer_.explanation += fmt::format(" {}. A change there is not covered.", not_seen_words());
+      answer_.explanation +=
+          fmt::format(" {}. A change of these quantities is not covered.", not_seen_words());
   }
 
   /// Parameters on which the readings give no evidence, the first of a long list.
@@ -312,7 +313,8 @@ class Judge {
     const std::vector<std::string> first(answer_.not_seen.begin(),
                                          answer_.not_seen.begin() + static_cast<std::ptrdiff_t>(count));
     return fmt::format(
-        "These readings do not depend on, or the fit did not measure: {}{}", fmt::join(first, ", "),
+        "The readings do not depend on these quantities, or the fit did not measure them: {}{}",
+        fmt::join(first, ", "),
         answer_.not_seen.size() > count ? fmt::format(" and {} more", answer_.not_seen.size() - count) : "");
   }
 

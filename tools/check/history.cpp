@@ -73,9 +73,11 @@ std::string history_text(const CheckHistory& history) {
 
 CheckHistory parse_history(const std::string& text, const std::string& file) {
   try {
-    if (text::nests_deeper_than(text, text::kMostJsonDepth)) throw std::invalid_argument("nested too deep");
+    if (text::nests_deeper_than(text, text::kMostJsonDepth))
+      throw std::invalid_argument("the JSON of the file nests too deeply");
     const Json json = Json::parse(text);
-    if (json.at("format") != "vernier-checks") throw std::invalid_argument("no history of checks");
+    if (json.at("format") != "vernier-checks")
+      throw std::invalid_argument("the key format is not vernier-checks");
     if (json.at("version") == kVersionOfOldSetUps) return {"", {}};
     if (json.at("version") != kVersion)
       throw std::invalid_argument("this program does not support this version of the history file");
@@ -97,7 +99,7 @@ CheckHistory parse_history(const std::string& text, const std::string& file) {
       check.square = one.value("square", 0.0);  // older histories have none
       check.freedom = one.at("freedom").get<double>();
       if (check.parameters > check.quantities.size())
-        throw std::invalid_argument("more parameters than tested parameters");
+        throw std::invalid_argument("a check has more parameters than tested quantities");
       history.checks.push_back(std::move(check));
     }
     return history;

@@ -60,7 +60,8 @@ void run_again(const Arguments& arguments) {
     throw text::LimitNotMet(fmt::format(
         "{}: made again, and the bytes differ from byte {} on (line {}){}", one.name, first.byte, first.line,
         changed.empty() ? ""
-                        : ". Inputs have changed since: " + fmt::format("{}", fmt::join(changed, ", "))));
+                        : ". These inputs have changed since the file was made: " +
+                              fmt::format("{}", fmt::join(changed, ", "))));
   }
   write_json(arguments.json, json);
 }

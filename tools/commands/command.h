@@ -159,7 +159,7 @@ class Progress {
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// `fraction`: completed share, 0..1; `step`: name of the present step.
+  /// `fraction`: completed fraction of the work, 0..1; `step`: name of the present operation.
   void update(double fraction, const std::string& step = {});
 
  private:

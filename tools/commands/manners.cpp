@@ -89,10 +89,10 @@ void require_known_commands(const CLI::App& vernier, const std::vector<std::stri
     const CLI::App* next = command_named(*app, word);
     if (next == nullptr) {
       const auto meant = text::word_meant(word, names_of_commands(*app));
-      const std::string at = app == &vernier ? "" : app->get_name() + " ";
+      const std::string group = app == &vernier ? "" : " " + app->get_name();
       throw text::InputError(
-          "\"" + word + "\": there is no command vernier " + at + word +
-          (meant ? "; did you mean vernier " + at + *meant + "?" : "; vernier help lists them"));
+          "\"" + word + "\" is not a command of vernier" + group +
+          (meant ? "; did you mean vernier" + group + " " + *meant + "?" : "; vernier help lists them"));
     }
     app = next;
   }

@@ -45,9 +45,9 @@ CompiledMachine compile_once(const model::Machine& machine, std::uint32_t tick_u
   result.switching = d.switching;
   result.notes = d.notes;
   if (result.shares.left_out > 0)
-    result.notes.push_back(fmt::format("{} of {} shares of effects do not fit into the image and are omitted",
-                                       result.shares.left_out,
-                                       result.shares.left_out + result.shares.shares.size()));
+    result.notes.push_back(fmt::format(
+        "the contributions of {} of {} effects do not fit into the image, so the board does not show them",
+        result.shares.left_out, result.shares.left_out + result.shares.shares.size()));
   result.least_squares = d.least_squares;
   result.orientation = d.orientation;
   result.bounds = bounds_of(machine, d, result.program);

@@ -163,7 +163,10 @@ class Lowering {
       }
       const bool looked_up = n.kind == NodeKind::kChannel || n.kind == NodeKind::kTable ||
                              n.kind == NodeKind::kFunction || n.kind == NodeKind::kLag;
-      if (looked_up) throw text::InputError("a share of something that the tick does not compute");
+      if (looked_up)
+        throw text::InputError(
+            "the contribution of an effect uses a value that the program of the control cycle does not "
+            "compute");
     }
     switch (n.kind) {
       case NodeKind::kConstant:

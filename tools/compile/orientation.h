@@ -29,8 +29,8 @@ struct Tilting {
 /// omitted terms, rad.
 std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation& derivation, double neglect);
 
-/// Returns a node with the value of `value`, limited to +-limit. A correction that depends on the limited
-/// node uses the actual motion of the axis.
+/// Returns a node with the value of `value`, limited to +-limit. A correction that is computed from the
+/// returned node, and not from `value`, allows for the limited motion of the axis.
 NodeId held_within(Graph& graph, NodeId value, double limit);
 
 /// Returns one flag for each state: true if two axes tilt the tool in nearly the same direction, so that the

@@ -62,8 +62,9 @@ std::vector<DhRow> parse_dh_table(const std::string& text, const std::string& fi
   for (const format::CsvColumn& known : csv.columns) {
     const std::string& name = known.name;
     if (name != "theta" && name != "d" && name != "a" && name != "alpha" && name != "type" && name != "joint")
-      throw text::InputError({file, csv.header_line}, name,
-                             "unknown column; known columns are theta, d, a, alpha, type and joint");
+      throw text::InputError(
+          {file, csv.header_line}, name,
+          "the table has an unknown column; the known columns are theta, d, a, alpha, type and joint");
   }
   const auto theta = column(csv, "theta", format::Dimension::kAngle),
              d = column(csv, "d", format::Dimension::kLength),

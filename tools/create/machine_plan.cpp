@@ -76,7 +76,7 @@ const MachineType& type_of(const std::string& name) {
     throw text::InputError("\"" + name +
                            "\": a machine file describes one open chain from the bed to the tool; a parallel "
                            "machine has closed loops, which a machine file cannot describe");
-  throw text::InputError("\"" + name + "\": unknown type of machine; known types are " + known);
+  throw text::InputError("\"" + name + "\": this type of machine is unknown; known types are " + known);
 }
 
 std::vector<std::size_t> by_names(const std::vector<PlannedAxis>& axes,
@@ -86,7 +86,8 @@ std::vector<std::size_t> by_names(const std::vector<PlannedAxis>& axes,
     if (name.empty()) continue;
     const auto found =
         std::find_if(axes.begin(), axes.end(), [&](const auto& axis) { return axis.name == name; });
-    if (found == axes.end()) throw text::InputError("\"" + name + "\": no --axis has this name");
+    if (found == axes.end())
+      throw text::InputError("\"" + name + "\": no option --axis declares an axis of this name");
     side.push_back(static_cast<std::size_t>(found - axes.begin()));
   }
   return side;
@@ -120,7 +121,9 @@ bool holds(const std::vector<std::size_t>& side, std::size_t axis) {
 void place_all(MachinePlan& plan, bool tool_given, bool work_given) {
   for (std::size_t i = 0; i < plan.axes.size(); ++i) {
     const bool tool = holds(plan.tool_side, i), work = holds(plan.work_side, i);
-    if (tool && work) throw text::InputError("\"" + plan.axes[i].name + "\": this axis is on both sides");
+    if (tool && work)
+      throw text::InputError("\"" + plan.axes[i].name +
+                             "\": this axis is both on the tool side and on the workpiece side");
     if (tool || work) continue;
     if (tool_given && work_given)
       throw text::InputError("\"" + plan.axes[i].name +
@@ -132,7 +135,8 @@ void place_all(MachinePlan& plan, bool tool_given, bool work_given) {
   for (const auto* side : {&plan.tool_side, &plan.work_side})
     for (std::size_t k = 0; k < side->size(); ++k)
       if (std::count(side->begin(), side->end(), (*side)[k]) > 1)
-        throw text::InputError("\"" + plan.axes[(*side)[k]].name + "\": this axis occurs twice on its side");
+        throw text::InputError("\"" + plan.axes[(*side)[k]].name +
+                               "\": this axis is given twice on the same side");
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ class Reader {
     if (std::string_view(given.as_string()).find("${") != std::string_view::npos)
       fail(node, given.as_string(), kExpand);
     const std::vector<std::string> words = text::words_in(given.as_string(), " \t\r\n");
-    if (words.size() != 3) fail(node, given.as_string(), std::string(attribute) + " is three numbers");
+    if (words.size() != 3) fail(node, given.as_string(), std::string(attribute) + " must be three numbers");
     return {number(node, words[0]), number(node, words[1]), number(node, words[2])};
   }
 

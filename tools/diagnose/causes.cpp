@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<std::pair<const char*, const char*>, 6> kInstrument = {{
     {"drift", "The instrument drifts."},
-    {"step", "The readings of the instrument step."},
+    {"step", "The readings of the instrument change in steps."},
     {"set-up", "The instrument was set up anew between the runs."},
     {"outliers", "Some readings are outliers."},
     {"clock", "Positions and readings were recorded at different times."},

@@ -197,7 +197,7 @@ class Diagnoser {
     steps.machine_text = steps.ladder.front().text;
     for (std::size_t count = 1; count <= steps.accepted.size();) {
       options_.progress(0.8 + 0.1 * static_cast<double>(count) / static_cast<double>(proposed.size()),
-                        "fitting the ladder");
+                        "fitting the stepwise model");
       const std::vector<std::size_t> items(steps.accepted.begin(),
                                            steps.accepted.begin() + static_cast<std::ptrdiff_t>(count));
       const std::size_t item = items.back();
@@ -401,8 +401,8 @@ Diagnosis searched(const std::string& text, const model::Machine& machine,
   if (!rest->step.empty() && has_effect_of_runs(clean)) return all;
   if (by_spread && clean.verdict == Verdict::kConsistent) {
     clean.verdict = Verdict::kInstrument;
-    clean.explanation =
-        "Outliers, and noise beside them. " + rest->sentence + all_check_rows_in_words(*clean.left_out);
+    clean.explanation = "Some readings are outliers, and the residual of the other readings is noise. " +
+                        rest->sentence + all_check_rows_in_words(*clean.left_out);
     clean.instrument = "outliers";
     clean.causes = {instrument_cause(clean.instrument, 0)};
     return clean;

@@ -428,7 +428,7 @@ void Finder::ban_hollow_products() {
     for (std::size_t failed = 0; failed < pool_.size() && !pool_[i].banned; ++failed)
       if (pool_[failed].banned && !pool_.is_custom(failed) &&
           pool_.common_share(i, failed) > thresholds_.copy_of_failed)
-        pool_.ban(i, "nearly the same as " + pool_.candidate(failed).label +
+        pool_.ban(i, "the effect is nearly the same as " + pool_.candidate(failed).label +
                          ", which failed: " + pool_[failed].why_not);
   }
 }

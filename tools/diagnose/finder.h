@@ -35,8 +35,8 @@ struct Alternatives {
 /// makes no new fit.
 class Finder {
  public:
-  /// `fitted`: the machine at its best fit. `progress`: receives the completed share of the diagnosis (0 to
-  /// 1) and the name of the current step.
+  /// `fitted`: the machine at its best fit. `progress`: receives the completed fraction of the diagnosis (0
+  /// to 1) and the name of the current operation.
   Finder(const model::Machine& fitted, const model::Measurement& measurement,
          const std::vector<effects::Effect>& effects, std::size_t most_effects,
          std::function<void(double, const std::string&)> progress, const DiagnoseThresholds& thresholds = {});
@@ -164,7 +164,8 @@ class Finder {
   /// Returns the name of the first acceptance test that an accepted effect fails; empty if the effect passes
   /// all tests.
   std::string failed_test(std::size_t item) const;
-  /// Returns the variance of a weighted reading beside the accepted set; at least 1 if u is given.
+  /// Returns the variance of a weighted reading after a fit of the accepted effects; at least 1 if u is
+  /// given.
   double variance_of_reading() const;
   /// Returns the decrease of chi^2 by an accepted item on held-out blocks: each block is predicted from the
   /// other blocks. blocks: one index per fit observation.

@@ -8,14 +8,14 @@
 
 namespace vernier::diagnose {
 
-/// Evidence of held-out rows for one step of the stepwise model, from one model to the next.
+/// Evidence of held-out rows for one step of the stepwise model. A step adds one effect to the model.
 struct Proof {
   double evidence = 0;  // natural logarithm of the likelihood ratio (e-value) of the held-out rows: model
                         // with the step against model without the step
   double expected = 0;  // mean of the evidence if the step is true; its negative if the step is absent. The
                         // variance of the evidence is twice this mean.
   /// Returns the required evidence (natural logarithm) for accepting the step. The required evidence is odds
-  /// of 20 to 1. If 99 of 100 true steps with this `expected` reach only smaller odds, the smaller odds are
+  /// of 20 to 1. If 99 of 100 true effects with this `expected` reach only smaller odds, the smaller odds are
   /// required. The logarithm of the required evidence is not negative, with one exception. Exception: if the
   /// held-out rows depend only weakly on the step, the step must not make the error of these rows larger (by
   /// more than `worse`).

@@ -50,9 +50,10 @@ std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_
     way += fmt::format("{}{:.4g}", i == 0 ? "" : i + 1 == steps.size() ? " to " : ", ", *left(steps[i]));
     if (i > 0 && *left(steps[i]) > *left(steps[i - 1])) worse += (worse.empty() ? "" : ", ") + steps[i].said;
   }
-  std::string text = fmt::format(" With {} effect{} the check rows go from {} {}", accepted,
-                                 accepted == 1 ? "" : "s", way, lengths ? "um" : "urad");
-  if (!worse.empty()) text += "; worse by " + worse;
+  std::string text =
+      fmt::format(" With {} effect{} the rms of the check rows (held-out rows) changes from {} {}", accepted,
+                  accepted == 1 ? "" : "s", way, lengths ? "um" : "urad");
+  if (!worse.empty()) text += "; the rms increases with " + worse;
   return text + ".";
 }
 
@@ -81,14 +82,16 @@ std::string cause_in_words(const CandidateFinding& cause, const std::string& nex
 
 std::string aliases_in_words(const effects::Candidate& candidate, double period,
                              const std::vector<double>& aliases, const model::Axis& axis) {
-  std::string text =
-      fmt::format("{}: {}, with any of {} periods: the positions of {} do not distinguish them. {:.5g}",
-                  candidate.choice.effect->title, candidate.spoken, aliases.size() + 1, axis.name, period);
+  std::string text = fmt::format(
+      "{}: {}, with one of {} possible periods, because the positions of {} do not distinguish these "
+      "periods. {:.5g}",
+      candidate.choice.effect->title, candidate.spoken, aliases.size() + 1, axis.name, period);
   constexpr std::size_t kListed = 20;  // largest number of periods in a sentence
   for (std::size_t i = 0; i < std::min(kListed, aliases.size()); ++i)
     text += fmt::format(", {:.5g}", aliases[i]);
-  return text + fmt::format(" {}{}. Measure {} in uneven steps.", axis.rotary ? "deg" : "mm",
-                            aliases.size() > kListed ? " and shorter ones" : "", axis.name);
+  return text + fmt::format(" {}{}. Measure {} at targets with unequal intervals.",
+                            axis.rotary ? "deg" : "mm", aliases.size() > kListed ? " and shorter ones" : "",
+                            axis.name);
 }
 
 std::string pieces_in_words(const std::vector<std::string>& names) {

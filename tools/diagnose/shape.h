@@ -11,7 +11,7 @@ namespace vernier::diagnose {
 /// The error as a function of one axis at one degree of freedom, estimated from the readings.
 struct AxisFunction {
   double seen = 0;         // number of independent functions of the axis that the free parameters of the
-                           // model do not absorb
+                           // model do not explain
   double fast_share = 0;   // share of the decrease of chi^2 that half-waves shorter than `resolved` cause
   double resolved = 0;     // shortest half-wave that counts as smooth, unit of the axis
   double log_p = 0;        // logarithm of the probability that noise has such short half-waves

@@ -93,7 +93,7 @@ class Decision {
   /// A step beside named effects may be of the machine: a base that moved within a run, not between two runs.
   std::string step_beside_a_name() {
     if (step_.empty()) return {};
-    return fmt::format("{} No cause is named; {} is a candidate.", step_,
+    return fmt::format("{} No cause is named; {} is only a candidate.", step_,
                        pool_.candidate(accepted_.front()).spoken);
   }
 
@@ -101,7 +101,8 @@ class Decision {
     const std::string drift = accepted_.empty() ? drift_of_instrument() : "";
     if (drift.empty() || is_beyond_u()) return {};
     answer_.instrument = kind_of(answer_.noise);
-    return drift + (is_noise_ ? " Beside it there is nothing to add." : where_left(answer_.left));
+    return drift +
+           (is_noise_ ? " In addition to the drift there is nothing to add." : where_left(answer_.left));
   }
 
   std::string nothing_and_not_confirmed() {
@@ -149,8 +150,8 @@ class Decision {
     if (square <= limits_.doubtful_uncertainty) return {};
     return fmt::format(
         "An error that changes slowly remains, and u does not state it: the residual of the fit rows is "
-        "{:.2g} u (noise model: {}). A drift of the instrument explains it, or an error of the machine that "
-        "follows no recorded quantity. No cause is named; {} is a candidate.{}",
+        "{:.2g} u (noise model: {}). Either the instrument drifts, or an error of the machine depends on no "
+        "recorded quantity. No cause is named; {} is only a candidate.{}",
         std::sqrt(square), ::vernier::fit::in_words(answer_.noise, answer_.noise_unit),
         pool_.candidate(*slow).spoken, check_rows_in_words(answer_.ladder, accepted_.size()));
   }
@@ -239,7 +240,7 @@ class Decision {
         cause_in_words(answer_.candidates.front(),
                        other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
                        other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
-    if (!is_noise_) text += " The rest is not noise." + where_left(answer_.left);
+    if (!is_noise_) text += " The remaining residual is not noise." + where_left(answer_.left);
     return text;
   }
 
@@ -350,7 +351,7 @@ class Decision {
     double drift = std::hypot(noise.run, noise.drift);
     for (const fit::NoiseStep& step : noise.steps) drift = std::max(drift, std::abs(step.height));
     if (drift < limits_.drift_share * noise.own || noise.support < limits_.drift_support) return {};
-    return "The readings of the instrument drift or step: " +
+    return "The readings of the instrument drift or change in steps: " +
            ::vernier::fit::in_words(noise, answer_.noise_unit) + ".";
   }
 

@@ -144,7 +144,7 @@ class AddReader {
     for (auto [key, target] : {std::pair{"axis", &choice_.axis}, std::pair{"axis2", &choice_.axis2}})
       if (const auto name = take(key)) {
         *target = machine_.find_axis(*name);
-        if (!*target) fail(*name, "the machine has no such axis");
+        if (!*target) fail(*name, "the machine has no axis of this name");
       }
   }
 
@@ -178,7 +178,7 @@ class AddReader {
       for (std::size_t i = 0; i < list.size(); ++i)
         if (std::to_string(list[i].n) == *number) return DofPlace{workpiece, i, 0};
     }
-    fail(*number, "the machine has no such transform");
+    fail(*number, "neither branch of the machine has a transform of this name or number");
   }
 
   void read_place() {
@@ -197,7 +197,7 @@ class AddReader {
       for (std::size_t d = 0; d < at.dof_count(); ++d)
         if (text::equal_no_case(at.dof_name(d), *dof_))
           choice_.place = DofPlace{transform_->workpiece, transform_->transform, d};
-      if (!choice_.place) fail(*dof_, "this transform has no such degree of freedom");
+      if (!choice_.place) fail(*dof_, "this transform has no degree of freedom of this name");
     }
     const auto driver = choice_.axis ? std::nullopt : axes_.axis_of(*transform_);
     default_axis_ = driver;
@@ -252,7 +252,7 @@ class AddReader {
       const auto& branch = workpiece ? machine_.workpiece : machine_.tool;
       for (std::size_t i = 0; i < branch.size(); ++i)
         if (std::to_string(branch[i].n) == *mass) choice_.mass = i;
-      if (!choice_.mass) fail(*mass, "the branch has no such transform");
+      if (!choice_.mass) fail(*mass, "the branch has no transform of this number");
     }
   }
 
@@ -343,7 +343,7 @@ class AddReader {
       if (key.rfind("start.", 0) != 0) continue;
       const std::string name = key.substr(6);
       if (choice_.effect->find_unknown(name) == nullptr)
-        fail(name, "this effect has no unknown of this name");
+        fail(name, "this effect has no unknown (coefficient) of this name");
       choice_.start[name] = number(key, value);
       taken_.push_back(key);
     }

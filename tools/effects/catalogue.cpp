@@ -70,9 +70,9 @@ class CatalogueReader {
   void take(std::string rest) {
     const std::string key = next_word(rest);
     if (key == "effect") return begin(rest);
-    if (effects_.empty()) fail(key, "an entry begins with a line \"effect ID\"");
+    if (effects_.empty()) fail(key, "the first line of an effect must be \"effect ID\"");
     Effect& now = effects_.back();
-    if (rest.empty()) fail(key, "nothing behind this word");
+    if (rest.empty()) fail(key, "this line has no text after its first word");
     if (key == "title")
       now.title = rest;
     else if (key == "short")
@@ -111,7 +111,7 @@ class CatalogueReader {
     if (!effects_.empty()) check(effects_.back());
     if (id.empty() || id.find_first_of(" \t:,=") != std::string::npos) fail(id, "not an effect id");
     for (const Effect& other : effects_)
-      if (other.id == id) fail(id, "this effect occurs twice");
+      if (other.id == id) fail(id, "the catalogue has this effect twice");
     effects_.push_back({});
     effects_.back().id = id;
     first_line_ = line_;
@@ -145,7 +145,7 @@ class CatalogueReader {
       fail(rest, error.what());
     }
     for (const EffectForm& other : effect.forms)
-      if (other.label == form.label) fail(form.label, "this form occurs twice");
+      if (other.label == form.label) fail(form.label, "the effect has two forms of this label");
     effect.forms.push_back(form);
     form_line_.push_back(line_);
   }
@@ -165,7 +165,7 @@ class CatalogueReader {
       const std::string label = next_word(rest);
       const auto form = std::find_if(effect.forms.begin(), effect.forms.end(),
                                      [&](const EffectForm& f) { return f.label == label; });
-      if (form == effect.forms.end()) fail(label, "no earlier form has this label");
+      if (form == effect.forms.end()) fail(label, "the effect has no form of this label before this line");
       form->rare = true;
     }
   }
@@ -174,8 +174,8 @@ class CatalogueReader {
     UnknownRule rule;
     rule.name = next_word(rest);
     if (!text::is_name(rule.name) || model::is_reserved_word(rule.name))
-      fail(rule.name, "this name cannot be used for an unknown");
-    if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "this unknown occurs twice");
+      fail(rule.name, "an unknown cannot have this name, because the name is reserved");
+    if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "the effect declares this unknown twice");
     rule.unit = next_word(rest);
     const std::string kind = next_word(rest);
     const auto number = [&] {
@@ -210,29 +210,31 @@ class CatalogueReader {
     } else {
       fail(kind, "expected linear, time, travel, period or grid");
     }
-    if (!rest.empty()) fail(rest, "this line has too many words");
+    if (!rest.empty()) fail(rest, "this line has more words than the keyword allows");
     effect.unknowns.push_back(rule);
   }
 
   void check(const Effect& effect) const {
-    if (effect.forms.empty()) fail_at(first_line_, effect.id, "an effect needs a form");
+    if (effect.forms.empty()) fail_at(first_line_, effect.id, "the effect has no form; add a line with form");
     if (effect.title.empty() || effect.signature.empty())
       fail_at(first_line_, effect.id, "title or signature is missing");
-    if (effect.unknowns.empty()) fail_at(first_line_, effect.id, "an effect needs an unknown");
+    if (effect.unknowns.empty())
+      fail_at(first_line_, effect.id, "the effect has no unknown; add a line with unknown");
     if (effect.size)
       for (const std::string& name : effect.size->unknowns)
         if (effect.find_unknown(name) == nullptr)
-          fail_at(first_line_, name, "size: this effect has no unknown of this name");
+          fail_at(first_line_, name, "size: this effect declares no unknown (coefficient) of this name");
     std::set<std::string> used;
     for (std::size_t i = 0; i < effect.forms.size(); ++i) {
       const std::set<std::string> here = unknowns_of(effect, effect.forms[i], form_line_[i]);
       if (here.empty())
-        fail_at(form_line_[i], effect.forms[i].term, "the term has no unknown of this effect");
+        fail_at(form_line_[i], effect.forms[i].term,
+                "the term of this form contains no unknown (coefficient) that this effect declares");
       used.insert(here.begin(), here.end());
     }
     for (const UnknownRule& rule : effect.unknowns)
       if (!used.contains(rule.name))
-        fail_at(first_line_, rule.name, "no form of the effect uses this unknown");
+        fail_at(first_line_, rule.name, "no form of the effect contains this unknown (coefficient)");
   }
 
   /// Returns the unknowns that a form uses. Throws if its term contains something that a term may

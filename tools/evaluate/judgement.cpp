@@ -53,7 +53,7 @@ JudgedText judged_text(const JudgedValue& one, int least) {
 
 text::Assurance assurance_of(const std::vector<JudgedValue>& all, const std::string& unit) {
   text::Assurance assurance(text::AssuranceKind::kEvaluate);
-  if (all.empty()) assurance.not_covered("No tolerance is given: no value is tested.");
+  if (all.empty()) assurance.not_covered("No tolerance is given, so no value was compared with a tolerance.");
   for (const JudgedValue& one : all) {
     const std::string rule = "tolerance-" + one.name;
     if (!one.value) {
@@ -65,7 +65,8 @@ text::Assurance assurance_of(const std::vector<JudgedValue>& all, const std::str
     assurance.at_most(rule, met ? std::min(reach, one.tolerance) : reach, one.tolerance,
                       fmt::format("{} with its expanded uncertainty, {}.", one.name, unit));
     if (!one.expanded)
-      assurance.not_covered("No uncertainty of " + one.name + " is given: its value alone is judged.");
+      assurance.not_covered("No uncertainty of " + one.name +
+                            " is given: only its value is compared with the tolerance.");
   }
   return assurance;
 }

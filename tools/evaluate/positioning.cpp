@@ -45,7 +45,7 @@ TargetResult result_at(const TargetReadings& readings) {
     result.count[sense] = list.size();
     if (list.empty()) continue;
     if (list.size() == 1)
-      throw text::InputError("one reading at " + text::number_text(readings.target) +
+      throw text::InputError("the file has only one reading at " + text::number_text(readings.target) +
                              (sense == 0 ? " forward" : " backward") +
                              ": a standard deviation needs at least two readings, ISO 230-2 requires five");
     result.mean[sense] = mean_of(list);

@@ -153,8 +153,9 @@ std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings)
     const Vector3d& at = pose.front()->commanded_mm;
     if (pose.size() < 2)
       throw text::InputError(
-          fmt::format("one reading at {:g} {:g} {:g} mm: a spread needs two, ISO 9283 asks for thirty", at[0],
-                      at[1], at[2]));
+          fmt::format("the file has only one reading at {:g} {:g} {:g} mm: a standard deviation needs two "
+                      "readings, and ISO 9283 requires thirty",
+                      at[0], at[1], at[2]));
     results.push_back(pose_of(pose));
   }
   return results;

@@ -68,8 +68,8 @@ std::vector<DistanceResult> evaluate_distances(const std::vector<PoseReading>& r
     const Vector3d& at = pose.front()->commanded_mm;
     if (pose.size() != poses.front().size() || pose.size() < 2)
       throw text::InputError(
-          fmt::format("{} readings at {:g} {:g} {:g} mm, {} at the first pose: distances are of visits in "
-                      "pairs, two at least",
+          fmt::format("{} readings at {:g} {:g} {:g} mm, but {} at the first pose: all poses must have the "
+                      "same number of readings, at least two",
                       pose.size(), at[0], at[1], at[2], poses.front().size()));
   }
   std::vector<DistanceResult> results;

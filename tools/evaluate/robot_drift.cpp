@@ -34,7 +34,7 @@ DriftBlock block_of(const Visits& visits) {
   }
   if (readings.size() < 2)
     throw text::InputError(
-        fmt::format("one reading of a pose in block (run) \"{}\": ISO 9283 asks for ten", block.run));
+        fmt::format("block (run) \"{}\" has only one reading of a pose: ISO 9283 requires ten", block.run));
   block.pose = evaluate_poses(readings).front();
   return block;
 }
@@ -46,7 +46,8 @@ void compare(const DriftBlock& first, DriftBlock& block) {
   const PoseResult &then = first.pose, &now = block.pose;
   block.time_s -= first.time_s;
   if (block.time_s < 0)
-    throw text::InputError(fmt::format("block (run) \"{}\" is earlier than the first", block.run));
+    throw text::InputError(
+        fmt::format("the time of block (run) \"{}\" is earlier than the time of the first block", block.run));
   block.accuracy_drift_mm = std::abs(then.accuracy_mm - now.accuracy_mm);
   block.accuracy_drift_std_mm = std::hypot(then.scatter_std_mm, now.scatter_std_mm);
   block.repeatability_drift_mm = std::abs(then.repeatability_mm - now.repeatability_mm);

@@ -44,7 +44,7 @@ std::vector<double> first_positions(const model::Machine& machine, std::size_t a
   } else {
     if (!one.min || !one.max)
       throw text::InputError({machine.file, one.line}, one.name,
-                             "this axis needs min and max to be exported");
+                             "the export of this axis requires min and max in the machine file");
     result = {*one.min, *one.max};
   }
   if (one.min && *one.min < result.front()) result.insert(result.begin(), *one.min);

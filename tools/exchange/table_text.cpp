@@ -63,7 +63,8 @@ std::string with_element(const std::string& text, const model::Machine& machine,
   if (list != kNowhere) return text::apply_edits(text, {{list, 0, "  " + element + "\n    "}});
   if (variables == kNowhere)
     throw text::InputError({machine.file, 0}, "variables",
-                           "the machine file has no such section for the table");
+                           "the machine file has no element <comptables> or <variables>, so the table cannot "
+                           "be inserted; add the element <variables>");
   return text::apply_edits(text,
                            {{variables, 0, "<comptables>\n      " + element + "\n    </comptables>\n  "}});
 }

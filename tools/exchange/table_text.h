@@ -8,8 +8,8 @@ namespace vernier::exchange {
 
 /// Returns the text of a machine file with the table of one axis replaced or added. Stations, interpolation
 /// and free columns are those of the given table. The rest of the machine file is not changed. Throws
-/// InputError if the text has no section for tables, or if the new text does not give the same table when it
-/// is read.
+/// InputError if the text has neither an element <comptables> nor an element <variables>. Throws InputError
+/// if the new text does not give the same table when it is read.
 std::string set_table(const std::string& text, const model::Machine& machine, const model::Table& table);
 
 /// Throws InputError if the chain does not use a column of the table that is not zero.

@@ -24,9 +24,10 @@ Eigen::SparseMatrix<double> scaled_precision(const Convention& convention, const
 Convention convention_of(const model::Machine& machine, const model::Measurement& rows,
                          const model::ParameterSet& parameters);
 
-/// Decides again which parameters the readings do not show, at the fitted machine: a tool that was nominally
-/// on an axis and is found beside the axis makes the zero of that axis visible. Returns true if the readings
-/// show a parameter that counted as unseen. rows: of the fit.
+/// Decides again, with the fitted machine, which parameters the readings do not determine. Example: the
+/// readings do not determine the zero of a rotary axis if the tool is nominally on this axis. If the fit
+/// finds the tool at a distance from the axis, the readings determine the zero. Returns true if the readings
+/// determine a parameter that counted as not determined. rows: of the fit.
 bool see_again(const model::Machine& fitted, const model::Measurement& rows,
                const model::ParameterSet& parameters, Convention& convention);
 

@@ -259,13 +259,13 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   if (lack_um.maxCoeff() > 0) {
     constexpr double kPlainly = 1.1;  // times the noise: visible with two digits
     const double times = times_the_noise(result);
-    const std::string what = times > kPlainly ? fmt::format("The residual is {:.2g} times the noise", times)
-                                              : "The residuals along one direction, or of the check rows, "
-                                                "are larger than the noise of their readings";
-    list.push_back(
-        {"something-missing", times,
-         fmt::format("{}: something is missing from this model, {:.3g}, {:.3g}, {:.3g} um in x, y, z.", what,
-                     lack_um.x(), lack_um.y(), lack_um.z())});
+    const std::string what = times > kPlainly
+                                 ? fmt::format("The residual is {:.2g} times the noise", times)
+                                 : "The residuals along one direction, or the residuals of the check rows "
+                                   "(held-out rows), are larger than the noise of their readings";
+    list.push_back({"something-missing", times,
+                    fmt::format("{}: the model lacks an effect of {:.3g}, {:.3g}, {:.3g} um in x, y, z.",
+                                what, lack_um.x(), lack_um.y(), lack_um.z())});
   }
   if (!result.noise_um && result.before.rms_um)
     list.push_back({"noise-unknown", 0,
@@ -279,11 +279,10 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   if (!record.disturbance.empty())
     list.push_back({"disturbed", record.disturbed, "The survey was disturbed: " + record.disturbance + "."});
   if (const double share = repeated_poses(m); share >= 0.5)
-    list.push_back(
-        {"check-not-independent", share,
-         fmt::format("{:.0f} % of the check rows repeat poses of fit rows: they cannot show errors "
-                     "between these poses.",
-                     100 * share)});
+    list.push_back({"check-not-independent", share,
+                    fmt::format("{:.0f} % of the check rows repeat poses of fit rows: these check rows "
+                                "cannot show errors between the poses.",
+                                100 * share)});
   if (!record.unvaried.empty())
     list.push_back({"not-varied", static_cast<double>(record.unvaried.size()), unvaried_text(record)});
   if (!record.alternatives.empty())

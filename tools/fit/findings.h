@@ -12,12 +12,12 @@ namespace vernier::fit {
 /// Returns the discrepancy of the model: the standard deviation of errors that the model does not contain, as
 /// the residual shows them. For each direction of workpiece coordinates, the discrepancy is the root of the
 /// mean squared residual beyond the noise, mm. The noise is the stated u, or comes from repeats if u is
-/// absent. The discrepancy is computed separately for fit rows (corrected for the share that the fit
-/// absorbed) and for check rows. The larger of the discrepancies of fit rows and check rows is the result. A
-/// direction is included only if its residual is improbable by chance (a probability of at most one in a
-/// thousand). A direction without readings has the mean variance of the other directions. A reading belongs
-/// to the coordinate direction that is nearest to its own direction. The discrepancy is zero if the noise is
-/// not known.
+/// absent. The discrepancy is computed separately for fit rows (corrected for the part of the discrepancy
+/// that the fit removes) and for check rows. The larger of the discrepancies of fit rows and check rows is
+/// the result. A direction is included only if its residual is improbable by chance (a probability of at most
+/// one in a thousand). A direction without readings has the mean variance of the other directions. A reading
+/// belongs to the coordinate direction that is nearest to its own direction. The discrepancy is zero if the
+/// noise is not known.
 Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurement& measurement);
 
 /// Returns the findings of a fit that the machine file keeps and that every later command reports. Codes of

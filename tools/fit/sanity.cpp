@@ -149,8 +149,8 @@ std::string cell_out_of_range(const model::Machine& machine, const model::Measur
     for (std::size_t row = 0; row < m.rows(); ++row) {
       const double q = m.states.axis[a][static_cast<Eigen::Index>(row)];
       if (m.check[row] != 0 || (q >= *axis.min - margin && q <= *axis.max + margin)) continue;
-      return fmt::format("{}:{} {} {:g} lies far outside the axis' range", m.files[m.file[row]], m.line[row],
-                         axis.name, q);
+      return fmt::format("{}:{} {} {:g} is far outside the range of the axis", m.files[m.file[row]],
+                         m.line[row], axis.name, q);
     }
   }
   return {};

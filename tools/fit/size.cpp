@@ -262,8 +262,8 @@ std::string size_sentence(const SizeOfMachine& size) {
                            ? "The known lengths do not determine the size of the machine: it stays "
                              "at nominal. Measure a longer length, or its ends from more poses."
                            : "No reading has a known length: the size of the machine stays at "
-                             "nominal. Give the distance of two points, or an artefact with a "
-                             "known radius or known places.");
+                             "nominal. Give the distance of two points, or an artefact with a known radius "
+                             "or known positions.");
   std::string names;
   for (std::size_t i = 0; i < size.fixed.size() && i < kMostNames; ++i)
     names += (i > 0 ? ", " : "") + size.fixed[i];
@@ -277,7 +277,8 @@ std::string size_sentence(const SizeOfMachine& size) {
                                  kPartsPerMillion * size.relative_std,
                                  size.from == "board" ? ", if the size of the board is exact" : "");
   if (!names.empty())
-    text += fmt::format(" Lengths that the fit does not change limit it as well ({}).", names);
+    text +=
+        fmt::format(" Lengths that the fit does not change also limit the accuracy of the size ({}).", names);
   return text;
 }
 

@@ -122,8 +122,8 @@ struct Convention {
   /// Upper limit of each scale if the rows touch objects, in the units of the parameters; empty if no rows
   /// touch objects.
   Eigen::VectorXd most;
-  /// Flags of the parameters that no reading shows, because the fitted touched objects absorb their effect.
-  /// The remaining effect is noise. `unseen` is empty if no rows touch objects.
+  /// Flags of the parameters that no reading shows, because the fitted values of the touched objects explain
+  /// their effect. The remaining effect is noise. `unseen` is empty if no rows touch objects.
   std::vector<char> unseen;
   std::vector<bool> unseen_turn;  // true: rotation of a set-up that affects the readings only in second order
 };

@@ -23,7 +23,7 @@ class Section {
   std::string word(const char* key, const std::string& otherwise, bool needed = false) {
     const toml::node* const node = asked(key);
     if (node == nullptr) {
-      if (needed) throw text::InputError(place(table_), key, "is missing here");
+      if (needed) throw text::InputError(place(table_), key, "this setting is missing");
       return otherwise;
     }
     const auto value = node->value_exact<std::string>();
@@ -106,7 +106,7 @@ GatewayBoard board_of(const toml::table& table, const std::string& path) {
 const toml::table& table_of(const toml::node* node, const std::string& path, const char* key) {
   if (node == nullptr || !node->is_table())
     throw text::InputError({path, node == nullptr ? 0U : node->source().begin.line}, key,
-                           "a table is wanted");
+                           "the value must be a table");
   return *node->as_table();
 }
 

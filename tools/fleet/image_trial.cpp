@@ -107,7 +107,8 @@ TrialEnd ImageTrial::run(std::uint64_t own_issued) {
 TrialEnd ImageTrial::of_kept() {
   const KeptLook look = look_at_kept(machine_, options_, locks_, stop_);
   if (look.why.empty()) return {Kind::kKept, ""};
-  return {look.away ? Kind::kAway : Kind::kNotInEffect, "the board keeps the image, but: " + look.why};
+  return {look.away ? Kind::kAway : Kind::kNotInEffect,
+          "the image is already permanent on the board, but: " + look.why};
 }
 
 /// Reverts a running trial of this rollout, left by a call that was interrupted. Returns the reason if it
@@ -208,7 +209,7 @@ std::string ImageTrial::judge() {
   const Ending ending{process};
   while (judged.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) {
     breathe();
-    if (is_over(end)) return "no --judge result within the board's trial time";
+    if (is_over(end)) return "the --judge command gave no result within the board's trial time";
     if (std::string why = why_not(); !why.empty()) return "during the --judge command: " + why;
   }
   const text::ProcessResult result = judged.get();

@@ -90,7 +90,8 @@ std::string metrics_text(registry::Registry& registry, std::int64_t at_us) {
   std::string text;
   put_live(text, registry.live(), registry.database().now_us());
   registry::Database& database = registry.database();
-  Family faults(text, "vernier_machine_faults_total", "counter", "Faults heard of.");
+  Family faults(text, "vernier_machine_faults_total", "counter",
+                "Number of faults that the machine's board reported.");
   for (const registry::Row& row :
        database.run("SELECT machine, fault, COUNT(*) FROM fault_event GROUP BY machine, "
                     "fault ORDER BY machine, fault"))
@@ -149,7 +150,7 @@ void serve_metrics(const std::string& registry, const std::string& address, cons
     }
   });
   const bool bound = port != 0 ? server.bind_to_port(host, port) : (port = server.bind_to_any_port(host)) > 0;
-  if (!bound) throw text::InputError({}, address, "cannot listen there");
+  if (!bound) throw text::InputError({}, address, "the program cannot listen at this address");
   say(fmt::format("http://{}:{}/metrics", host, port));
   std::thread watch([&] {
     while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds(50));

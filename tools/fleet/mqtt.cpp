@@ -72,8 +72,9 @@ MqttConnection::MqttConnection(const Broker& broker, const std::string& client, 
   const auto fail = [&](int code) {
     const char* const why = MQTTClient_strerror(code);
     if (inside_->client != nullptr) MQTTClient_destroy(&inside_->client);
-    throw text::InputError({}, broker.address,
-                           std::string("no broker there: ") + (why == nullptr ? "refused" : why));
+    throw text::InputError(
+        {}, broker.address,
+        std::string("no broker answers at this address: ") + (why == nullptr ? "refused" : why));
   };
   int code = MQTTClient_create(&inside_->client, broker.address.c_str(), client.c_str(),
                                MQTTCLIENT_PERSISTENCE_NONE, nullptr);

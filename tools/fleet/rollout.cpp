@@ -62,7 +62,7 @@ class RolloutCall {
     for (const auto& [machine, state] : states_)
       if (state.state == "taken-back")
         return stand("this rollout is stopped since " + machine + " (" + state.said +
-                     "): --go-on continues it");
+                     "); the option --go-on continues the rollout");
     look_again();
     std::size_t away = 0;
     for (std::size_t i = 0; i < machines_.size() && end_.stood.empty(); ++i) {
@@ -123,7 +123,7 @@ class RolloutCall {
     const std::string text = upload::board_key_text(*key);
     if (!registry_.trust_board_key(machine.name, text) && registry_.machine(machine.name).board_key != text)
       throw text::LimitNotMet(
-          "this board has the key that is entered for another machine: is the address right?");
+          "the registry has the key of this board for another machine: test whether the address is right");
     machine.claim.key = key;
     end_.notes.push_back(machine.name +
                          ": the key of its board was not known before and was trusted on first use");

@@ -19,7 +19,7 @@ CsvColumn column_of(const std::string& field, const text::Place& place) {
     column.name = text::trimmed(field.substr(0, open));
     column.unit = text::trimmed(field.substr(open + 1, field.size() - open - 2));
     if (column.unit.empty())
-      throw text::InputError(place, field, "the brackets of this column contain no unit");
+      throw text::InputError(place, field, "the brackets in the heading of this column contain no unit");
   }
   if (!text::is_name(column.name))
     throw text::InputError(place, field, "a column name may have only letters, digits and _");
@@ -65,7 +65,7 @@ CsvFile parse_csv(const std::string& text, const std::string& file) {
     csv.rows.push_back(std::move(fields));
     csv.line.push_back(line);
   }
-  if (csv.columns.empty()) throw text::InputError({file, 0}, "", "no header line");
+  if (csv.columns.empty()) throw text::InputError({file, 0}, "", "the file has no header line");
   if (csv.rows.empty())
     throw text::InputError({file, csv.header_line}, "", "the file has no rows below the header");
   return csv;

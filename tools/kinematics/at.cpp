@@ -49,7 +49,8 @@ void set_word(const model::Machine& machine, model::States& states, std::set<std
   const auto equals = word.find('=');
   const std::string name = text::trimmed(word.substr(0, equals));
   const std::string value = equals == std::string::npos ? "" : text::trimmed(word.substr(equals + 1));
-  if (name.empty() || value.empty()) throw text::InputError({}, word, "a state is NAME=NUMBER,NAME=NUMBER…");
+  if (name.empty() || value.empty())
+    throw text::InputError({}, word, "a state has the form NAME=NUMBER,NAME=NUMBER…");
   if (!seen.insert(name).second) throw text::InputError({}, name, "this name occurs twice in one state");
   if (name == format::columns::kRun) {
     states.run_names = {value};

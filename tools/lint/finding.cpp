@@ -55,8 +55,8 @@ std::vector<LintFinding> LintFindings::take() {
   std::vector<LintFinding> list;
   for (Entry& entry : entries_) {
     if (entry.more > 0)
-      entry.finding.what += fmt::format("; so in {} further place{}, the last in line {}", entry.more,
-                                        entry.more == 1 ? "" : "s", entry.last_line);
+      entry.finding.what += fmt::format("; the same finding occurs {} more time{}, last in line {}",
+                                        entry.more, entry.more == 1 ? "" : "s", entry.last_line);
     list.push_back(std::move(entry.finding));
   }
   entries_.clear();

@@ -180,7 +180,7 @@ std::string meaning_of(const Problem& problem, const std::string& text) {
     if (end != std::string::npos && end > 0 && text::parse_number(problem.word.substr(0, end)))
       return "write the unit as the attribute unit=\"…\", not behind the number; values are in mm and deg";
   }
-  if (has(problem.what, "unknown name") || has(problem.what, "no such axis"))
+  if (has(problem.what, "unknown name") || has(problem.what, "the machine has no axis of this name"))
     if (const auto meant = text::word_meant(problem.word, names_in(text)))
       return "did you mean " + *meant + "?";
   if (has(problem.what, "unknown attribute")) {

@@ -81,7 +81,7 @@ class Look {
                              "read it: " + command(file_)),
              false;
     if (encoding == sheet::Encoding::kUtf8Bom) {
-      findings_.remark(1, "", "begins with a byte order mark", "it is read over");
+      findings_.remark(1, "", "begins with a byte order mark", "the commands ignore it");
       text_ = text_.substr(3);
     }
     if (encoding == sheet::Encoding::kWindows1252) {
@@ -149,7 +149,7 @@ class Look {
     }
     if (trailing_)
       findings_.error(
-          table_.header_line, "", "commas at the end of the header",
+          table_.header_line, "", "the header ends with commas",
           "the file has empty columns, as a spreadsheet writes them; import the file with " + command(file_));
     std::size_t numbers = 0;
     for (const std::string& cell : header_) numbers += sheet::plain_number(cell, false).has_value() ? 1 : 0;

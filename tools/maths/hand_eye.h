@@ -9,7 +9,8 @@
 namespace vernier::maths {
 
 /// A robot pose and the pose that an instrument measured there: seen = place * pose * mounting. `place` is
-/// one unknown motion for each group. `mounting` is one unknown motion for all groups. All lengths are in mm.
+/// one unknown rigid motion for each group. `mounting` is one unknown rigid motion for all groups. All
+/// lengths are in mm.
 struct SeenPose {
   RigidMotion pose, seen;
   std::size_t group = 0;
@@ -25,8 +26,8 @@ RigidMotion inverse_of(const RigidMotion& motion);
 /// returns nullopt if all rotations are about one axis, because they do not determine the mounting.
 std::optional<RigidMotion> mounting_of(const std::vector<SeenPose>& poses);
 
-/// Returns the place of one group: the mean of seen * (pose * mounting)^-1 over its poses. `poses`: one or
-/// more poses of the group.
+/// Returns the rigid motion `place` of one group: the mean of seen * (pose * mounting)^-1 over its poses.
+/// `poses`: one or more poses of the group.
 RigidMotion place_of(const std::vector<SeenPose>& poses, const RigidMotion& mounting);
 
 }  // namespace vernier::maths

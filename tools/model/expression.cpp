@@ -221,7 +221,7 @@ class Parser {
 
   // Every node of the tree is made of a primary, or joins a primary to the tree.
   void count_node() {
-    if (++nodes_ > kMaxNodes) fail("too long an expression");
+    if (++nodes_ > kMaxNodes) fail("the expression is too long");
   }
 
   [[noreturn]] void fail(const std::string& what) {
@@ -243,7 +243,7 @@ class Parser {
 
   struct Nesting {
     explicit Nesting(Parser& parser) : parser_(parser) {
-      if (++parser_.depth_ > kMaxDepth) parser_.fail("nested too deeply");
+      if (++parser_.depth_ > kMaxDepth) parser_.fail("the expression has too many nested parentheses");
     }
     ~Nesting() { --parser_.depth_; }
     Nesting(const Nesting&) = delete;

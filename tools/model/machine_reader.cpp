@@ -54,16 +54,18 @@ class Reader {
       throw text::InputError({machine_.file, line_at(at)}, word_at(at), result.description());
     }
     TooDeep too_deep;
-    if (!document_.traverse(too_deep)) fail(too_deep.found, too_deep.found.name(), "nested too deeply");
+    if (!document_.traverse(too_deep))
+      fail(too_deep.found, too_deep.found.name(), "the elements of the file are nested too deeply");
     pugi::xml_node root;
     for (const pugi::xml_node node : document_.children()) {
       if (node.type() == pugi::node_doctype)
         fail(node, "DOCTYPE", "a document type is not part of a machine file");
-      if (node.type() != pugi::node_element) fail(node, node.value(), "text outside the machine");
-      if (root) fail(node, node.name(), "a second root element");
+      if (node.type() != pugi::node_element)
+        fail(node, node.value(), "the file has text outside the element <machine>");
+      if (root) fail(node, node.name(), "the file has a second root element");
       root = node;
     }
-    if (!root) throw text::InputError({machine_.file, 1}, "", "no <machine> in this file");
+    if (!root) throw text::InputError({machine_.file, 1}, "", "the file has no element <machine>");
     read_root(root);
     check_names();
     resolve_all();
@@ -122,7 +124,7 @@ class Reader {
       }
     }
     if (machine_.tool.empty() && machine_.workpiece.empty())
-      fail(root, root.name(), "no <transforms> with a transform");
+      fail(root, root.name(), "the file has no element <transforms> with a transform");
   }
 
   FitRecord::Noise read_noise(const pugi::xml_node& node) {
@@ -163,7 +165,7 @@ class Reader {
     one.axis = attribute(node, "axis").value_or("");
     one.period = number(node, "period", 0);
     if (!one.axis.empty() && !(one.period > 0))
-      fail_attribute(node, "period", "period", "a wave has a period");
+      fail_attribute(node, "period", "period", "a cyclic error must have a period");
     one.size = {number(node, "a", 0), number(node, "b", 0), number(node, "c", 0)};
     return one;
   }
@@ -439,7 +441,7 @@ class Reader {
       no_children(node);
       check_attributes(node, {"min", "max", "note"});
       const auto axis = machine_.find_axis(node.name());
-      if (!axis) fail(node, node.name(), "no such axis");
+      if (!axis) fail(node, node.name(), "the machine has no axis of this name");
       for (const WorkRange& other : machine_.volume)
         if (other.axis == *axis) fail(node, node.name(), "this axis occurs twice");
       for (const char* end : {"min", "max"})
@@ -594,7 +596,7 @@ class Reader {
       table.line = line(node);
       const std::string axis_name = attribute(node, "axis").value_or("");
       const auto axis = machine_.find_axis(axis_name);
-      if (!axis) fail_attribute(node, "axis", axis_name, "no such axis");
+      if (!axis) fail_attribute(node, "axis", axis_name, "the machine has no axis of this name");
       if (machine_.table_of(*axis) != nullptr)
         fail_attribute(node, "axis", axis_name, "this axis already has a table");
       table.axis = *axis;
@@ -651,7 +653,7 @@ class Reader {
     check_attributes(node, {"loc", "X", "Y", "Z", "rX", "rY", "rZ", "note"});
     Station station;
     const auto loc = attribute(node, "loc");
-    if (!loc) fail(node, node.name(), "a station needs a loc");
+    if (!loc) fail(node, node.name(), "a station needs a position (loc)");
     station.loc_text = *loc;
     station.loc = number(node, "loc", 0);
     for (std::size_t i = 0; i < 6; ++i) station.value[i] = number(node, kSixDofNames[i], 0);
@@ -662,7 +664,7 @@ class Reader {
 
   void check_table(const pugi::xml_node& node, const Table& table) {
     const std::string& axis = machine_.axes[table.axis].name;
-    if (table.stations.empty()) fail(node, axis, "a table without a station");
+    if (table.stations.empty()) fail(node, axis, "the table has no station");
     if (!table.periodic) return;
     if (table.stations.size() < 2) fail(node, axis, "a periodic table needs at least two stations");
     for (std::size_t i = 0; i < 6; ++i)

@@ -458,9 +458,9 @@ class Builder {
                                                                      : 2;
     };
     if (met(row) == 2 || met(other) == 2)
-      throw text::InputError(reader_.place(row), columns::kDistance,
-                             "a row of a distance must not touch an artefact: give the artefacts their known "
-                             "places instead");
+      throw text::InputError(
+          reader_.place(row), columns::kDistance,
+          "a row of a distance must not touch an artefact: give the artefacts their known positions instead");
     if (met(row) != met(other))
       throw text::InputError(reader_.place(row), columns::kDistance,
                              "one end of this distance is a point of the column same, the other end is not: "
@@ -572,7 +572,7 @@ class Builder {
     if (format::entry_of(format::form_of(kind)).never_negative &&
         reader_.cell(format::name_of(kind), row).front() == '-')
       throw text::InputError(reader_.place(row), reader_.cell(format::name_of(kind), row),
-                             "a length is not negative");
+                             "a measured length must not be negative");
     if (kind == ObservationKind::kDistance && result_.other_end[row] == kNoRow)
       throw text::InputError(reader_.place(row), columns::kFrom,
                              "this cell must not be empty: give the row at the other end of the distance");

@@ -18,7 +18,7 @@ std::vector<Word> words_of(const std::string& line, const text::Place& place) {
     } else if (c == ';' || c == '(') {
       const auto end = c == ';' ? line.size() : line.find(')', i);
       if (end == std::string::npos)
-        throw text::InputError(place, line.substr(i, 20), "a remark without its end");
+        throw text::InputError(place, line.substr(i, 20), "the comment has no closing parenthesis");
       const std::size_t next = std::min(end + 1, line.size());
       words.push_back({'(', 0, line.substr(i, next - i)});
       i = next;

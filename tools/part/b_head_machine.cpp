@@ -35,7 +35,7 @@ double error_value(const model::Static& target, const std::string& word, const s
   if (!from || !to || from->dimension != to->dimension)
     throw text::InputError(
         {"--errors", 0}, word,
-        "\"" + name + "\" is no unit that \"" + target.unit + "\" of " + target.name + " can be given in");
+        "\"" + name + "\" cannot be converted to \"" + target.unit + "\", the unit of " + target.name);
   return (*number * from->factor + from->offset - to->offset) / to->factor;
 }
 

@@ -203,10 +203,11 @@ Identification identify(const BHeadMachine& machine, const MeasuredPart& part,
   const PartProblem problem(machine, part, options);
   const text::Place place{part.file, 0};
   if (problem.free().empty())
-    throw text::InputError({machine.machine.file, 0}, "static", "no static is free");
+    throw text::InputError({machine.machine.file, 0}, "static",
+                           "the machine file has no free static, so no error can be identified");
   if (static_cast<Eigen::Index>(part.points.size()) < problem.size())
     throw text::InputError(place, std::to_string(part.points.size()) + " points",
-                           "fewer points than unknowns");
+                           "the file has fewer points than the fit has unknowns");
   const bool with_uncertainty = part.points.front().uncertainty_mm > 0;
   const fit::Observability seen = problem.seen_at_nominal();
   const Solution solved = solve(problem, seen);

@@ -16,7 +16,7 @@ PartColumn::PartColumn(const format::CsvFile& csv, const std::string& name, form
   const std::optional<format::Unit> unit = format::find_unit(csv.columns[*index_].unit);
   if (!unit || unit->dimension != dimension)
     throw text::InputError(header, name,
-                           "needs a unit like " + name + "[" + format::base_unit(dimension) + "]");
+                           "needs a unit such as " + name + "[" + format::base_unit(dimension) + "]");
   factor_ = unit->factor;
 }
 

@@ -13,7 +13,7 @@ namespace vernier::plan {
 class Discrimination {
  public:
   /// `jacobian`, `difference`: J and d, weighted, with one row per observation. `first`: index of the first
-  /// observation of each row of the measurement, and one more entry behind the last observation. The first
+  /// observation of each row of the measurement, and at the end the number of observations. The first
   /// `existing` rows are measured; the other rows are offered for the next measurement.
   Discrimination(Eigen::MatrixXd jacobian, Eigen::VectorXd difference, std::vector<Eigen::Index> first,
                  std::size_t existing);

@@ -118,7 +118,7 @@ Explanation::Contrast Explanation::sense(std::size_t axis) const {
   c.as_was.states.velocity[axis] *= -1;
   const std::string& name = plan_.machine.axes[axis].name;
   c.where = fmt::format("with {} approached from both sides (until now from one side only)", name);
-  c.farthest = "the new sense";
+  c.farthest = "the new approach direction";
   c.usable = true;
   return c;
 }
@@ -199,8 +199,8 @@ std::string Explanation::sentence() const {
         worse.needed);
   if (!plan_.separable)
     return fmt::format(
-        "{} and {} cannot be separated by {} points of any admissible pose, sense, speed, time or input: "
-        "these points reach a non-centrality of {:.3g}, {:.3g} is required.{}",
+        "{} and {} cannot be separated by {} points of any admissible pose, approach direction, speed, time "
+        "or input: these points reach a non-centrality of {:.3g}, but {:.3g} is required.{}",
         a, b, plan_.rows.rows(), worse.planned, worse.needed, beyond);
   double best = 0;
   std::string where = "in combinations that the existing rows do not contain", why;

@@ -310,7 +310,8 @@ TouchPlan touch_plan(const model::Machine& machine, const std::string& artefact,
 
 std::string touch_plan_text(const TouchPlan& plan, const std::string& artefact) {
   std::string text = fmt::format(
-      "{} touches of {}: U95 of the tool point {:.3g} um (k = 2, mean over the volume), now {:.3g} um; with "
+      "{} touches of the artefact {}: U95 of the tool point {:.3g} um (k = 2, mean over the volume), now "
+      "{:.3g} um; with "
       "all touches of this artefact: {:.3g} um\n",
       plan.states.count, artefact, plan.after_um, plan.before_um, plan.least_um);
   if (plan.place_is_assumed)

@@ -62,7 +62,7 @@ Touches read_touches(TouchTable& table, const FeatureSetup& setup, std::vector<s
       const double length = n.row(i).norm();
       if (std::abs(length - 1) > 1e-3)
         throw text::InputError({table.file(), table.line(static_cast<std::size_t>(i))},
-                               fmt::format("{:.4g}", length), "length of the normal, not 1");
+                               fmt::format("{:.4g}", length), "the length of the normal is not 1");
       n.row(i) /= length;
     }
     touches.n = n;
@@ -73,7 +73,7 @@ Touches read_touches(TouchTable& table, const FeatureSetup& setup, std::vector<s
   if (!t && setup.temperature_degC) t = VectorXd::Constant(rows, *setup.temperature_degC);
   if (!t)
     throw text::InputError(table.file() +
-                           ": an expansion is given and no temperature (column T[degC], or --temperature)");
+                           ": the expansion needs a temperature (column T[degC], or --temperature)");
   for (Index i = 0; i < rows; ++i)
     touches.p.row(i) /= 1 + *setup.expansion_per_K * ((*t)(i)-maths::kReferenceDegC);
   findings.push_back(
@@ -452,7 +452,7 @@ MeasuredFeature fit_kind(const Touches& touches, const FeatureSetup& setup) {
     case FeatureKind::kBlock:
       return fit_block(touches, setup);
   }
-  throw text::InputError("no such feature");
+  throw text::InputError("this kind of feature is unknown");
 }
 
 // Expansion and temperature are the same for all touches. They increase the uncertainty of sizes

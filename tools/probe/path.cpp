@@ -34,7 +34,7 @@ int steps_of(const ProbePath& path) {
 void check(const ProbePath& path) {
   if (!(path.radius > 0)) throw text::InputError("the size of the artefact must be above 0");
   if (!(path.clearance > 0)) throw text::InputError("the clearance must be above 0");
-  if (path.feeds.empty()) throw text::InputError("no feed is given");
+  if (path.feeds.empty()) throw text::InputError("the feed is missing");
   for (const double feed : path.feeds)
     if (!(feed > 0)) throw text::InputError(fmt::format("feed {}: not above 0", feed));
 }

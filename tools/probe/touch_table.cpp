@@ -148,7 +148,7 @@ std::optional<Eigen::VectorXd> TouchTable::find(const std::vector<std::string>& 
 
 Eigen::VectorXd TouchTable::need(const std::vector<std::string>& names, const std::string& what) {
   if (auto values = find(names)) return *values;
-  throw text::InputError({csv_.file, csv_.header_line}, names.front(), "no such column: " + what);
+  throw text::InputError({csv_.file, csv_.header_line}, names.front(), "the table has no column " + what);
 }
 
 std::optional<Eigen::VectorXd> TouchTable::uncertainty() {

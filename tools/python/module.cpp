@@ -157,7 +157,8 @@ PYBIND11_MODULE(vernier, module) {
            }),
            py::arg("path"))
       .def_readonly("path", &MachineOfPython::path)
-      .def_readonly("text", &MachineOfPython::text, "The file as it stands or would be written.")
+      .def_readonly("text", &MachineOfPython::text,
+                    "Text of the machine file, as it was read or as save() would write it.")
       .def_property_readonly("name", [](const MachineOfPython& self) { return self.machine.name; })
       .def_property_readonly("axes",
                              [](const MachineOfPython& self) {

@@ -39,7 +39,8 @@ std::vector<DueMachine> due_machines(Registry& registry, std::int64_t at_us) {
     const auto calibration = runs.find(machine.name);
     DueMachine one = judged(machine, check == last.end() ? nullptr : &check->second,
                             calibration == runs.end() ? nullptr : &calibration->second);
-    if (one.why.empty() && one.due_us && *one.due_us <= at_us) one.why = "its time has come";
+    if (one.why.empty() && one.due_us && *one.due_us <= at_us)
+      one.why = "the date of the next check has come";
     all.push_back(std::move(one));
   }
   const auto key = [](const DueMachine& one) { return one.due_us.value_or(INT64_MAX); };

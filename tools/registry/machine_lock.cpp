@@ -49,10 +49,10 @@ MachineLocks::MachineLocks(Registry& registry, std::vector<std::string> machines
         database.run("SELECT holder, purpose, until_us FROM machine_lock WHERE machine = $1", {machine})
             .at(0);
     if (words(row[0]) != holder_)
-      throw text::LimitNotMet(fmt::format(
-          "{}: another caller is at work on this machine ({}, {}): no step was done. If that caller was "
-          "killed, its lock ends at {}",
-          machine, words(row[1]), words(row[0]), text::utc_text(whole(row[2]))));
+      throw text::LimitNotMet(
+          fmt::format("{}: another call works on this machine ({}, {}), so this call changed nothing. If the "
+                      "other call was killed, its lock ends at {}",
+                      machine, words(row[1]), words(row[0]), text::utc_text(whole(row[2]))));
   }
   transaction.commit();
 }

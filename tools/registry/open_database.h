@@ -7,9 +7,9 @@
 
 namespace vernier::registry {
 
-/// Opens a database. A place of the form `postgresql://…` is a server; any other place is a file, which is
-/// created if it does not exist. Throws InputError if the server or the file is not available, or is not a
-/// database.
+/// Opens a database. If `place` has the form `postgresql://…`, it is the address of a server. Any other
+/// `place` is the path of a file, which is created if it does not exist. Throws InputError if the server or
+/// the file is not available, or is not a database.
 std::unique_ptr<Database> open_database(const std::string& place);
 
 /// True if `place` is the address of a database server, which may be unavailable for some time.

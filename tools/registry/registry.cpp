@@ -105,7 +105,8 @@ void Registry::make_tables() {
     transaction.commit();
   }
   const std::int64_t version = whole(database_->run("SELECT version FROM fleet_schema").at(0)[0]);
-  if (version > kSchema) throw text::InputError({}, database_->name(), "a registry of a newer vernier");
+  if (version > kSchema)
+    throw text::InputError({}, database_->name(), "a newer version of vernier wrote this registry");
   if (version < kSchema) upgrade(version);
 }
 

@@ -124,7 +124,7 @@ class Tester {
       for (const auto& list : found->second)
         if (!list.empty())
           sort.add(correlate(rest, list).log_p,
-                   std::string(sample.name()) + " against its neighbours in place");
+                   std::string(sample.name()) + " against its neighbours in position");
     }
   }
 

@@ -84,7 +84,8 @@ std::string statement(const Finding& f, const SentenceFacts& facts) {
           subject(f), f.column, f.second_column, f.high_um - f.low_um, unit_of(f));
     case Shape::kWanders:
       return fmt::format(
-          "{} wanders: a row and the next one agree (correlation {:.2f}) and no recorded column says why",
+          "{} drifts slowly: successive rows agree (correlation {:.2f}), and no recorded column explains "
+          "this",
           subject(f), facts.at_low_um);
     default:
       return along_column(f, facts);

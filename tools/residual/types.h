@@ -40,7 +40,7 @@ struct Finding {
   double low_um = 0, high_um = 0;           // smallest and largest value of the explained curve
   std::optional<double> period;             // period, in the unit of the column
   std::size_t runs = 0, runs_agreeing = 0;  // number of runs in which the effect should be visible, and
-                                            // number of runs in which it is visible
+                                            // number of runs in which the effect is visible
   bool in_all_runs = false;
   std::vector<std::string>
       alike;             // other columns that explain as much, because they are correlated with this column

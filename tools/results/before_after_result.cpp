@@ -73,10 +73,11 @@ std::string sentence(const residual::BeforeAfter& result) {
       fmt::format("{}: {} % less (95 % interval {} %)", figures, percent(*all.reduction), interval_text(all));
   switch (result.verdict()) {
     case residual::Helped::kHelped:
-      return "The correction helped: " + how + ".";
+      return "The correction reduced the error: " + how + ".";
     case residual::Helped::kMadeWorse:
-      return fmt::format("The correction made it worse: {}: {} % more (95 % interval {} to {} %).", figures,
-                         percent(-*all.reduction), percent(-all.interval->high), percent(-all.interval->low));
+      return fmt::format("The correction increased the error: {}: {} % more (95 % interval {} to {} %).",
+                         figures, percent(-*all.reduction), percent(-all.interval->high),
+                         percent(-all.interval->low));
     case residual::Helped::kCannotBeTold:
       break;
   }

@@ -69,7 +69,8 @@ text::Assurance assurance_of(const fit::FitResult& result) {
                                      : result.absurd);
   if (result.check_ratio)
     word.at_most("check-rows", *result.check_ratio, 1,
-                 "Ratio of the residuals of the check rows: fitted machine to nominal machine.");
+                 "Residual of the check rows (held-out rows) with the fitted machine, divided by their "
+                 "residual with the nominal machine.");
   else {
     word.not_covered(
         "The fit was not tested on held-out rows, because there are fewer than twelve check readings.");
@@ -110,7 +111,7 @@ text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Mach
     const std::string name = safety::rule_name(one.rule);
     const std::string culprit = one.culprit.empty() ? "" : fmt::format(" ({})", one.culprit);
     if (!one.value)
-      word.not_covered(fmt::format("Rule {}: the machine file has no figure for it.", name));
+      word.not_covered(fmt::format("Rule {}: the machine file has no value for this rule.", name));
     else
       word.at_most(name, *one.value, one.limit,
                    fmt::format("Rule {}: {:.3g} {}, limit {:g}{}; {}.", name, *one.value, one.unit, one.limit,

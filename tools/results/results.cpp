@@ -212,7 +212,7 @@ void print_domains(std::FILE* out, const ordered_json& domains) {
     if (use["rows_outside"].get<std::size_t>() > 0)
       fmt::print(out,
                  "{}: {} is from {:.4g} to {:.4g}, the trained range is {:.4g} to {:.4g}: the term has a "
-                 "reduced weight in {} rows, in {} of them the weight 0\n",
+                 "reduced weight in {} rows, and the weight 0 in {} of these rows\n",
                  use["domain"].get<std::string>(), use["quantity"].get<std::string>(),
                  use["least"].get<double>(), use["most"].get<double>(), use["low"].get<double>(),
                  use["high"].get<double>(), use["rows_outside"].get<std::size_t>(),

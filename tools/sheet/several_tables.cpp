@@ -64,7 +64,8 @@ void keep_table(Sheet& sheet, std::optional<std::size_t> number) {
                            "a second line of headings: the file has " + found +
                                "; import each with --table 1 and so on, then give all files to the command");
   if (*number < 1 || *number > first.size())
-    throw text::InputError({sheet.file, 0}, std::to_string(*number), "no such table: the file has " + found);
+    throw text::InputError({sheet.file, 0}, std::to_string(*number),
+                           "the file has no table of this number: it has " + found);
   const auto part = [&](auto& list) {
     const auto at = [&](std::size_t table) {
       return table < first.size() ? list.begin() + static_cast<std::ptrdiff_t>(first[table]) : list.end();

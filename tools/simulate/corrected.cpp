@@ -32,7 +32,8 @@ class ImageFolder {
   explicit ImageFolder(std::string directory) : directory_(std::move(directory)) {
     std::error_code failed;
     const fs::path root(directory_);
-    if (!fs::is_directory(root, failed)) throw text::InputError("\"" + directory_ + "\": no such directory");
+    if (!fs::is_directory(root, failed))
+      throw text::InputError("\"" + directory_ + "\": this directory does not exist");
     look_at(root);
     for (fs::recursive_directory_iterator it(root, fs::directory_options::skip_permission_denied, failed),
          end;

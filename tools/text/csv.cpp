@@ -43,7 +43,7 @@ std::vector<std::string> fields_of(const std::string& line, const FieldRules& ru
       fields.back() += c;
       blank = blank && trimmed({&c, 1}).empty();
     } else if (c != ' ' && c != '\t') {
-      throw InputError(place, text.substr(i, 20), "text behind a closing quote");
+      throw InputError(place, text.substr(i, 20), "the field has text after its closing quote");
     }
   }
   if (quoted) throw InputError(place, fields.back(), "a closing quote is missing");

@@ -112,8 +112,8 @@ class ValueMaker {
     if (nothing && !limits) return;
     if (nothing)
       throw text::InputError({file_, part_.features[f].feature.line}, part_.features[f].feature.name,
-                             "the position of this feature is the origin of the part: mark other features as "
-                             "datum, or use --frame machine");
+                             "the position of this feature has no value, because this feature defines the "
+                             "origin of the part: mark other features as datum, or use --frame machine");
     result_.values.push_back({f, what, limits, result_.map.rows(), map.rows(), group});
     MatrixXd all(result_.map.rows() + map.rows(), 3 * points_);
     if (result_.map.rows() > 0) all.topRows(result_.map.rows()) = result_.map;

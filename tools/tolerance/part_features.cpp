@@ -35,10 +35,11 @@ class PartSheet {
       const auto unit = format::find_unit(column.unit);
       const bool number = column.name != "feature" && column.name != "kind" && column.name != "datum";
       if (!is_known(column.name))
-        throw text::InputError(head(), column.name,
-                               "a list of features has no such column: see `vernier part conformity --help`");
+        throw text::InputError(
+            head(), column.name,
+            "a list of features cannot have this column: see `vernier part conformity --help`");
       if (!column.unit.empty() && (!number || !unit || unit->dimension != format::Dimension::kLength))
-        throw text::InputError(head(), column.unit, "a part's numbers are lengths");
+        throw text::InputError(head(), column.unit, "this column of a part must have a unit of length");
     }
     std::vector<const char*> needed = {"feature", "kind"};
     needed.insert(needed.end(), format::columns::kPoint.begin(), format::columns::kPoint.end());
@@ -80,7 +81,8 @@ class PartSheet {
   std::optional<Eigen::Vector3d> direction(std::size_t row, const std::array<const char*, 3>& names) const {
     const auto values = vector(row, names);
     if (!values) return std::nullopt;
-    if (!(values->norm() > 1e-9)) throw text::InputError(place(row), names[0], "a direction of length 0");
+    if (!(values->norm() > 1e-9))
+      throw text::InputError(place(row), names[0], "the direction has the length 0");
     return values->normalized();
   }
 
@@ -106,7 +108,7 @@ void read_size(const PartSheet& sheet, std::size_t row, PartFeature& feature) {
              high = sheet.number(row, "size_high");
   if (size && (low || high))
     throw text::InputError(sheet.place(row), sheet.word(row, "size"),
-                           "either size, or size_low and size_high");
+                           "give either size, or size_low and size_high");
   if (size) feature.size_mm = {-*size, *size};
   if (low.has_value() != high.has_value())
     throw text::InputError(sheet.place(row), low ? "size_high" : "size_low", "a size has two limits");
@@ -138,7 +140,7 @@ PartFeature read_feature(const PartSheet& sheet, std::size_t row) {
   feature.length_mm = sheet.number(row, "length").value_or(0);
   feature.width_mm = sheet.number(row, "width").value_or(0);
   if (feature.kind == PartFeatureKind::kCylinder && feature.diameter_mm <= 0)
-    throw text::InputError(sheet.place(row), "diameter", "a cylinder needs one");
+    throw text::InputError(sheet.place(row), "diameter", "a cylinder must have a diameter above 0");
   if (feature.kind == PartFeatureKind::kPlane && !(feature.length_mm > 0 && feature.width_mm > 0))
     throw text::InputError(sheet.place(row), "length", "a plane needs length and width");
   feature.position_mm = sheet.positive(row, "position");
@@ -167,7 +169,8 @@ PartDrawing parse_part(const std::string& text, const std::string& file) {
   for (std::size_t row = 0; row < sheet.rows(); ++row) {
     part.features.push_back(read_feature(sheet, row));
     if (!names.insert(part.features.back().name).second)
-      throw text::InputError(sheet.place(row), part.features.back().name, "two features have this name");
+      throw text::InputError(sheet.place(row), part.features.back().name,
+                             "the list has two features of this name");
   }
   return part;
 }

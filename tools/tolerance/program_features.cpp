@@ -136,7 +136,8 @@ PlacedPart program_part(const model::Machine& machine, const std::string& text, 
   offline::Corrector corrector(machine,
                                {.with_rotary = kinematics::linear_axes(machine).empty(), .back = false});
   offline::corrected_program(text, file, at, known, reading, corrector);
-  if (collector.cuts.empty()) throw text::InputError({file, 0}, file, "no cutting move (G1, G2, G3)");
+  if (collector.cuts.empty())
+    throw text::InputError({file, 0}, file, "the program has no cutting move (G1, G2, G3)");
   PlacedPart part;
   part.program = true;
   std::vector<model::States> all;

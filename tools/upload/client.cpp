@@ -166,7 +166,7 @@ void Client::require_board(const BoardClaim& claim) {
   if (claim.empty()) return;
   read_hello();
   if (!claim.name.empty() && info_.board != claim.name)
-    throw text::LimitNotMet(fmt::format("this board is {}, not {}",
+    throw text::LimitNotMet(fmt::format("the name of this board is {}, but {} was expected",
                                         info_.board.empty() ? "without a name" : info_.board, claim.name));
   if (claim.key) {
     const auto proof = proof_of(info_.board);

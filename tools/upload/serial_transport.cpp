@@ -94,7 +94,7 @@ class SerialTransport : public Transport {
       const ssize_t got = ready < 0 ? -1 : ::read(line_, &byte, 1);
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) fail(errno);
-      if (got == 0) throw text::InputError(name_ + ": the line was closed");
+      if (got == 0) throw text::InputError(name_ + ": the serial line was closed");
       if (reader_.take(byte)) return {reader_.message(), reader_.message() + reader_.size()};
     }
   }

@@ -97,7 +97,8 @@ SigningKey read_secret_key(const std::string& path) {
   std::istringstream text(text::read_file(path));
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && (info.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-    throw text::InputError(path + ": others may read this secret key: chmod 600 it");
+    throw text::InputError(path +
+                           ": other users may read this secret key: set its permissions with chmod 600");
   std::string title, line;
   std::getline(text, title);
   std::getline(text, line);

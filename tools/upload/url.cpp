@@ -61,7 +61,8 @@ BoardUrl parse_url(const std::string& text) {
     }
   }
   url.place = rest;
-  if (url.place.empty()) throw text::InputError("board address: '" + text + "' names no place");
+  if (url.place.empty())
+    throw text::InputError("board address: '" + text + "' contains no host, device or interface");
   return url;
 }
 

@@ -107,7 +107,8 @@ std::vector<Pairing> pairings_of(const VibrationRecord& record, const std::vecto
     for (const Signal& signal : record.signals)
       if (signal.name == one.signal) pairing.signal = &signal;
     if (pairing.signal == nullptr)
-      throw text::InputError(fmt::format("\"{}\": the accelerometer record has no such signal", one.signal));
+      throw text::InputError(
+          fmt::format("\"{}\": the accelerometer record has no signal of this name", one.signal));
     for (std::size_t row = 0; row < ends.size(); ++row) {
       if (!ends[row] || *ends[row] >= record.samples || !std::isfinite(one.at_row_um[row])) continue;
       pairing.sample.push_back(*ends[row]);

@@ -48,7 +48,7 @@ double rate_of(const format::CsvFile& file, const std::vector<double>& t_s) {
 const Signal& signal_named(const VibrationRecord& record, const std::string& name) {
   for (const Signal& signal : record.signals)
     if (signal.name == name) return signal;
-  throw text::InputError(fmt::format("\"{}\": the accelerometer record has no such signal", name));
+  throw text::InputError(fmt::format("\"{}\": the accelerometer record has no signal of this name", name));
 }
 
 std::string header_of(const Signal& signal, std::size_t feature) {
@@ -89,7 +89,7 @@ std::vector<double> measured_lengths_um(const format::CsvFile& file, const std::
 VibrationRecord read_vibration(const format::CsvFile& file, std::optional<double> rate_Hz,
                                const std::vector<std::string>& positions) {
   if (file.rows.size() < 2)
-    throw text::InputError({file.file, 0}, file.file, "an accelerometer record of less than two samples");
+    throw text::InputError({file.file, 0}, file.file, "the accelerometer record has fewer than two samples");
   VibrationRecord record;
   record.samples = file.rows.size();
   if (column_named(file, format::columns::kTime)) {

@@ -62,10 +62,13 @@ std::string why_not(const ImageView& a, const ImageView& b) {
     return "the images are for machines with other axes or inputs";
   for (std::uint32_t i = 0; i < a.axes().size; ++i)
     if (std::strcmp(a.axes()[i].name, b.axes()[i].name) != 0 || a.axes()[i].flags != b.axes()[i].flags)
-      return fmt::format("axis {} is another one", a.axes()[i].name);
+      return fmt::format(
+          "axis {} of the first image differs from this axis of the second image in name or kind",
+          a.axes()[i].name);
   for (std::uint32_t i = 0; i < a.inputs().size; ++i)
     if (std::strcmp(a.inputs()[i].name, b.inputs()[i].name) != 0)
-      return fmt::format("input {} is another one", a.inputs()[i].name);
+      return fmt::format("input {} of the first image has another name in the second image",
+                         a.inputs()[i].name);
   return {};
 }
 

@@ -128,7 +128,7 @@ bool WorkbenchServer::Inside::welcome(const httplib::Request& request, httplib::
 WorkbenchServer::Inside::Handled WorkbenchServer::Inside::guard(const httplib::Request& request,
                                                                 httplib::Response& response) const {
   if (!is_ours(request)) {
-    refuse(response, 403, "not from this page");
+    refuse(response, 403, "the request does not come from this page");
     return Handled::Handled;
   }
   if (welcome(request, response)) return Handled::Handled;
@@ -138,17 +138,17 @@ WorkbenchServer::Inside::Handled WorkbenchServer::Inside::guard(const httplib::R
   }
   if (request.method == "GET") return Handled::Unhandled;
   if (!request.has_header("X-Vernier")) {
-    refuse(response, 403, "not from this page");
+    refuse(response, 403, "the request does not come from this page");
     return Handled::Handled;
   }
   // Bodies have a known length and are not compressed: their size is limited.
   if (request.has_header("Transfer-Encoding") || request.has_header("Content-Encoding") ||
       (request.method != "DELETE" && !request.has_header("Content-Length"))) {
-    refuse(response, 411, "a body needs its length");
+    refuse(response, 411, "a request with a body must state its length");
     return Handled::Handled;
   }
   if (request.get_header_value<std::uint64_t>("Content-Length") > kMostBodyBytes) {
-    refuse(response, 413, "larger than 64 MiB");
+    refuse(response, 413, "the body of the request is larger than 64 MiB");
     response.set_header("Connection", "close");
     return Handled::Handled;
   }

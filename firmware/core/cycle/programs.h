@@ -71,7 +71,8 @@ class Programs {
   /// program to the tick. Call run_trial() only in the state Trial::kNone.
   void run_trial(ProgramRef program, TimeUs trial_time) noexcept;
   /// Begins the confirmation of the image on trial and stops the trial time. The function begin_to_keep()
-  /// returns false if no image is on trial any more.
+  /// returns true if it began the confirmation. If no image is on trial any more, begin_to_keep() changes
+  /// nothing and returns false.
   bool begin_to_keep() noexcept { return change(Trial::kRunning, Trial::kConfirming); }
   /// Ends the confirmation of an image. `written`: true if the medium contains the record that the correction
   /// image is confirmed; false if the record could not be written. Call kept() only after begin_to_keep().

@@ -29,8 +29,8 @@ struct Line {
   const char* c_str() const noexcept { return text; }
   operator const char*() const noexcept { return text; }
 };
-/// Returns the result of an upload as one line of text for people, for example "of another machine: the board
-/// has no such axis: W".
+/// Returns the result of an upload as one line of text for people, for example "the image does not match this
+/// board: the board has no axis of this name: W".
 Line describe(const UploadResult& result) noexcept;
 
 /// State of the images in the store, for replies to links.

@@ -246,8 +246,10 @@ void require_limits(Table& settings, AxisEntry& axis, TimeUs tick) {
   };
   require("max_correction",
           "max_correction = 0.1  # " + unit + ", the largest correction that the board adds to the command");
-  require("max_speed", "max_speed = 500  # " + unit +
-                           "/s of the axis; a correction uses the share correction_share of it");
+  require(
+      "max_speed",
+      "max_speed = 500  # " + unit +
+          "/s, the largest speed of the axis; a correction may use the part correction_share of this speed");
   if (settings.has("max_step")) return;
   const std::string step = number_text(default_step(settings, axis, tick));
   axis.default_step = "max_step = " + step + "  # " + unit + " in one tick";
@@ -274,7 +276,7 @@ AxisEntry read_axis_settings(BoardFile& board, const std::string& name, Table& s
   axis.wiring.rollover = settings.flag("rollover", false);
   axis.low = settings.number("low", 0, -1e6, 1e6);
   axis.high = settings.number("high", 0, -1e6, 1e6);
-  if (axis.low > axis.high) settings.fail("low is above high");
+  if (axis.low > axis.high) settings.fail("low must not be above high");
   board.service.limits.axis[board.axes.size()] =
       setting_of(settings, axis.wiring.rotary, board.service.upload.tick);
   return axis;
@@ -325,7 +327,7 @@ void read_input(BoardFile& board, const std::string& name, const toml::table& ta
   if (settings.has("low")) limits.low = counts(kMicro * settings.number("low", 0, -1e9, 1e9));
   if (settings.has("high")) limits.high = counts(kMicro * settings.number("high", 0, -1e9, 1e9));
   if (settings.has("max_step")) limits.step = counts(kMicro * settings.number("max_step", 0, 0, 1e9));
-  if (limits.low > limits.high) settings.fail("low is above high");
+  if (limits.low > limits.high) settings.fail("low must not be above high");
   input.reference = settings.number("reference", 0, -1e9, 1e9);
   input.source = source_of(settings.table("source"), board.path, "input." + name + ".source");
   if (input.source.kind.empty()) settings.fail("source is missing");
@@ -558,7 +560,8 @@ void refuse_duplicates(const BoardFile& board) {
       return true;
     };
     const auto found = std::find_if(used.begin(), used.end(), same);
-    if (found != used.end()) source.fail("the device of " + (*found)->where + " too: one device has one use");
+    if (found != used.end())
+      source.fail("the device of " + (*found)->where + " is the same: one device can have only one use");
     used.push_back(&source);
   };
   for (const AxisEntry& axis : board.axes)

@@ -64,7 +64,7 @@ void BoardKey::read(const std::string& path) {
   struct stat info {};
   if (file.fd() < 0 || ::fstat(file.fd(), &info) != 0) fail(path, nullptr);
   if ((info.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-    fail(path, "others may read this secret key; chmod 600 the file");
+    fail(path, "other users may read this secret key; set the permissions of the file with chmod 600");
   std::array<std::uint8_t, 65> bytes{};
   if (::read(file.fd(), bytes.data(), bytes.size()) != 64)
     fail(path, "is no key of a board; remove the file, and enter the new key in the registry");

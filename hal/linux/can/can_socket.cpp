@@ -37,7 +37,7 @@ int open_local(const std::string& path, const std::vector<std::uint32_t>& ids, s
   const std::vector<can_filter> filters = filters_of(ids);
   const std::size_t bytes = filters.size() * sizeof(can_filter);
   if (::send(fd, filters.data(), bytes, MSG_NOSIGNAL) != static_cast<ssize_t>(bytes))
-    return can_failed(path, "takes no filters", fd, error);
+    return can_failed(path, "the link does not accept filters", fd, error);
   return fd;
 }
 
@@ -72,15 +72,17 @@ bool hear_own_frames(int socket, const std::string& interface, std::string& erro
   const int on = 1;
   if (is_local(interface) || ::setsockopt(socket, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &on, sizeof(on)) == 0)
     return true;
-  return can_failed(interface, "own frames are not returned", socket, error) >= 0;
+  return can_failed(interface, "the interface does not return the frames that the board sends", socket,
+                    error) >= 0;
 }
 
 int open_can(const std::string& interface, const std::vector<std::uint32_t>& ids, bool bus_errors,
              std::string& error) {
   if (is_local(interface)) return open_local(interface, ids, error);
   const int fd = ::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
-  if (fd < 0) return can_failed(interface, "no CAN in this kernel", fd, error);
-  if (!subscribe(fd, ids, bus_errors)) return can_failed(interface, "filters are refused", fd, error);
+  if (fd < 0) return can_failed(interface, "this kernel does not support CAN", fd, error);
+  if (!subscribe(fd, ids, bus_errors))
+    return can_failed(interface, "the interface refuses the filters", fd, error);
   return bind_can(fd, interface, sockaddr_can{}, error) ? fd : -1;
 }
 

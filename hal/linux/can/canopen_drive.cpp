@@ -112,7 +112,7 @@ bool CanopenDrive::is_well(InstantNs now) const noexcept {
 const char* CanopenDrive::missing(InstantNs now) const noexcept {
   if (bus_off_) return "the bus is off";
   if (is_stuck(now)) return "the CAN bus does not accept the frames of the board";
-  if (!sync_.within(now, settings_.sync_timeout)) return "no SYNC comes";
+  if (!sync_.within(now, settings_.sync_timeout)) return "no SYNC arrives";
   if (!heartbeat_.within(now, settings_.heartbeat_time)) return "the heartbeat of the drive is missing";
   if (nmt_ != kOperational) return "the drive is not in the NMT state Operational";
   if (!tpdo_.within(now, settings_.sync_timeout)) return "no TPDO with statusword and position arrives";

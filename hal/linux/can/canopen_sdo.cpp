@@ -53,7 +53,7 @@ std::string CanopenSdo::read(CanopenObject object, std::uint32_t& value) {
   frame.data[3] = object.subindex;
   silent_ = true;
   if (::send(socket_, &frame, sizeof frame, MSG_NOSIGNAL) != static_cast<ssize_t>(sizeof frame))
-    return "the bus takes no frame";
+    return "the bus accepts no frame";
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kWaitMs);
   for (auto now = std::chrono::steady_clock::now(); now < end; now = std::chrono::steady_clock::now()) {
     pollfd waiting{socket_, POLLIN, 0};
@@ -95,7 +95,7 @@ std::string CanopenSdo::check_mapping(const Pdo& pdo) {
       if (silent_) error = elsewhere;
     } else if ((id & kExtended) != 0) {
       error = std::string(pdo.name) + " " + hex(at) + ": the identifier " + hex(pdo.id, 3) +
-              " has 29 bits, needed are 11";
+              " has 29 bits, but 11 bits are required";
     } else if (found) {
       error = std::string("two active ") + pdo.name + "s of the drive have the identifier " + hex(pdo.id, 3);
     } else {
@@ -113,18 +113,18 @@ std::string CanopenSdo::check_contents(const Pdo& pdo, std::uint16_t at) {
   if (const std::string error = read({at, 2}, value); !error.empty()) return error;
   if (value < pdo.first_type || value > pdo.last_type)
     return std::string(pdo.name) + " " + hex(at) + ": transmission type " + std::to_string(value) +
-           ", needed is 1: with each SYNC";
+           ", but the required type is 1: with each SYNC";
   const auto map = static_cast<std::uint16_t>(at + kMapping);
   if (const std::string error = read({map, 0}, value); !error.empty()) return error;
   if (value != pdo.mapped.size())
     return std::string(pdo.name) + " " + hex(map) + ": " + std::to_string(value) +
-           " mapped objects, needed are " + std::to_string(pdo.mapped.size());
+           " mapped objects, but the required number is " + std::to_string(pdo.mapped.size());
   for (std::size_t i = 0; i < pdo.mapped.size(); ++i) {
     if (const std::string error = read({map, static_cast<std::uint8_t>(i + 1)}, value); !error.empty())
       return error;
     if (value != pdo.mapped[i])
-      return std::string(pdo.name) + " " + hex(map) + ": object " + hex(value, 8) + " is mapped, needed is " +
-             hex(pdo.mapped[i], 8);
+      return std::string(pdo.name) + " " + hex(map) + ": object " + hex(value, 8) +
+             " is mapped, but the required object is " + hex(pdo.mapped[i], 8);
   }
   return "";
 }

@@ -23,7 +23,7 @@ std::unique_ptr<IsotpLink> IsotpLink::open(const std::string& interface, std::ui
                                            std::uint32_t transmit, std::string& error) {
   const int fd = ::socket(PF_CAN, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_ISOTP);
   if (fd < 0) {
-    can_failed(interface, "no ISO-TP in this kernel", fd, error);
+    can_failed(interface, "this kernel does not support ISO-TP", fd, error);
     return nullptr;
   }
   sockaddr_can address{};

@@ -74,7 +74,7 @@ std::string ModbusOutput::begin() {
   for (const auto end = Clock::now() + kLookForAnother; Clock::now() < end;) {
     std::this_thread::sleep_for(span_of(settings_.period));
     if (!look(after)) return "the controller gives no valid answer any more: " + line_->why();
-    if (before != after) return "in use: another board writes the sequence number";
+    if (before != after) return "another board writes the sequence number of this block";
   }
   if (!take_left_overs()) return "the controller gives no valid answer any more: " + line_->why();
   found_ = before;
@@ -86,8 +86,8 @@ std::string ModbusOutput::begin() {
     std::this_thread::sleep_for(span_of(settings_.period));
   }
   if (healthy_) return "";
-  return foreign_ > 0 ? "in use: another board writes the sequence number"
-                      : "the controller does not return the sequence number: does its program run?";
+  return foreign_ > 0 ? "another board writes the sequence number of this block"
+                      : "the controller does not return the sequence number; test whether its program runs";
 }
 
 /// Registers of the block, as far as the last place that has an axis.
@@ -332,8 +332,8 @@ std::string ModbusOutput::attempt(std::uint32_t) {
 }
 
 std::string ModbusOutput::trial() const {
-  return "blocks with valid bits 0 were written, with the values that the registers had (at most the range); "
-         "the controller removes a correction that it has";
+  return "the check wrote blocks with valid bits 0 and the present values of the registers (at most the "
+         "range); the controller removes its present correction";
 }
 
 std::string ModbusOutput::account() const {

@@ -18,8 +18,8 @@
 namespace vernier {
 
 /// Block of registers in a controller (PLC) that receives corrections. The block begins at `address`:
-/// sequence number, valid bits (bit p for place p), and then two registers for each place with a signed
-/// 32-bit number, high word first.
+/// sequence number, valid bits (bit p for value p), and then two registers for each value. A value is a
+/// signed 32-bit number, high word first.
 struct ModbusOutputSettings {
   static constexpr int kSequence = RegisterBlock::kSequence, kValid = RegisterBlock::kValid,
                        kValues = RegisterBlock::kValues, kPlaces = RegisterBlock::kPlaces;

@@ -257,7 +257,7 @@ class Run:
             return self.judge_truth(0, said, answer, False)
         self.expect(sorted((status, other)) == [0, 2], f"two callers ended with {other} and {status}: {first_said} {said}")
         refused = said if status == 2 else first_said
-        self.expect("another caller is at work" in refused, "the refusal does not say why: " + refused)
+        self.expect("another call works on this machine" in refused, "the refusal does not say why: " + refused)
         path = os.path.join(self.folder, "second.json" if status == 0 else "first.json")
         return self.judge_truth(0, said, json.load(open(path)), False)
 

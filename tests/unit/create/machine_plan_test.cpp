@@ -66,12 +66,12 @@ TEST(MachinePlan, OrderOfTheSidesCanBeSaid) {
   const MachinePlan given = plan_machine("gantry", list, std::vector<std::string>{"X", "Z"}, std::nullopt);
   EXPECT_EQ(drawing(given), "bed > X (carriage) > Z (ram) > tool\nbed > Y (beam) > workpiece");
   EXPECT_EQ(refusal([&] { plan_machine("gantry", list, std::vector<std::string>{"Q"}, std::nullopt); }),
-            "\"Q\": no --axis has this name");
+            "\"Q\": no option --axis declares an axis of this name");
   EXPECT_EQ(
       refusal([&] {
         plan_machine("gantry", list, std::vector<std::string>{"X", "Y"}, std::vector<std::string>{"Y", "Z"});
       }),
-      "\"Y\": this axis is on both sides");
+      "\"Y\": this axis is both on the tool side and on the workpiece side");
 }
 
 TEST(MachinePlan, PositionsAreTheToolsWhateverCarriesWhat) {

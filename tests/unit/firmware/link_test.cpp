@@ -417,7 +417,8 @@ TEST_F(LinkTest, RefusalTellsTheReason) {
     board.upload(make_upload(small_image_bytes(2e-5), new_key(), 5, 0), [](double) {});
     FAIL();
   } catch (const LimitNotMet& refusal) {
-    EXPECT_STREQ(refusal.what(), "the board refuses: signed with a key that the board does not trust");
+    EXPECT_STREQ(refusal.what(),
+                 "the board refuses: the image is signed with a key that the board does not trust");
   }
 }
 

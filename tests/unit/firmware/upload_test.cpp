@@ -422,7 +422,8 @@ TEST_F(Upload, ImageThatIsTooMuchWorkForTheBoardIsRefusedWithThatReason) {
   EXPECT_GT(work, 20u);
   EXPECT_EQ(send({work}).fault, UploadFault::kNone);
   EXPECT_EQ(send({work - 1}).fault, UploadFault::kTooMuchWork);
-  EXPECT_STREQ(describe(send({1})), "more work than this board does in its share of a tick");
+  EXPECT_STREQ(describe(send({1})),
+               "the image needs more work than this board can do in its share of a tick");
 }
 
 /// A look-up in 2048 uneven pieces.

@@ -264,7 +264,7 @@ TEST_F(FleetCommand, GatewayAndIngestEndWhenTheyAreTold) {
   EXPECT_NE(said().find("no board answers"), std::string::npos) << said();
   EXPECT_EQ(run("timeout -s TERM 2 vernier fleet ingest --broker tcp://127.0.0.1:1; test $? = 124"), 0)
       << said();
-  EXPECT_NE(said().find("no broker there"), std::string::npos) << said();
+  EXPECT_NE(said().find("no broker answers at this address"), std::string::npos) << said();
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST_P(MachineLockTest, SecondCallerIsRefusedAndTakesNothing) {
     MachineLocks late(second, {"a", "b"}, "rollout autumn", 60);
     FAIL() << "two callers have one machine";
   } catch (const text::LimitNotMet& error) {
-    EXPECT_NE(std::string(error.what()).find("b: another caller is at work on this machine (rollout spring"),
+    EXPECT_NE(std::string(error.what()).find("b: another call works on this machine (rollout spring"),
               std::string::npos)
         << error.what();
   }

@@ -133,7 +133,7 @@ TEST_P(RegistryTest, SaysWhichMachinesAreDueAndWhy) {
   std::map<std::string, std::string> why;
   for (const DueMachine& one : due_machines(registry, now)) why[one.machine] = one.why;
   EXPECT_EQ(why["fresh"], "");
-  EXPECT_EQ(why["late"], "its time has come");
+  EXPECT_EQ(why["late"], "the date of the next check has come");
   EXPECT_EQ(why["never"], "never checked");
   EXPECT_EQ(why["changed"], "the verdict of the last check: changed");
   EXPECT_EQ(why["recalibrated"], "not checked since its calibration");

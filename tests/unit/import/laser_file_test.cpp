@@ -62,7 +62,7 @@ TEST(LaserFile, WhatDoesNotAgreeIsRefusedWithItsPlace) {
       {file("1 1 0.5\n1 2 x\n"), "l.rtl:25: \"x\": not a number"},
       {file("1 1 0.5\n1 2\n"), "l.rtl:25: \"1 2\": the line must contain run, target and deviation"},
       {file("1 1 0.5\n1 1 1\n", "0 1 2 0", "1"), "l.rtl:25: \"1\": this target occurs twice in run 1"},
-      {file(kBoth, "0 0 2 0", "4"), "2 runs where the count is 4"},
+      {file(kBoth, "0 0 2 0", "4"), "the section has 2 runs, but the file states 4"},
       {file("", "0 0 2 0", "0"), "no readings"},
       {"X[mm],x[mm]\n1,2\n", "not a file of linear laser runs"},
       {std::string("a\0b", 3), "bytes of value 0"},

@@ -57,7 +57,8 @@ TEST(PrinterFile, WrongMeshesAreNamedWithTheirLine) {
     return text.replace(text.find(from), from.size(), to);
   };
   EXPECT_THAT(read(with("x_count = 3", "x_count = 4")), HasSubstr("p.cfg:13: "));
-  EXPECT_THAT(read(with("y_count = 2", "y_count = 3")), HasSubstr("the mesh has 2 rows, y_count says 3"));
+  EXPECT_THAT(read(with("y_count = 2", "y_count = 3")),
+              HasSubstr("the mesh has 2 rows, but y_count states 3"));
   EXPECT_THAT(read(with("0.02", "nan")), HasSubstr("p.cfg:13: "));
   EXPECT_THAT(read(with("min_x", "mix_x")), HasSubstr("lacks this setting"));
   EXPECT_THAT(read(with("x_count = 3", "x_count = 3000000000")), HasSubstr("from 1 to 1000"));
@@ -134,7 +135,7 @@ TEST(PrinterFile, LevellingAndRepeatsAreNoSurveyOfTheBed) {
   options.series = 2;
   EXPECT_EQ(read(two, options), "X[mm],Y[mm],Z[mm],on\n1,2,4,bed\n");
   options.series = 3;
-  EXPECT_THAT(read(two, options), HasSubstr("no such survey"));
+  EXPECT_THAT(read(two, options), HasSubstr("the log has no survey of this number"));
 }
 
 TEST(PrinterFile, PointsOfAHeightMapHaveItsSpacing) {
@@ -175,7 +176,7 @@ TEST(PrinterFile, HeightMapsOfBothVersions) {
                  "xmin,xmax,ymin,ymax,radius,xspacing,yspacing,xnum,ynum\n0,10,0,0,-1,10,10,2,1\n0.1,0.2\n"),
             "X[mm],Y[mm],Z[mm],on\n0,0,0.1,bed\n10,0,0.2,bed\n");
   EXPECT_THAT(read(title + "axis0\nX\n"), HasSubstr("lacks this value"));
-  EXPECT_THAT(read(present.substr(0, present.size() - 26)), HasSubstr("fewer than 2 rows"));
+  EXPECT_THAT(read(present.substr(0, present.size() - 26)), HasSubstr("fewer than the 2 rows"));
 }
 
 }  // namespace

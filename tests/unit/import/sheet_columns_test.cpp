@@ -194,7 +194,7 @@ const Case kCases[] = {
     {"TwoSigns", "X[mm];x[mm]\n1,5;2\n3.5;2\n", "--decimal comma or point"},
     {"CommaInCommas", "X[mm],x[mm]\n0,5,1,5\n", "separated by commas, save the table with semicolons"},
     {"Words", "X[mm];x[mm]\n1;2\n2;abc\n3;4\n", "refused: s.csv:3: \"abc\": not a number, for x"},
-    {"NothingMeasured", "X[mm];Y[mm]\n1;2\n", "nothing measured among the columns"},
+    {"NothingMeasured", "X[mm];Y[mm]\n1;2\n", "no column of the table is a reading"},
     {"OldWorkbook", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "save it as .xlsx or as CSV"},
     {"NoNumbers", "only;words\nhere;too\n", "no row of this table contains numbers"},
     {"PressureIsNoDeviation", "X [mm];Abweichung [bar]\n100;1\n200;2\n",
@@ -271,7 +271,7 @@ const Case kCases[] = {
      "X[mm],x[mm],y[mm]\n0,5,0\n100,5.01,100\n200,5.02,200\n"},
     {"NamesOfTheFormatStay", "X[mm];x[um]\n0;1\n100;2\n200;3\n", "X[mm],x[um]\n0,1\n100,2\n200,3\n"},
     {"CorrectionIsNoDeviation", "Soll X [mm];Korrektur X [um]\n0;1\n100;2\n200;3\n",
-     "refused: s.csv:1: nothing measured among the columns"},
+     "refused: s.csv:1: no column of the table is a reading"},
     {"ReadingsBesideAConstantTarget", "Soll X [mm];Messwert X [um]\n300;0,4\n300;-1,2\n300;2,3\n",
      "X[mm],x[mm]\n300,300.0004\n300,299.9988\n300,300.0023\n"},
     {"PositionOnlyInTheFirstRow", "X [mm];Y [mm];x [mm]\n0;400;1\n9;;10\n",
@@ -417,8 +417,8 @@ TEST(SheetWish, AHeadingThatIsNotThereIsRefusedByItsOption) {
   filled.fill = {"Temp"};
   left.left = {"Bemerkung"};
   for (const auto& [words, start] :
-       {std::pair{filled, "--fill \"Temp\": the sheet has no such heading"},
-        std::pair{left, "--leave \"Bemerkung\": the sheet has no such heading"}}) {
+       {std::pair{filled, "--fill \"Temp\": the sheet has no column with this heading"},
+        std::pair{left, "--leave \"Bemerkung\": the sheet has no column with this heading"}}) {
     try {
       read_as_sheet(bytes, "s.csv", words);
       FAIL() << start;
@@ -459,7 +459,8 @@ TEST(SheetWish, OneOfSeveralTablesIsRead) {
   wishes.format.table = 1;
   EXPECT_EQ(import(two, wishes), "X[mm],x[mm]\n0,1\n9,10\n");
   wishes.format.table = 3;
-  EXPECT_NE(import(two, wishes).find("\"3\": no such table: the file has 2 tables"), std::string::npos);
+  EXPECT_NE(import(two, wishes).find("\"3\": the file has no table of this number: it has 2 tables"),
+            std::string::npos);
 }
 
 TEST(SheetWish, TheSameInEveryRowIsAReadingToo) {
@@ -526,8 +527,9 @@ TEST(SheetNote, NamesEveryRowThatIsLeftOutOrShort) {
 TEST(SheetWish, UnknownHeadingIsNamedWithThoseThatAreThere) {
   const std::string result = import(
       kOdd, {}, [](SheetWishes& wishes, const SheetTable& table) { assign_column(wishes, table, "x=Weg"); });
-  EXPECT_NE(result.find("the sheet has no such heading; its headings are Pos, Anzeige [µm], Stift"),
-            std::string::npos)
+  EXPECT_NE(
+      result.find("the sheet has no column with this heading; its headings are Pos, Anzeige [µm], Stift"),
+      std::string::npos)
       << result;
 }
 

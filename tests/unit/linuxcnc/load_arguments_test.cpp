@@ -46,12 +46,12 @@ TEST(LoadArguments, RefuseByNameWhatCannotBe) {
   const std::string long_name(30, 't');
   const auto why = [](const Load& load) { return load.good ? std::string("taken") : std::string(load.why); };
   EXPECT_EQ(why(Load({})), "axes=: axes is missing: give the axis names of the joints, axes=X,Y,...");
-  EXPECT_EQ(why(Load({"X", "Y"}, {}, {"Q"})), "rotary=Q: none of the axes");
-  EXPECT_EQ(why(Load({"X", "A"}, {}, {"none", "A"})), "rotary=none: none of the axes");
+  EXPECT_EQ(why(Load({"X", "Y"}, {}, {"Q"})), "rotary=Q: this name is not in axes");
+  EXPECT_EQ(why(Load({"X", "A"}, {}, {"none", "A"})), "rotary=none: this name is not in axes");
   EXPECT_EQ(why(Load({"X"}, {"X"})), "inputs=X: the name of an axis");
   EXPECT_EQ(why(Load({"X"}, {"T", "T"})), "inputs=T: there twice");
   EXPECT_EQ(why(Load({"X"}, {long_name})), "inputs=" + long_name + ": longer than 23 characters");
-  EXPECT_EQ(why(Load({"X"}, {""})), "inputs=: an empty name");
+  EXPECT_EQ(why(Load({"X"}, {""})), "inputs=: a name is empty");
   EXPECT_EQ(why(Load({"X/Y"})), "axes=X/Y: a name may contain only letters, digits, _ and -");
   EXPECT_EQ(why(Load({"%s%n"})), "axes=%s%n: a name may contain only letters, digits, _ and -");
   EXPECT_EQ(why(Load({"X", "X"})), "axes=X: there twice");

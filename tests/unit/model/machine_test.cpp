@@ -91,7 +91,8 @@ TEST(MachineFile, ReadsScalesToolsAndVolume) {
   EXPECT_EQ(machine.tables[0].scale[0], 0.2);
   EXPECT_EQ(parse_machine(text("", "0.1"), "m.xml").tables[0].scale[5], 0.1);
   EXPECT_EQ(with_tool(machine, {1, 2, -30}).tool.size(), 2U);
-  EXPECT_NE(error_of(text("<Q min=\"0\" max=\"1\"/>", "0.1")).find("no such axis"), std::string::npos);
+  EXPECT_NE(error_of(text("<Q min=\"0\" max=\"1\"/>", "0.1")).find("the machine has no axis of this name"),
+            std::string::npos);
   EXPECT_NE(error_of(text("<X min=\"0\"/>", "0.1")).find("needs a max"), std::string::npos);
   EXPECT_NE(error_of(text("", "0.1 0.2 0.3")).find("one number for each column of fit"), std::string::npos);
   EXPECT_NE(error_of(text("", "-1")).find("greater than 0"), std::string::npos);

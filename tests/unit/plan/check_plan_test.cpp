@@ -110,7 +110,8 @@ TEST(CheckPlan, SummarisesWhatNoPoseIdentifies) {
   EXPECT_THAT(plan.not_seen, testing::IsSupersetOf({"z0", "th"}));
   for (const Shown& one : plan.shows) EXPECT_LT(one.tool_um, 1000) << one.quantity.name;
   const std::string text = check_plan_text(plan, 2);
-  EXPECT_THAT(text, testing::HasSubstr("not identifiable (no motion of the tool point"));
+  EXPECT_THAT(text, testing::HasSubstr(
+                        "the check cannot detect a change of these parameters (no motion of the tool point"));
   EXPECT_THAT(text, testing::HasSubstr("z0"));
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 16);
 }

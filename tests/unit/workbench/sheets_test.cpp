@@ -50,7 +50,8 @@ TEST(Sheets, APreviewIsWhatTheImportDoes) {
   EXPECT_EQ(preview["columns"][1]["use"], "deviation");
   EXPECT_NE(preview["csv"].dump().find("99.9975"), std::string::npos) << preview["csv"];
   const auto open = sheet_preview("Pos;Anzeige\n0,0;1,5\n10,0;2,5\n", "dial.csv", {});
-  EXPECT_NE(open["message"].get<std::string>().find("nothing measured"), std::string::npos);
+  EXPECT_NE(open["message"].get<std::string>().find("no column of the table is a reading"),
+            std::string::npos);
   SheetWords words;
   words.columns = {"X[mm]=1"};
   words.deviations = {"X[um]=2"};

@@ -48,8 +48,9 @@ void trust_board(registry::FleetMachine& machine) {
         "--trust reads name and key from the board: give the address of the board with --url");
   upload::Client board(upload::open_transport(upload::parse_url(machine.url)));
   if (board.info().board.empty())
-    throw text::LimitNotMet(machine.url +
-                            ": this board has no name (set name in its board file): no entry was made");
+    throw text::LimitNotMet(
+        machine.url +
+        ": this board has no name, and the registry was not changed; set name in the board file");
   machine.board = board.info().board;
   const auto key = board.proved_key();
   machine.board_key = key ? upload::board_key_text(*key) : "";
@@ -78,7 +79,8 @@ void enter_board(const AddArguments& arguments, registry::FleetMachine& machine)
 void refuse_known_key(const registry::FleetMachine& machine, const std::vector<registry::FleetMachine>& all) {
   for (const registry::FleetMachine& other : all)
     if (!machine.board_key.empty() && other.name != machine.name && other.board_key == machine.board_key)
-      throw text::LimitNotMet("this is the board of " + other.name + ", by its key: no entry was made");
+      throw text::LimitNotMet("this board has the key of the machine " + other.name +
+                              ": one board cannot belong to two machines, and the registry was not changed");
 }
 
 void run_add(const AddArguments& arguments) {

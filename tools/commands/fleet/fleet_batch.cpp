@@ -70,7 +70,8 @@ std::vector<std::string> command_of(const CLI::App& vernier, const BatchArgument
                              "remove this option: the batch stores the result of each machine by itself");
   if (std::none_of(words.begin(), words.end(),
                    [](const std::string& word) { return word.find("{machine}") != std::string::npos; }))
-    throw text::InputError("no {machine} in the command, so the command would be the same for each machine");
+    throw text::InputError(
+        "the command does not contain {machine}, so it would be the same for each machine");
   if (command.get_option_no_throw("--json") != nullptr) words.insert(words.end(), {"--json", "-"});
   return words;
 }
@@ -133,7 +134,8 @@ void run_batch(const CLI::App& vernier, const BatchArguments& arguments) {
   for (const std::string& machine : batch.machines) registry.machine(machine);
   if (batch.machines.empty())
     for (const registry::FleetMachine& machine : registry.machines()) batch.machines.push_back(machine.name);
-  if (batch.machines.empty()) throw text::InputError("no machine in " + registry.database().name());
+  if (batch.machines.empty())
+    throw text::InputError("the registry has no machine: " + registry.database().name());
   const std::string folder = arguments.folder.empty() ? arguments.name : arguments.folder;
   const bool slurm = arguments.scheduler == "slurm";
   const std::string script = slurm ? slurm_script(batch, folder) : parallel_script(batch);

@@ -63,7 +63,7 @@ std::vector<fleet::RolloutMachine> machines_of(const RolloutArguments& arguments
         names.push_back(one.name);
   if (names.empty())
     throw text::InputError({}, arguments.images,
-                           "no machine that has a board has a correction image in these directories");
+                           "these directories contain no correction image of a machine that has a board");
   const std::vector<std::size_t> ends = fleet::stage_ends(arguments.stages, names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     const registry::FleetMachine one = registry.machine(names[i]);
@@ -105,8 +105,9 @@ text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet
   const auto total = static_cast<double>(states.size());
   const auto kept =
       std::count_if(states.begin(), states.end(), [](const auto& s) { return s.state == "kept"; });
-  assurance.at_least("kept", static_cast<double>(kept), total,
-                     fmt::format("{} of {} machines keep their image", kept, states.size()));
+  assurance.at_least(
+      "kept", static_cast<double>(kept), total,
+      fmt::format("{} of {} machines confirmed their correction image after its trial", kept, states.size()));
   assurance.at_least(
       "in-effect", static_cast<double>(end->in_effect.size()), total,
       fmt::format("{} of {} boards answered at the end of the call as the board of their machine, "
@@ -117,7 +118,7 @@ text::Assurance vouch(const RolloutArguments& arguments, const std::vector<fleet
       end->stood.empty() ? "the rollout reached its last stage" : "the rollout has stopped: " + end->stood);
   for (const std::string& note : end->notes) assurance.not_covered(note);
   if (arguments.options.judge.empty())
-    assurance.not_covered("whether the machines are more accurate: no --judge was given");
+    assurance.not_covered("whether the machines are more accurate, because the option --judge is missing");
   assurance.not_covered("The command did not observe the boards after the end of this call");
   return assurance;
 }
@@ -183,8 +184,8 @@ void run_or_stand(const RolloutArguments& arguments) {
     run_rollout(arguments);
   } catch (const registry::DatabaseError& error) {
     throw text::LimitNotMet(std::string("the registry failed: ") + error.what() +
-                            ": the rollout has stopped; a board reverts an image on trial by itself; call "
-                            "again when the registry is available");
+                            ": the rollout has stopped; each board reverts its image on trial by itself; "
+                            "call the command again when the registry is available");
   }
 }
 

@@ -74,10 +74,10 @@ void add_services(CLI::App& fleet) {
   add_registry(*ingest, options->registry);
   ingest->add_option("--broker", options->broker.address, "tcp://HOST:1883 or ssl://HOST:8883")
       ->capture_default_str();
-  ingest->add_option("--user", options->broker.user, "at the broker");
+  ingest->add_option("--user", options->broker.user, "user name at the broker");
   ingest
       ->add_option("--authority", options->broker.authority,
-                   "file (PEM) of the authority that signs the broker")
+                   "file (PEM) with the certificate of the authority that signs the broker's certificate")
       ->type_name(kReads);
   ingest->add_option("--group", options->group, "Sparkplug group of the gateways")->capture_default_str();
   ingest

@@ -111,7 +111,9 @@ void add_trends(CLI::App& fleet) {
   command->add_option(
       "--since", alike->since,
       "start of the evaluated time (UTC): earlier readings are ignored; default: all readings");
-  command->add_option("--every", alike->alike.every_days, "days that count as one time")
+  command
+      ->add_option("--every", alike->alike.every_days,
+                   "number of days whose readings count as readings of one time")
       ->check(CLI::Range(0.001, 3660.0))
       ->capture_default_str();
   command

@@ -90,10 +90,10 @@ void run_check(const CheckArguments& arguments) {
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
   if (anew)
-    fmt::print(
-        out,
-        "note: the history file {} has checks of another fit or of an older version; a new history begins\n",
-        arguments.history);
+    fmt::print(out,
+               "note: the history file {} contains checks of another fit or of an older version, so this "
+               "check begins a new history\n",
+               arguments.history);
   fmt::print(out, "verdict: {}. {}\n", check::verdict_name(answer.verdict), answer.explanation);
   fmt::print(out, "evidence for a change: {:.3g} over {} check{}, alarm threshold {:g}\n", answer.evidence,
              history.checks.size(), history.checks.size() == 1 ? "" : "s", answer.alarm);

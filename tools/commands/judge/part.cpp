@@ -235,12 +235,14 @@ std::array<double, 4> read_gauge_block(const std::string& file) {
     if (!(quarter >= 0 && quarter <= 3) || quarter != std::floor(quarter))
       throw text::InputError(place, csv.rows[row][c], "C must be 0, 90, 180 or 270");
     auto& slot = found[static_cast<std::size_t>(quarter)];
-    if (slot) throw text::InputError(place, csv.rows[row][c], "this position occurs twice");
+    if (slot) throw text::InputError(place, csv.rows[row][c], "the file has two readings of this position");
     slot = *reading;
   }
   std::array<double, 4> y_mm{};
   for (std::size_t i = 0; i < 4; ++i) {
-    if (!found[i]) throw text::InputError({file, 0}, std::to_string(90 * i), "no reading at this C");
+    if (!found[i])
+      throw text::InputError({file, 0}, std::to_string(90 * i),
+                             "the file has no reading at this position of C");
     y_mm[i] = *found[i];
   }
   return y_mm;

@@ -261,7 +261,8 @@ void add_ballbar_trace_kind(CLI::App& kind) {
   kind.add_option("--rate", setup.sample_rate_hz, "Readings per second")
       ->capture_default_str()
       ->check(positive);
-  kind.add_option("--direction-0", arguments->direction_of_zero, "What Direction 0 means")
+  kind.add_option("--direction-0", arguments->direction_of_zero,
+                  "Direction of motion that the value Direction 0 of the file means")
       ->capture_default_str()
       ->check(CLI::IsMember({"ccw", "cw"}));
   kind.callback([arguments, &kind] {

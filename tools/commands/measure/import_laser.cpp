@@ -36,7 +36,9 @@ void run_laser(const LaserArguments& arguments) {
   fmt::print(out, "axis {}, {} targets, {} runs; targets taken as mm, deviations as µm\n", read.axis,
              read.targets, read.runs);
   if (read.left_out > 0)
-    fmt::print(out, "{} runs that contain only zeros fill a unidirectional test: omitted\n", read.left_out);
+    fmt::print(out,
+               "{} runs contain only zeros, because the test is unidirectional; these runs are omitted\n",
+               read.left_out);
   fmt::print(out, "{}: {} rows\n", arguments.output.csv_path, read.table.line.size());
 }
 

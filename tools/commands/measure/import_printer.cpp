@@ -52,7 +52,8 @@ void run_printer(PrinterArguments& arguments) {
                read.offset_mm[0], read.offset_mm[1]);
   if (read.not_probed > 0)
     fmt::print(out, "{} points of the height map have no reading and are omitted\n", read.not_probed);
-  if (read.left_out > 0) fmt::print(out, "{} touches that the printer discarded: omitted\n", read.left_out);
+  if (read.left_out > 0)
+    fmt::print(out, "{} touches that the printer discarded are omitted\n", read.left_out);
   fmt::print(out,
              "{}: {} rows. The machine file needs <artefact name=\"{}\" type=\"plane\"/> in <variables>.\n",
              arguments.output.csv_path, rows, arguments.options.artefact);
@@ -66,7 +67,8 @@ void add_printer_kind(CLI::App& kind) {
                   "printer.cfg with a saved mesh, klippy.log or console text, or heightmap.csv")
       ->type_name(kReads)
       ->required();
-  kind.add_option("--profile", arguments->options.profile, "name of the saved mesh; default: the only one");
+  kind.add_option("--profile", arguments->options.profile,
+                  "name of the saved mesh; default: the only mesh of the file");
   kind.add_option("--on", arguments->options.artefact, "name of the <artefact> of the bed")
       ->capture_default_str();
   kind.add_option("--offset", arguments->offset,

@@ -48,8 +48,9 @@ void run_lint(const LintArguments& arguments) {
     useless += file.usable ? 0 : 1;
   }
   if (useless > 0)
-    throw text::InputError(useless == 1 ? std::string("one file has errors and cannot be used")
-                                        : fmt::format("{} files cannot be used as they are", useless));
+    throw text::InputError(
+        useless == 1 ? std::string("one file has errors, and the commands cannot read it")
+                     : fmt::format("{} files have errors, and the commands cannot read them", useless));
 }
 
 }  // namespace

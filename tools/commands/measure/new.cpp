@@ -43,7 +43,7 @@ std::array<double, 3> point_of(const std::string& text, char separator, const st
 
 std::vector<create::DhRow> arm_of(const NewArguments& arguments) {
   if (!arguments.dh.empty() && !arguments.joints.empty())
-    throw text::InputError("the arm is given twice: --dh and --joint");
+    throw text::InputError("--dh and --joint both describe the arm: give only one of the two options");
   if (!arguments.dh.empty()) return create::parse_dh_table(text::read_file(arguments.dh), arguments.dh);
   std::vector<create::DhRow> rows;
   for (const std::string& words : arguments.joints) rows.push_back(create::parse_dh_row(words));
@@ -57,7 +57,7 @@ std::vector<create::PlannedAxis> axes_of(const NewArguments& arguments) {
 }
 
 create::MachinePlan plan_of_urdf(const NewArguments& arguments, const CLI::App& command) {
-  if (arguments.type != "robot") throw text::InputError("--urdf: only a robot has one");
+  if (arguments.type != "robot") throw text::InputError("--urdf: this option is only for the type robot");
   for (const char* option : {"--dh", "--joint", "--axis"})
     if (command.count(option) > 0)
       throw text::InputError(std::string(option) +
@@ -81,12 +81,14 @@ create::MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App&
   if (arguments.type == "robot") {
     for (const char* option : {"--tool-side", "--work-side", "--centre"})
       if (command.count(option) > 0)
-        throw text::InputError(std::string(option) + ": a robot's chain is its table (--dh, --joint)");
+        throw text::InputError(
+            std::string(option) +
+            ": this option is not for the type robot; --dh or --joint describes the chain of a robot");
     plan = create::plan_robot(std::move(axes), arm_of(arguments));
   } else {
     for (const char* option : {"--dh", "--joint"})
       if (command.count(option) > 0)
-        throw text::InputError(std::string(option) + ": only a robot has such a table");
+        throw text::InputError(std::string(option) + ": this option is only for the type robot");
     plan = create::plan_machine(arguments.type, std::move(axes), order("--tool-side", arguments.tool_side),
                                 order("--work-side", arguments.work_side));
   }

@@ -43,7 +43,7 @@ void register_ballbar_path(CLI::App& vernier) {
                    "plane of the circle; angles count from the first axis to the second axis")
       ->capture_default_str()
       ->check(CLI::IsMember({"XY", "YZ", "ZX"}));
-  command->add_option("--radius", path.radius_mm, "of the bar, mm")->capture_default_str();
+  command->add_option("--radius", path.radius_mm, "length of the ball bar, mm")->capture_default_str();
   command->add_option("--feed", path.feed_mm_min, "feed along the circle, mm/min")->required();
   command->add_option("--arc", arguments->arc, "FROM,TO of the arc that is analysed, deg; default 0,360")
       ->delimiter(',')
@@ -56,7 +56,8 @@ void register_ballbar_path(CLI::App& vernier) {
       ->add_option("--feed-in", path.feed_in_mm,
                    "radial distance from the circle at which the approach begins and the exit ends, mm")
       ->capture_default_str();
-  command->add_option("--pause", path.pause_s, "between the senses, s")->capture_default_str();
+  command->add_option("--pause", path.pause_s, "pause between the two directions of motion, s")
+      ->capture_default_str();
   command->add_option("--centre", arguments->centre, "X,Y,Z mm; default 0,0,0")->delimiter(',')->expected(3);
   command->add_option("--dialect", arguments->dialect, "iso, linuxcnc, urscript")
       ->capture_default_str()

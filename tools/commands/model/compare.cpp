@@ -99,7 +99,7 @@ void print_failure(std::FILE* out, const nlohmann::ordered_json& json) {
   if (findings.empty()) {
     fmt::print(out, "where the model fails: {} ({} patterns tested, chance of the strongest {:.2g})\n",
                chance < 1e-3 ? "the residual has structure, but no single column explains it"
-                             : "nothing beyond chance",
+                             : "the residual has no structure beyond chance",
                structure["tried"].get<std::size_t>(), chance);
   } else {
     fmt::print(
@@ -135,7 +135,7 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   if (const auto& tilt = json["tilt_deg"]; !tilt.is_null())
     fmt::print(out, "tool tilted by  {:.4g} deg on average by the modelled errors, {:.4g} deg at most\n",
                tilt["rms"].get<double>(), tilt["max"].get<double>());
-  fmt::print(out, "{} observations, {} of them check, {} rows excluded\n",
+  fmt::print(out, "{} readings, {} of them in check rows (held-out rows); {} rows excluded\n",
              json["n_obs"].get<std::size_t>() + json["n_check"].get<std::size_t>(),
              json["n_check"].get<std::size_t>(), json["n_excluded"].get<std::size_t>());
   print_stretches(out, json["stretches"]);
@@ -163,7 +163,8 @@ void print_groups(std::FILE* out, const nlohmann::ordered_json& groups) {
 void judge(std::FILE* out, const nlohmann::ordered_json& limit) {
   const auto& worst = limit["worst"];
   const std::string words = fmt::format(
-      "limit {} on the {}: {} of {} {} readings beyond it, the worst {:.4g} of {:.4g} {} ({}:{})",
+      "limit {} for the {}: {} of {} {} readings exceed the limit; the largest is {:.4g} with a limit of "
+      "{:.4g} {} ({}:{})",
       limit["limit"].get<std::string>(), limit["of"].get<std::string>(), limit["beyond"].get<std::size_t>(),
       limit["rows"].get<std::size_t>(), limit["role"].get<std::string>(), worst["value"].get<double>(),
       worst["limit"].get<double>(), limit["unit"].get<std::string>(), worst["file"].get<std::string>(),
@@ -186,10 +187,10 @@ void add_field(nlohmann::ordered_json& json, const model::Machine& machine) {
 /// Did it help?
 void run_before_after(const CompareArguments& arguments) {
   if (arguments.before.empty() || arguments.after.empty())
-    throw text::InputError("--before and --after belong together");
+    throw text::InputError("--before and --after must be given together");
   if (!arguments.measurements.empty())
     throw text::InputError("\"" + arguments.measurements.front() +
-                           "\": with --before and --after there are no other measurement files");
+                           "\": with --before and --after give no other measurement files");
   if (arguments.datum)
     throw text::InputError(
         "--datum is for the files MEAS; with --before and --after the command always fits the set-up of both "

@@ -44,7 +44,7 @@ void print_ladder(std::FILE* out, const diagnose::Diagnosis& d, const model::Mea
                step.effect.empty() ? "the model as given" : "+ " + step.said,
                results::error_or_dash(step.rms_um, step.rms_urad),
                results::error_or_dash(step.check_rms_um, step.check_rms_urad),
-               rises ? "  the check rows do not confirm this step" : "");
+               rises ? "  the check rows (held-out rows) do not confirm this step" : "");
     before = &step;
   }
   fmt::print(out, "  {:<56} {:>12}\n", "noise", results::error_or_dash(d.base.noise_um, fit::noise_urad(m)));
@@ -52,15 +52,15 @@ void print_ladder(std::FILE* out, const diagnose::Diagnosis& d, const model::Mea
 
 void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
   if (d.candidates.empty()) return;
-  fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n", "candidates, each alone", "score", "fit rows",
-             "check rows", "p");
+  fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n", "candidates, each as the only added effect", "score",
+             "fit rows", "check rows", "p");
   for (const diagnose::CandidateFinding& c : d.candidates) {
     fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.spoken,
                c.score, results::error_or_dash(c.rms_after_um, c.rms_after_urad),
                results::error_or_dash(c.check_rms_after_um, c.check_rms_after_urad), c.p_value);
     if (!c.why_not.empty()) fmt::print(out, "    not accepted: {}\n", c.why_not);
     if (!c.confounded_with.empty())
-      fmt::print(out, "    alike in these data: {}\n", fmt::join(c.confounded_with, ", "));
+      fmt::print(out, "    not distinguishable in these data: {}\n", fmt::join(c.confounded_with, ", "));
     if (!c.accepted) continue;
     fmt::print(out, "    {}; in the chain: {}\n", diagnose::said_of(c), c.candidate.label);
     for (const fit::ParameterEstimate& p : c.parameters)
@@ -72,7 +72,8 @@ void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
 /// The set of causes, if it has more than one: a single one is the explanation.
 void print_causes(std::FILE* out, const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.causes.size() < 2) return;
-  fmt::print(out, "causes that the data do not reject (level {:g}):\n", diagnose::kLevelOfCauses);
+  fmt::print(out, "causes that the data do not reject (significance level {:g}):\n",
+             diagnose::kLevelOfCauses);
   for (const diagnose::Cause& cause : diagnosis.causes)
     fmt::print(out, "  {:<60} evidence {:.1f}\n", cause.description, cause.evidence);
   fmt::print(out, "\n");

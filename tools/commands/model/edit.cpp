@@ -74,7 +74,7 @@ void register_exclude(CLI::App& vernier) {
       ->required();
   command
       ->add_option("-o,--output", arguments->output,
-                   "name of the new measurement file (may be the name of the input file)")
+                   "name of the new measurement file; it may be the name of the input file")
       ->type_name(kWrites);
   command->add_option(
       "--lines", arguments->lines,

@@ -88,7 +88,8 @@ void run_add(const AddArguments& arguments) {
   for (const effects::CandidateTerm& term : candidate.terms)
     fmt::print(out, "  {} of transform {}: + {}\n", effects::dof_name(machine, term.place),
                effects::transform_at(machine, term.place).n, term.text);
-  fmt::print(out, "not fitted yet: vernier fit {} MEAS -o FITTED\n", arguments.output);
+  fmt::print(out, "the coefficients of the effect are not fitted yet; next: vernier fit {} MEAS -o FITTED\n",
+             arguments.output);
 }
 
 }  // namespace
@@ -96,7 +97,7 @@ void run_add(const AddArguments& arguments) {
 void register_effects(CLI::App& vernier) {
   auto arguments = std::make_shared<EffectsArguments>();
   CLI::App* command = vernier.add_subcommand("effects", "Print the catalogue of effects");
-  command->add_option("ID", arguments->id, "one effect, with its forms");
+  command->add_option("ID", arguments->id, "id of an effect: print only this effect, with its forms");
   command->add_option("--effects", arguments->files, "files with effects of your own; may be repeated")
       ->type_name(kReads);
   command->add_option("--json", arguments->json, "result for programs; - for standard output");
@@ -110,7 +111,7 @@ void register_add(CLI::App& vernier) {
   CLI::App* command = vernier.add_subcommand("add", "Add an effect to the chain of a machine file");
   command
       ->add_option("EFFECT", arguments->effect,
-                   "what to add: the `add` string of a candidate, or ID:axis=X,...")
+                   "effect to add: the `add` string of a candidate, or ID:axis=X,...")
       ->required();
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
   command->add_option("-o,--output", arguments->output, "the new machine file")

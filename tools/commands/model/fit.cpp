@@ -48,8 +48,8 @@ void print_decisions(std::FILE* out, const fit::FitResult& result) {
 void print_stages(std::FILE* out, const fit::FitResult& result) {
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
     const fit::StageFigures& stage = result.stages[i];
-    fmt::print(out, "stage {}: {} parameters ({}), {} iterations: fit rows {}, check rows {}\n", i + 1,
-               stage.parameters, stage.patterns, stage.iterations,
+    fmt::print(out, "stage {}: {} parameters ({}), {} iterations: rms of fit rows {}, rms of check rows {}\n",
+               i + 1, stage.parameters, stage.patterns, stage.iterations,
                results::number_or_dash(stage.fit.rms_um, "um"),
                results::number_or_dash(stage.check.rms_um, "um"));
   }
@@ -87,7 +87,9 @@ void print_things(std::FILE* out, const fit::FitResult& result) {
 /// What later commands will repeat.
 void print_findings(std::FILE* out, const fit::FitResult& result) {
   if (result.normalised_check)
-    fmt::print(out, "check rows over the uncertainty of reading and model: rms {:.3f}, {:.1f} % within 3\n",
+    fmt::print(out,
+               "residuals of the check rows divided by the standard uncertainty of reading and model: rms "
+               "{:.3f}, {:.1f} % within 3\n",
                result.normalised_check->rms, 100 * result.normalised_check->within_3);
   for (const model::FitRecord::Finding& one : result.machine.fitted->findings)
     fmt::print(out, "found: {} ({})\n", one.text, one.code);
@@ -143,8 +145,8 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
   constexpr double kWild = 20;  // as the rule `outlier` of tools/docs/safety.md, which looks at the fit rows
   if (result.worst_check.ratio > kWild)
     fmt::print(out,
-               "check reading {} differs by {:.3g} standard deviations: examine it before you trust the "
-               "check rows\n",
+               "the reading {} of the check rows differs by {:.3g} standard deviations: examine this reading "
+               "before you trust the check rows\n",
                result.worst_check.reading, result.worst_check.ratio);
 }
 

@@ -45,7 +45,7 @@ struct ModelStep {
 };
 
 bool agreed(const ImproveArguments& arguments, const diagnose::LadderStep& step, std::FILE* out) {
-  fmt::print(out, "+ {}: fit rows {}, check rows {}\n", step.said,
+  fmt::print(out, "+ {}: rms of fit rows {}, rms of check rows {}\n", step.said,
              results::error_or_dash(step.rms_um, step.rms_urad),
              results::error_or_dash(step.check_rms_um, step.check_rms_urad));
   if (arguments.yes) return true;
@@ -139,7 +139,7 @@ class Improver {
       const diagnose::LadderStep& given = d.ladder[0];
       take({"the given model after a fit", "", "", "", given.text, given.rms_um, given.check_rms_um,
             given.rms_urad, given.check_rms_urad});
-      fmt::print(out_, "the model as given, fitted: fit rows {}, check rows {}\n",
+      fmt::print(out_, "the given model after a fit: rms of fit rows {}, rms of check rows {}\n",
                  results::error_or_dash(given.rms_um, given.rms_urad),
                  results::error_or_dash(given.check_rms_um, given.check_rms_urad));
     }
@@ -236,8 +236,8 @@ class Improver {
       const auto error = [&](const std::string& key) {
         return results::error_or_dash(figure(key + "_um"), figure(key + "_urad"));
       };
-      fmt::print(out_, "1 kHz loop, {}: fit rows {} -> {}, check rows {} -> {}\n", model_step->label,
-                 error("rms_before"), error("rms_after"), error("check_rms_before"),
+      fmt::print(out_, "1 kHz loop, {}: rms of fit rows {} -> {}, rms of check rows {} -> {}\n",
+                 model_step->label, error("rms_before"), error("rms_after"), error("check_rms_before"),
                  error("check_rms_after"));
       json["simulation"] = r;
       if (model_steps_.size() == 1) break;

@@ -122,8 +122,8 @@ void run_touch_plan(const PlanArguments& arguments) {
   const plan::TouchPlan plan = plan::touch_plan(machine, arguments.artefact, options);
   if (arguments.accuracy_um > 0 && plan.after_um > arguments.accuracy_um)
     throw text::LimitNotMet(fmt::format(
-        "U95 of {:g} um cannot be reached: {} touches of {} give {:.3g} um, all considered touches give "
-        "{:.3g} um",
+        "U95 of {:g} um cannot be reached: {} touches of the artefact {} give {:.3g} um, and all considered "
+        "touches together give {:.3g} um",
         arguments.accuracy_um, plan.states.count, arguments.artefact, plan.after_um, plan.least_um));
   Json json = {{"machine", machine.name},
                {"artefact", arguments.artefact},
@@ -171,9 +171,10 @@ void run_first_plan(const PlanArguments& arguments) {
     json["rows"].push_back(std::move(one));
   }
   if (!plan.reached)
-    throw text::LimitNotMet(fmt::format(
-        "U95 of {:g} um cannot be reached: {} poses give {:.3g} um, all considered poses give {:.3g} um",
-        arguments.accuracy_um, count, plan.after_um, plan.least_um));
+    throw text::LimitNotMet(
+        fmt::format("U95 of {:g} um cannot be reached: {} poses give {:.3g} um, and all considered poses "
+                    "together give {:.3g} um",
+                    arguments.accuracy_um, count, plan.after_um, plan.least_um));
   if (!arguments.output.empty())
     text::write_file(arguments.output, plan::first_plan_csv(machine, plan, options.reading_um));
   if (!arguments.gcode.empty())

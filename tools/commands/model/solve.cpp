@@ -96,7 +96,7 @@ std::string failure_text(const model::Machine& machine, const kinematics::Invers
       fmt::format("residual {:.3g} mm, {:.3g} deg after {} iterations, condition {:.3g}", proof.residual_mm,
                   proof.residual_deg, proof.iterations, proof.condition);
   if (proof.fault == kinematics::InverseFault::kSingular)
-    return "no solution: the pose is singular, the axes cannot move the tool in every direction (" +
+    return "no solution: the pose is singular, so the axes cannot move the tool in every direction (" +
            residual + ")";
   if (proof.fault == kinematics::InverseFault::kBeyondRange)
     return "no solution: axis " + machine.axes[proof.axis].name + " would have to leave its range (" +

@@ -214,7 +214,7 @@ void register_import_tables(CLI::App& vernier) {
   parent->require_subcommand(1);
   auto screw = std::make_shared<ExchangeArguments>();
   CLI::App* linuxcnc = add_import(parent, "linuxcnc", "LinuxCNC screw compensation (COMP_FILE)", screw);
-  linuxcnc->add_option("--axis", screw->axis, "whose file it is")->required();
+  linuxcnc->add_option("--axis", screw->axis, "name of the axis to which the file belongs")->required();
   linuxcnc->add_option(
       "--reversal", screw->reversal,
       "constant (static) k of a term k*dir: import-tables sets this constant to half of the reversal");

@@ -109,7 +109,7 @@ nlohmann::ordered_json to_json(const compile::CompiledMachine& c, const model::M
 }
 
 void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const model::Machine& machine) {
-  fmt::print(out, "{}: {} operations a tick, {} tables, {} bytes of image, {} shares of effects\n",
+  fmt::print(out, "{}: {} operations a tick, {} tables, {} bytes of image, contributions of {} effects\n",
              machine.name, c.program.instructions.size(), c.program.tables.size(), c.image.size(),
              c.shares.shares.size());
   if (c.evaluations > 1)

@@ -16,7 +16,7 @@ constexpr double kRoundOff = 1e-15;
 
 void check_domain(Function f, const Interval& x) {
   if ((f == Function::kLog || f == Function::kSqrt) && x.low <= 0)
-    throw std::domain_error(std::string(name_of(f)) + " of a value that can reach zero or less");
+    throw std::domain_error(std::string(name_of(f)) + " of a value that can be zero or negative");
   if (f == Function::kReciprocal && x.contains(0))
     throw std::domain_error("division by a value that can reach zero");
   if (f == Function::kExp && x.high > 200) throw std::domain_error("exp of a value that can exceed 200");

@@ -14,8 +14,9 @@ namespace vernier::diagnose {
 struct ScannedCandidate {
   effects::Candidate candidate;
   std::vector<std::vector<double>> grid;  // one list of increasing values for each scanned unknown
-  bool may_lose_columns = false;          // for a piecewise linear basis: the free parameters of the model
-                                          // may absorb a part of its span
+  bool may_lose_columns = false;          // true: the scan removes the columns that the free parameters of
+                                          // the model also describe, and tests the candidate with its
+                                          // other columns (piecewise linear basis, several runs)
   FinePeriods fine;                       // for a cyclic error: the periods shorter than those of its grid
   double penalty = 0;      // penalty for a search before the scan: twice the logarithm of the number of
                            // tested sets

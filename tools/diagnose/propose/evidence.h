@@ -48,7 +48,7 @@ class Evidence {
   const model::Column& position(std::size_t axis) const { return position_[axis]; }
   const Eigen::VectorXd& weights() const { return weight_; }
   /// Returns the weighted residual (measured - model) / u of the fit observations, without the part that the
-  /// free parameters of the model can absorb.
+  /// free parameters of the model can explain.
   const Eigen::VectorXd& residual() const { return residual_; }
   /// Returns orthonormal columns that span the changes of the readings by the free parameters of the model.
   const Eigen::MatrixXd& absorbed() const { return absorbed_; }
@@ -72,8 +72,9 @@ class Evidence {
   /// orthonormal columns `fitted`.
   double shared_pose_error(const Eigen::VectorXd& residual, const Eigen::MatrixXd& fitted) const;
   /// Assumes from this call on that the readings at one pose have a common error. The variance of this common
-  /// error is `share` times the independent variance of the readings (generalised least squares). weigh_poses
-  /// weights the residual, the columns and the part that the model absorbs.
+  /// error is `share` times the independent variance of the readings (generalised least squares). The
+  /// function weigh_poses weights the residual, the columns and the part that the free parameters of the
+  /// model explain.
   void weigh_poses(double share);
   /// True if u is given and few poses are visited twice. If few poses are visited twice, the noise model
   /// describes the common error of the readings of a dwell (NoiseModel::pose), even if u includes this error.
@@ -141,7 +142,8 @@ class Evidence {
   /// Replaces the recorded positions of touch rows by positions on the touched objects, because recorded
   /// positions contain the error of the touch.
   void take_touched_positions();
-  /// Builds the columns of the unknown values of touched objects; the model absorbs these columns.
+  /// Builds the columns of the unknown values of touched objects. These columns belong to the free parameters
+  /// of the model.
   void take_things(const model::HeldLinearisation& held);
   void find_reach(const Eigen::VectorXd& predicted);
   void absorb();

@@ -11,8 +11,7 @@ namespace vernier::diagnose {
 
 /// Periods of an axis that are shorter than the periods of the search grid. The number of short periods is
 /// too large for a projection of each period. A cyclic error with a short period is nearly orthogonal to the
-/// part of the readings that the model absorbs. Because a cyclic error with a short period is nearly
-/// orthogonal to what the model absorbs, a periodogram shows the possible short periods.
+/// columns of the model's free parameters. Therefore a periodogram shows the possible short periods.
 struct FinePeriods {
   std::size_t axis = 0;
   double slowest = 0, fastest = 0;  // search range of frequencies, periods per unit of the axis; fastest = 0:

@@ -21,8 +21,8 @@ class Pool {
  public:
   struct Item {
     Scored scored;
-    Eigen::MatrixXd columns;        // columns after projection on the orthogonal complement of the part that
-                                    // the model absorbs
+    Eigen::MatrixXd columns;        // columns after projection on the orthogonal complement of the columns of
+                                    // the model's free parameters
     std::vector<std::size_t> kept;  // index of the linear unknown of each column
     bool banned = false;            // the candidate failed an acceptance test
     std::string why_not;

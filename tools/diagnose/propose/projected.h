@@ -9,21 +9,22 @@
 
 namespace vernier::diagnose {
 
-/// Whitened columns of a candidate at one point of its search grid, without the part that the model absorbs.
+/// Whitened columns of a candidate at one point of its search grid, without the part that the free parameters
+/// of the model explain.
 struct ProjectedPoint {
   std::vector<double> scanned;
   Eigen::MatrixXd columns;
   Eigen::RowVectorXd norms;  // norm of each column before the projection
 };
 
-/// Whitened sines and cosines of a cyclic error at successive frequencies, without the part that the model
-/// absorbs. The frequency k has the columns 2k and 2k + 1.
+/// Whitened sines and cosines of a cyclic error at successive frequencies, without the part that the free
+/// parameters of the model explain. The frequency k has the columns 2k and 2k + 1.
 struct ProjectedWaves {
   Eigen::MatrixXd columns;
   Eigen::RowVectorXd squares;  // sum of squares of each column before the projection
 };
 
-/// Stores the projected columns of candidates between two scans. A search scans the same candidates beside
+/// Stores the projected columns of candidates between two scans. A search scans the same candidates again for
 /// each set of accepted effects. Only the projection on the complement of the accepted effects is computed
 /// again. The columns of long records exceed the memory limit and are computed again for each scan.
 class ProjectedColumns {

@@ -12,8 +12,8 @@ namespace vernier::diagnose {
 /// of one transform, as a constant and in proportion to the position of the structure's axis. Forward,
 /// backward and exchange steps on the extended BIC select the summands of a response (thermal transfer
 /// functions, as Horejs and Mayr use them). `effects`: the catalogue of effects; the result is empty if no
-/// effect of the catalogue has found terms. `beside`: orthonormal columns of effects that are in the model,
-/// so that the response does not explain them.
+/// effect of the catalogue has found terms. `beside`: orthonormal columns of the effects that are already in
+/// the model. The response does not explain the part of the readings along these columns.
 std::vector<ScannedCandidate> enumerate_responses(const Evidence& evidence,
                                                   const std::vector<effects::Effect>& effects,
                                                   const Eigen::MatrixXd& beside);

@@ -17,7 +17,8 @@ struct Scored {
   std::size_t candidate = 0;    // index of the candidate in the scanned list
   std::vector<double> scanned;  // values of the candidate's scanned unknowns
   double gain = 0;              // decrease of chi^2
-  double own_share = 0;         // smallest share, over the candidate's columns, that the model cannot absorb
+  double own_share = 0;         // smallest fraction of a column of the candidate that the free parameters of
+                                // the model do not explain
   Eigen::Index unknowns = 0;    // number of coefficients and scanned values
 };
 
@@ -29,8 +30,8 @@ class Scanner {
   Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates);
 
   /// Returns the best values on the grid for every candidate that is visible in the data. The order is that
-  /// of the list, beginning at `first_candidate`. `progress`: receives the completed share of the scan (0 to
-  /// 1).
+  /// of the list, beginning at `first_candidate`. `progress`: receives the completed fraction of the scan (0
+  /// to 1).
   std::vector<Scored> scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
                            std::size_t first_candidate = 0);
 

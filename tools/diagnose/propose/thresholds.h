@@ -14,7 +14,7 @@ namespace vernier::diagnose {
 
 /// Thresholds for assumptions about the data, which apply before any candidate is tested.
 struct EvidenceThresholds {
-  /// Limit for the singular values of the scaled Jacobian, as a share of the largest singular value. A fit
+  /// Limit for the singular values of the scaled Jacobian, as a fraction of the largest singular value. A fit
   /// does not change the parameters along a direction whose singular value is below the limit. Parameter
   /// directions with a singular value below the limit are visible only through products of errors. Source:
   /// experiment with chains with station tables, whose singular values have a gap at the limit.
@@ -29,14 +29,15 @@ struct EvidenceThresholds {
   /// requires. With fewer than 10 degrees of freedom, the relative uncertainty of the variance exceeds 45 %
   /// (sqrt(2/10)).
   double pose_freedom = 10;
-  /// Tolerance for even steps of an axis, as a share of the smallest step. Steps are even if they are
-  /// multiples of the smallest step within this tolerance. The tolerance of 5 % represents the positioning
-  /// accuracy relative to the step of a measurement.
+  /// Tolerance for the intervals between the measured positions of an axis, as a fraction of the smallest
+  /// interval. The positions are even if all intervals are multiples of the smallest interval within this
+  /// tolerance. The tolerance of 5 % represents the positioning accuracy relative to the interval of a
+  /// measurement.
   double even_step = 0.05;
-  /// Smallest response of the readings to a motion at a location in the chain (axis and degree of freedom),
-  /// as a share of the largest response to motions of the same kind. A smaller response of the readings is
-  /// only rounding error. Example of a response that is only rounding error: a rotation about an axis through
-  /// the measured point.
+  /// Smallest response of the readings to a motion at a location in the chain (axis and degree of freedom).
+  /// The response is a fraction of the largest response to motions of the same kind. A smaller response of
+  /// the readings is only rounding error. Example of a response that is only rounding error: a rotation about
+  /// an axis through the measured point.
   double rounding = 1e-9;
 
   template <class Visit>
@@ -52,9 +53,10 @@ struct EvidenceThresholds {
 
 /// Thresholds for the candidate effects, and for the values over which their scanned unknowns are searched.
 struct CandidateThresholds {
-  /// Threshold for a location that can sag under gravity (17 degrees). The direction of a length must be
-  /// along gravity, or the axis of a rotation across gravity, by this share of a unit vector on average over
-  /// the rows. A table that is tilted by 15 degrees counts as level.
+  /// Threshold for a location that can sag under gravity (17 degrees). For a length, the component of its
+  /// direction along gravity must be at least this value. For a rotation, the component of its axis across
+  /// gravity must be at least this value. Both are components of a unit vector, averaged over the rows. A
+  /// table that is tilted by 15 degrees counts as level.
   double sag_share = 0.3;
   /// Cosine of the angle between two joint axes above which the axes count as parallel: 2.6 degrees. Assembly
   /// errors of the joint axes are a tenth of this angle.
@@ -68,11 +70,11 @@ struct CandidateThresholds {
   /// hundredth of the squares differs between the moments of two masses, which is below the resolution of any
   /// survey.
   double same_moment = 0.995;
-  /// If the measured range is more than this share of the declared range of an axis, terms name the declared
-  /// range: "200" and not "199.3".
+  /// Fraction of the declared range of an axis that was measured. If more than this fraction was measured,
+  /// the terms of a candidate contain the declared range: "200" and not "199.3".
   double declared_range_share = 0.8;
-  /// Largest number of steps (jumps) between runs in one effect. More than four steps can follow any drift,
-  /// so that the diagnosis would report a false jump.
+  /// Largest number of jumps between runs in one effect. An effect with more than four jumps can describe any
+  /// drift, so that the diagnosis would report a false jump.
   std::size_t most_steps_of_runs = 4;
   /// A logged column is a clock or a counter if its correlation with the row number exceeds this value.
   double like_a_clock = 0.95;
@@ -97,28 +99,28 @@ struct CandidateThresholds {
                                    // refined
   /// Periods of the search grid: largest number of periods in the range (a periodogram searches shorter
   /// periods), and number of tested frequencies for each frequency that the range distinguishes.
-  /// `longest_period_share`: longest period of the search grid, as a share of the range. An error with a
-  /// longer period than this looks like a curve, not like a cyclic error.
+  /// `longest_period_share`: longest period of the search grid, as a fraction of the range. An error with a
+  /// longer period looks like a curve, not like a cyclic error.
   double most_periods = 100, periods_per_range = 2.5, longest_period_share = 0.4;
-  /// Longest searched period for a linear axis that was read at even positions only, as a share of the range.
-  /// At even positions a short period looks like a long period (aliasing). Six tenths of a period in the
-  /// range are not yet a parabola.
+  /// Longest searched period for a linear axis that was read only at positions with equal intervals, as a
+  /// fraction of the range. At equal intervals a short period looks like a long period (aliasing). Six tenths
+  /// of a period in the range are not yet a parabola.
   double longest_aliased_share = 1.6;
   /// Integer fractions of one revolution that are always tested as periods: errors of gears and bearings up
   /// to the twelfth order.
   std::size_t harmonics_of_turn = 12;
-  /// Share of a known period that an axis must travel to show a cyclic error with this period. If an axis
-  /// travels less than this share of the period, the cyclic error looks like a curve.
+  /// Fraction of a known period that an axis must travel to show a cyclic error with this period. If an axis
+  /// travels less than this fraction of the period, the cyclic error looks like a curve.
   double least_of_a_period = 0.75;
-  /// Share of one revolution that a rotary axis must travel to show a cyclic error with one period per
+  /// Fraction of one revolution that a rotary axis must travel to show a cyclic error with one period per
   /// revolution, the most frequent period.
   double least_of_a_turn = 0.5;
-  /// An approach direction of an axis has its own grid of positions above two limits: a number of positions,
-  /// and a share of the rows.
+  /// An approach direction of an axis has its own grid of positions if two limits are exceeded:
+  /// `comb_positions`, a number of positions, and `comb_share`, a fraction of the rows.
   std::size_t comb_positions = 6;
   double comb_share = 0.25;
-  /// Number of steps in the shortest period: two by the sampling theorem, plus a twentieth for steps that are
-  /// not quite even.
+  /// Shortest searched period, in intervals between the measured positions: two intervals by the sampling
+  /// theorem, plus a twentieth for intervals that are not quite equal.
   double steps_per_period = 2.1;
   /// Limit for 1 - cosine of the influences of two locations on all readings. If 1 - cosine is below the
   /// limit, the influences of both locations are equal. The value is sqrt of the rounding error, with three
@@ -179,11 +181,11 @@ struct FinePeriodThresholds {
   /// Number of peaks of the periodogram that are evaluated in full for each location. The slowest of the
   /// peaks that fit nearly as well is evaluated too.
   std::size_t peaks = 3;
-  /// Limits for the power of the spectral window of the positions, as a share of its largest power. Periods
-  /// are aliases of each other above the limit. `alias_near` is the limit for a possible alias. `alias_same`
-  /// is the limit for the decision.
+  /// Limits for the power of the spectral window of the positions, as a fraction of its largest power. Two
+  /// periods are aliases of each other if this power is above the limit. `alias_near` is the limit for a
+  /// possible alias. `alias_same` is the limit for the decision.
   double alias_near = 0.8, alias_same = 0.9999;
-  /// Limit for the power of the spectral window of the positions, as a share of its largest power. If the
+  /// Limit for the power of the spectral window of the positions, as a fraction of its largest power. If the
   /// power of the spectral window exceeds the limit, two periods are compared in full, to test whether the
   /// readings distinguish them.
   double alias_partly = 0.9;
@@ -193,8 +195,9 @@ struct FinePeriodThresholds {
   /// highest peak may be an alias of the slower peak. Source of the value 10: "very strong" evidence by Kass
   /// and Raftery 1995.
   double nearly_as_well = 10;
-  /// Difference of chi^2 that distinguishes two periods that are evaluated in full. The threshold for periods
-  /// equals the required distance of alternatives.
+  /// Smallest difference of chi^2 at which the readings distinguish two periods, if both periods are
+  /// evaluated in full. The value is the same as `distance`, the required difference of the BIC between a
+  /// cause and an alternative cause.
   double told_apart = 6;
 
   template <class Visit>
@@ -214,13 +217,13 @@ struct FinePeriodThresholds {
 
 /// Thresholds for the columns of candidates, and the penalties of candidates.
 struct PoolThresholds {
-  /// Smallest share of a column's length that must remain after projection on the orthogonal complement of
+  /// Smallest fraction of a column's length that must remain after projection on the orthogonal complement of
   /// the model's free parameters. Below `least_own` a column is not visible in the data. Below
   /// `least_independent` a column of a piecewise linear basis repeats the other columns. A thousandth of an
   /// effect of 100 um is as small as the noise of a laser interferometer.
   double least_own = 1e-3, least_independent = 1e-3;
-  /// Smallest share of a column's square that must remain after projection on the orthogonal complement of
-  /// the columns of a set. A column with a smaller share is a copy of the set.
+  /// Smallest fraction of a column's squared length that must remain after projection on the orthogonal
+  /// complement of the columns of a set. A column with a smaller fraction is a linear combination of the set.
   double least_pivot = 1e-5;
   /// Preference for the form nearest to the axis if several forms fit equally well. The preference is a
   /// difference of the BIC, far below any evidence.
@@ -237,19 +240,19 @@ struct PoolThresholds {
   /// Change of the BIC above which a candidate's scanned values are refined before the candidate is added to
   /// the pool. A candidate with a smaller change of the BIC never becomes significant.
   double refined_above = -20;
-  /// Share of chi^2 per degree of freedom that counts as noise when candidates are ranked. The other half of
-  /// chi^2 is attributed to an effect.
+  /// Fraction of chi^2 per degree of freedom that counts as noise when candidates are ranked. The other half
+  /// of chi^2 is attributed to an effect.
   double noise_share = 0.5;
   /// Two periods at one location are different candidates if they differ by more than one part in
   /// `periods_per_e` (here one eighth).
   double periods_per_e = 8;
-  /// `held_share`: a candidate is contained in a set of columns even if this share of its squares is outside
-  /// the span of the set. `same_share`: two candidates are equal if at most this share of their squares
-  /// differs.
+  /// `held_share`: fraction of a candidate's sum of squares that may be outside the span of a set of columns,
+  /// if the set contains the candidate. `same_share`: two candidates are equal if at most this fraction of
+  /// their sums of squares differs.
   double held_share = 0.02, same_share = 1e-3;
-  /// For rows without a standard uncertainty u, where any remaining structure counts as noise: the simpler
-  /// form is the cause if it achieves more than this share of the decrease of chi^2 by the richer form. If
-  /// the simpler form achieves this share, the remaining residual has another cause.
+  /// For rows without a standard uncertainty u, where any remaining structure counts as noise. The simpler
+  /// form is the cause if its decrease of chi^2 is more than this fraction of the decrease by the richer
+  /// form. Then the remaining residual has another cause.
   double simple_share = 0.9;
 
   template <class Visit>
@@ -282,53 +285,55 @@ struct AcceptanceThresholds {
   /// estimate of the distance is below the limit is fitted in full. The full fit decides whether the distance
   /// of an alternative is below `distance`.
   double distance_of_fits = 12;
-  /// Required advantage in the BIC of a named cause over an error of the instrument alone. Kass and Raftery
-  /// 1995: a difference of 10 in the BIC is very strong evidence.
+  /// Required difference of the BIC between a named cause and an error of the instrument alone; the named
+  /// cause must have the lower BIC. Kass and Raftery 1995: a difference of 10 in the BIC is very strong
+  /// evidence.
   double instrument_distance = 10;
   /// Smallest share of an effect's motion that must change from row to row. Below this share the effect is as
   /// slow as a drift of the instrument (von Neumann 1941: the share is 1 for random rows). Source:
-  /// experiment. In a survey with rows in random order, temperatures have shares of 0.01 to 0.1; temperatures
-  /// multiplied by an axis position have 0.3 to 1.
+  /// experiment. In a survey with rows in random order, the share that changes from row to row is 0.01 to 0.1
+  /// for a temperature. For a temperature multiplied by an axis position this share is 0.3 to 1.
   double slow_share = 0.15;
-  /// Share of the decrease of chi^2 on the fit rows that an effect must reach on held-out runs. An effect
+  /// Required decrease of chi^2 on held-out runs, as a fraction of the decrease on the fit rows. An effect
   /// that was fitted to noise does not reduce chi^2 of held-out runs. A true effect reduces chi^2 of held-out
   /// runs nearly as much as chi^2 of the fit rows.
   double held_out_share = 0.2;
-  /// `stable_runs`: share of the held-out runs in which the contribution of an effect must keep its
+  /// `stable_runs`: fraction of the held-out runs in which the contribution of an effect must keep its
   /// direction. `stable_cosine`: the required cosine (60 degrees).
   double stable_runs = 0.75, stable_cosine = 0.5;
-  /// Limit for the share of an effect that is in one block. If more than the limit of an effect is in one
-  /// block, the other blocks cannot confirm the effect.
+  /// Limit for the fraction of an effect's sum of squares that is in one block of rows. If this fraction
+  /// exceeds the limit, the other blocks cannot confirm the effect.
   double in_one_block = 0.8;
   /// `blocks_of_one_run`: number of blocks into which a single run is divided. `large_run`: a run with this
-  /// share of the rows is divided too. `parts_of_run`: an effect of runs is tested on this many parts of each
-  /// run.
+  /// fraction of the rows is divided too. `parts_of_run`: an effect of runs is tested on this many parts of
+  /// each run.
   std::size_t blocks_of_one_run = 5;
   double large_run = 1.0 / 3;
   std::size_t parts_of_run = 4;
-  /// Share of the information about a direction in the parameters that the other blocks must contain to
-  /// determine this direction.
+  /// Fraction of the information about a parameter combination that the other blocks must contain to
+  /// determine this combination.
   double determined_share = 0.01;
-  /// Smallest distance between two levels: of the feed, as a share of the fastest feed; of a temperature, in
-  /// degC. If a quantity has more than `most_levels` levels, it is a sweep and is divided into
-  /// `parts_of_sweep` parts.
+  /// Smallest distance between two levels of a quantity. For the feed the distance is a fraction of the
+  /// fastest feed; for a temperature it is in degC. If a quantity has more than `most_levels` levels, it is a
+  /// sweep and is divided into `parts_of_sweep` parts.
   double same_feed = 0.05, least_warmth_degC = 1;
   std::size_t most_levels = 8, parts_of_sweep = 3;
-  /// Largest size of a term: as a share of the machine's reach for a length, or of the travel of the rotary
-  /// axis that drives the term for an angle. The larger of two limits applies: this share or the limit of the
-  /// catalogue, which is made for machine tools. Examples of larger terms are the eccentricity of a resolver
-  /// and the sag of a long arm. Joints of humanoid robots deflect by one degree in fifty degrees of travel.
+  /// Largest size of a term. The size of a length is a fraction of the machine's reach. The size of an angle
+  /// is a fraction of the travel of the rotary axis that drives the term. The larger of two limits applies:
+  /// this fraction or the limit of the catalogue, which is made for machine tools. Examples of larger terms
+  /// are the eccentricity of a resolver and the sag of a long arm. Joints of humanoid robots deflect by one
+  /// degree in fifty degrees of travel.
   double size_share = 0.02;
   /// For touch rows: largest change of a term that the touch error in its positions causes, divided by the
   /// touch error. The ratio of a term's change to the touch error is the slope of the term. Error terms of
   /// real machines have slopes below 0.01.
   double share_of_touch_error = 0.2;
-  /// A product of recorded quantities is rejected if fewer readings than `witnesses` support it, or if the
-  /// share `copy_of_failed` of its squares is in the span of failed effects.
+  /// A product of recorded quantities is rejected if fewer readings than `witnesses` support it. A product is
+  /// also rejected if the fraction `copy_of_failed` of its sum of squares is in the span of failed effects.
   double witnesses = 10, copy_of_failed = 0.9;
   /// Number of the best products of recorded quantities that the search multiplies by one more factor.
   std::size_t extended = 25;
-  /// Largest difference between two noise models that count as equal, as a share of the noise.
+  /// Largest difference between two noise models that count as equal, as a fraction of the noise.
   double same_noise = 0.1;
 
   template <class Visit>
@@ -359,20 +364,23 @@ struct AcceptanceThresholds {
   }
 };
 
-/// Minimum of the evidence from held-out rows, for one step of the stepwise model and for the whole result.
+/// Minimum of the evidence from held-out rows, for one step of the stepwise model (one added effect) and for
+/// the whole result.
 struct ProofThresholds {
-  /// Natural logarithm of 20. Of absent steps, at most one in twenty reaches an e-value of 20, independent of
-  /// all earlier tests (Ville's inequality).
+  /// Natural logarithm of the required e-value, which is 20. If the effect of a step is absent, the e-value
+  /// reaches 20 in at most one case in twenty. This rate is independent of all earlier tests (Ville's
+  /// inequality).
   double evidence = 2.996;
-  /// Limit for the expected evidence of a step. If the expected evidence is below the limit, the held-out
-  /// rows give no information about the step. With an expected evidence of only 2, a true step is rejected by
-  /// chance one time in six.
+  /// Limit for the expected evidence of a step of the stepwise model. If the expected evidence is below the
+  /// limit, the held-out rows give no information about the step. With an expected evidence of only 2, a true
+  /// effect is rejected by chance one time in six.
   double least_expected = 2;
-  /// Evidence against a step with small expected evidence at which the step counts as wrong. Then chi^2 of
+  /// Limit of the evidence against a step of the stepwise model, for a step whose expected evidence is small.
+  /// If the evidence against this step reaches the limit, the step counts as wrong. At the limit, chi^2 of
   /// the check rows increases by 1, and their standard deviation by the factor 1/(2 n) for n rows.
   double worse = 0.5;
-  /// Number of standard deviations below the mean of the evidence; one true step in a hundred has still less
-  /// evidence.
+  /// Number of standard deviations by which the required evidence may be below the mean of the evidence. One
+  /// true effect in a hundred has still less evidence.
   double chance_sigmas = 2.33;
   /// Limit for the mean square of the check rows divided by its expected value (uncertainty of reading and
   /// model). A result is not confirmed on held-out rows if the mean square ratio exceeds 1 by more than the
@@ -398,8 +406,8 @@ struct VerdictThresholds {
   double noise_sigmas = 4, hit_sigmas = 2;
   std::size_t few_effects = 2;
   /// Significance level of the tests for structure in the residual, corrected for the number of tests. The
-  /// runs test for excluded rows uses the same level. Excluded rows that follow each other are a step, not
-  /// outliers.
+  /// runs test for excluded rows uses the same level. Excluded rows that follow each other are a step of the
+  /// instrument, not outliers.
   double structure = 1e-4;
   /// Limit for chi^2 per degree of freedom up to which the stated uncertainty u may be too small (by a factor
   /// of 1.4). If chi^2 per degree of freedom exceeds this limit and the noise has a drift, an accepted effect
@@ -409,16 +417,16 @@ struct VerdictThresholds {
   /// Limit for chi^2 per degree of freedom above which a too small stated uncertainty is not the cause. A
   /// stated uncertainty is not too small by a factor of three.
   double implausible_uncertainty = 9;
-  /// For rows without a standard uncertainty u: share of chi^2 that an accepted stepwise model must explain
-  /// for a named cause.
+  /// For rows without a standard uncertainty u: fraction of chi^2 that an accepted stepwise model must
+  /// explain for a named cause.
   double mostly_explained = 0.5;
   /// For rows without a standard uncertainty u: factor by which chi^2 must increase if the named effect is
   /// removed. With an increase of chi^2 by the factor, the named effect is larger than the remaining
   /// residual.
   double larger_than_rest = 2;
-  /// For rows without a standard uncertainty u: share of the mean square of the check rows that confirmed
-  /// steps must remove. The limit applies to a named cause whose remaining residual is not noise. The
-  /// remaining residual then has a second, small cause.
+  /// For rows without a standard uncertainty u: fraction of the mean square of the check rows that the
+  /// confirmed effects must remove. The limit applies to a named cause whose remaining residual is not noise.
+  /// The remaining residual then has a second, small cause.
   double explained_on_check = 0.95;
   /// Number of degrees of freedom above which a noise that is larger than the stated uncertainty is accepted.
   /// Source: experiment with errors outside the catalogue. With one reading per row, 160 rows do not show the
@@ -436,8 +444,8 @@ struct VerdictThresholds {
   /// Number of standard deviations beyond which a reading is an outlier if the rows have no u. The limit is
   /// larger because an effect that was not found has long tails.
   double outlier_spreads_without_u = 8;
-  /// Largest share of the rows that may be outliers if outliers are the whole cause, and if outliers are
-  /// excluded beside an effect.
+  /// Largest fraction of the rows that may be outliers. `outliers_alone`: if outliers are the whole cause.
+  /// `outliers_beside`: if an effect is accepted in addition to the excluded outliers.
   double outliers_alone = 0.05, outliers_beside = 0.15;
 
   template <class Visit>
@@ -471,31 +479,33 @@ struct ShapeThresholds {
   /// Largest and smallest number of half-waves in a smooth curve. An eighth of the range is the shortest
   /// half-wave that a table of 17 stations can correct.
   std::size_t most_half_waves = 8, fewest_half_waves = 3;
-  /// Largest permitted share of the short half-waves in the decrease of chi^2 by all half-waves.
+  /// Largest permitted decrease of chi^2 by the short half-waves, as a fraction of the decrease by all
+  /// half-waves.
   double fast_share = 0.15;
   /// Number of coefficients above which a function of an axis counts as a curve.
   double curve = 3;
   /// Number of independent functions of the axis that the readings must show: for each unknown of a curve,
   /// and for each unknown of a cyclic error (whose period is one of many tested periods).
   double seen_per_unknown = 1.5, seen_per_period = 2;
-  /// Positions with a distance below this share of the range count as one position.
+  /// Positions with a distance below this fraction of the range count as one position.
   double apart = 1.0 / 64;
-  /// Smallest share of a column that must remain beside the other columns. A column with a smaller share is
-  /// not independent.
+  /// Smallest fraction of a column's length that must remain after projection on the orthogonal complement of
+  /// the other columns. A column with a smaller fraction is not independent.
   double own = 1e-3;
   /// Number of positions along the axis at which the test assumes a jump.
   std::size_t places_of_jump = 64;
   /// Largest numbers of functions that count as separate causes. More functions are likely pieces of one
-  /// function. In order, the numbers are for: effects of one axis; effects of the position if rows have one
-  /// reading; effects beside a curve.
+  /// function. `most_of_one_axis`: largest number of functions of one axis. `most_of_one_reading`: largest
+  /// number of functions of position, if all readings are of one kind. `most_beside_a_curve`: the same if one
+  /// of the functions is a curve.
   std::size_t most_of_one_axis = 2, most_of_one_reading = 3, most_beside_a_curve = 2;
   /// `periods_of_a_wave`: number of periods in the range above which a cyclic error is a separate cause (a
   /// worm or its gear) and not a piece of a function. `most_waves`: largest number of cyclic errors that are
   /// separate causes.
   double periods_of_a_wave = 2;
   std::size_t most_waves = 3;
-  /// Tolerance for harmonics: difference of a ratio of two periods from an integer, as a share of the longer
-  /// period.
+  /// Tolerance for harmonics: difference of a ratio of two periods from an integer, as a fraction of the
+  /// longer period.
   double harmonic = 0.03;
   /// Cosine above which two locations in the chain count as moving the readings in the same way.
   double moves_alike = 0.9;

@@ -205,9 +205,10 @@ Increments increments_of(ControllerTable& table, double unit_mm, double referenc
     table.forward = table.reverse = values;
     return result;
   }
-  throw text::LimitNotMet(fmt::format(
-      "{}: the correction changes by more than {} um in {} mm, the limit of one value; use a smaller --step",
-      kLetters[table.input], kMostIncrement * kMostMagnification * unit_mm * 1000, table.step));
+  throw text::LimitNotMet(
+      fmt::format("{}: the correction changes by more than {} um in {} mm: one value of the controller "
+                  "cannot be larger; use a smaller --step",
+                  kLetters[table.input], kMostIncrement * kMostMagnification * unit_mm * 1000, table.step));
 }
 
 std::vector<ConfigurationFile> fanuc(const ControllerSetting& setting, const std::string& name,

@@ -10,7 +10,7 @@
 namespace vernier::fit {
 
 /// The weighted readings x, y, z, d of the fit rows, each along one direction. The part of the readings that
-/// a free set-up of each instrument absorbs is removed by projection. The projected readings are used to
+/// a free set-up of each instrument explains is removed by projection. The projected readings are used to
 /// compare two explanations of the same readings. Touch rows (`same`, `on`) are excluded from these readings.
 class ReadingsBesideSetUp {
  public:

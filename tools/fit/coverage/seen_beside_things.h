@@ -12,7 +12,7 @@ namespace vernier::fit {
 /// (`same`, `on`) are fitted too.
 struct SeenBesideThings {
   /// Share (0 to 1) of a parameter's effect on the readings that remains after the fit of the touched
-  /// objects. Example: an unknown point is touched four times at one pose. The fitted point absorbs every
+  /// objects. Example: an unknown point is touched four times at one pose. The fitted point explains every
   /// error of the machine, so that the share is 0. The share is 0 for a parameter without effect on the
   /// readings.
   Eigen::VectorXd share;

@@ -131,10 +131,11 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
 std::string in_words(const NoiseModel& model, const NoiseUnit& unit) {
   const double size = unit.of_all();
   const char* const name = unit_name(unit.angles_only);
-  std::string text = fmt::format("each reading {:.3g} {}", model.own * size, name);
+  std::string text = fmt::format("independent noise of each reading {:.3g} {}", model.own * size, name);
   if (model.pose > 0)
-    text += fmt::format(", shared by the readings of a pose {:.3g} {}", model.pose * size, name);
-  if (model.run > 0) text += fmt::format(", by a run {:.3g} {}", model.run * size, name);
+    text += fmt::format(", common error of the readings of a pose {:.3g} {}", model.pose * size, name);
+  if (model.run > 0)
+    text += fmt::format(", common error of the readings of a run {:.3g} {}", model.run * size, name);
   if (model.drift > 0)
     text += fmt::format(", a drift of {:.3g} {} that lasts {:.3g} {}", model.drift * size, name,
                         model.time_constant, model.in_time ? "s" : "rows");
@@ -147,7 +148,7 @@ std::string in_words(const NoiseModel& model, const NoiseUnit& unit) {
     count += 1.0 / 3;
   }
   if (count > 0)
-    text += fmt::format(", what is touched shifts by {:.3g} um from set-up to set-up",
+    text += fmt::format(", the touched object shifts by {:.3g} um rms from set-up to set-up",
                         std::sqrt(set_ups / count) * unit.um);
   for (const NoiseStep& step : model.steps) {
     if (step.of_set_up()) continue;

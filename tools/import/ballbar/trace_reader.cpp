@@ -23,8 +23,8 @@ class TraceReader {
     const nlohmann::json document = parse_json(path_, text_);
     if (!document.is_object()) fail("", "a trace file must be a JSON object");
     const std::string units = text_at(document, "ErrorUnits", "");
-    if (units.empty()) fail("", "no ErrorUnits in it");
-    if (units != "millimetres") fail("/ErrorUnits", "only millimetres are known");
+    if (units.empty()) fail("", "the file has no ErrorUnits");
+    if (units != "millimetres") fail("/ErrorUnits", "the command can read only millimetres");
     BallbarFile file;
     file.path = path_;
     file.instrument = text_at(document, "BallbarModel", "");
@@ -39,7 +39,7 @@ class TraceReader {
         "command line",
         "Direction 0 is taken as " + std::string(setup_.direction_of_zero > 0 ? "CCW" : "CW")};
     const auto runs = document.find("Runs");
-    if (runs == document.end()) fail("", "no Runs in it");
+    if (runs == document.end()) fail("", "the file has no Runs");
     if (!runs->is_array() || runs->empty()) fail("/Runs", "must be a list of runs");
     for (std::size_t i = 0; i < runs->size(); ++i)
       file.runs.push_back(read_run((*runs)[i], "/Runs/" + std::to_string(i)));

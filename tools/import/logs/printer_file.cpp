@@ -126,8 +126,9 @@ class Mesh {
     const std::size_t columns = count("x_count"), rows = count("y_count");
     const Setting& points = setting("points");
     if (points.more.size() != rows)
-      throw text::InputError({file_, points.line}, "points",
-                             fmt::format("the mesh has {} rows, y_count says {}", points.more.size(), rows));
+      throw text::InputError(
+          {file_, points.line}, "points",
+          fmt::format("the mesh has {} rows, but y_count states {}", points.more.size(), rows));
     for (const auto& [low, high] : {std::pair("min_x", "max_x"), std::pair("min_y", "max_y")})
       expect_rising({file_, setting(low).line}, low, at(low), at(high));
     std::vector<Touch> touches;
@@ -135,8 +136,9 @@ class Mesh {
       const auto& [line, number] = points.more[j];
       const std::vector<double> heights = numbers_in({file_, number}, line);
       if (heights.size() != columns)
-        throw text::InputError({file_, number}, line.substr(0, 30),
-                               fmt::format("{} numbers, x_count says {}", heights.size(), columns));
+        throw text::InputError(
+            {file_, number}, line.substr(0, 30),
+            fmt::format("this line has {} numbers, but x_count states {}", heights.size(), columns));
       for (std::size_t i = 0; i < columns; ++i) {
         Touch touch;
         touch.axes = {station(at("min_x"), at("max_x"), columns, i) - offset[0],
@@ -259,14 +261,16 @@ void add_height_map(const std::string& text, const std::string& file, const std:
   if (lines.size() < 3) throw text::InputError({file, 1}, "height map", "the file ends after its title");
   const HeightMapGrid grid = grid_of({file, 3}, lines[1], lines[2]);
   if (lines.size() < 3 + grid.count[1])
-    throw text::InputError({file, lines.size()}, "height map",
-                           fmt::format("the map has fewer than {} rows", grid.count[1]));
+    throw text::InputError(
+        {file, lines.size()}, "height map",
+        fmt::format("the height map has fewer than the {} rows that its header states", grid.count[1]));
   for (std::size_t j = 0; j < grid.count[1]; ++j) {
     const text::Place place{file, 4 + j};
     const std::vector<std::string> cells = text::parts_of(lines[3 + j], ',');
     if (cells.size() != grid.count[0])
       throw text::InputError(place, lines[3 + j].substr(0, 30),
-                             fmt::format("{} numbers, the map has {} columns", cells.size(), grid.count[0]));
+                             fmt::format("this line has {} numbers, but the height map has {} columns",
+                                         cells.size(), grid.count[0]));
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::string cell = text::trimmed(cells[i]);
       if (cell == "0") {  // a reading has decimals
@@ -454,7 +458,8 @@ class ProbeLog {
           "the log has several surveys of the bed, which may differ: " + list + "; choose one with --series");
     if (*options_.series < 1 || *options_.series > series_.size())
       throw text::InputError({file_, 0}, std::to_string(*options_.series),
-                             "no such survey of the bed: the log has " + (list.empty() ? "none" : list));
+                             "the log has no survey of this number: the surveys of the bed are " +
+                                 (list.empty() ? "none" : list));
     const std::size_t k = *options_.series - 1, first = begin_of(k);
     return {touches_.begin() + static_cast<std::ptrdiff_t>(first),
             touches_.begin() + static_cast<std::ptrdiff_t>(series_[k])};

@@ -48,7 +48,7 @@ void set_target(MappedColumn& column, const std::string& target) {
 void add(ColumnMap& map, MappedColumn column) {
   for (const MappedColumn& other : map.columns)
     if (other.name == column.name)
-      throw text::InputError(column.place, column.name, "this column is mapped twice");
+      throw text::InputError(column.place, column.name, "the column map gives this column twice");
   map.columns.push_back(std::move(column));
 }
 
@@ -69,9 +69,9 @@ void set_option(ColumnMap& map, const std::string& key, const std::string& value
   else if (key == "skip" && text::parse_count(value))
     map.format.skip = *text::parse_count(value);
   else
-    throw text::InputError(
-        place, key,
-        "unknown statement; known statements are column, set, separator, decimal, header, comment, skip");
+    throw text::InputError(place, key,
+                           "this line of the column map has an unknown keyword; known keywords are column, "
+                           "set, separator, decimal, header, comment, skip");
 }
 
 /// A number in the form of measurement files, or `nullopt`.
@@ -107,7 +107,7 @@ void refuse_another_unit(const DelimitedFile& file, std::size_t index, const Map
     return;
   throw text::InputError({file.file, file.header_line}, heading.text,
                          "the table states the unit " + heading.unit + ", the assignment to " + column.name +
-                             " states " + column.unit + ": correct one of the two");
+                             " states " + column.unit + ": correct one of the two units");
 }
 
 std::string cell_of(const std::string& text, const MappedColumn& column, bool decimal_comma,
@@ -187,7 +187,8 @@ std::vector<double> ImportTable::numbers(const std::string& name) const {
   const format::Unit unit = *format::find_unit(column.unit);
   std::vector<double> result;
   for (std::size_t i = 0; i < line.size(); ++i) {
-    if (column.cells[i].empty()) throw text::InputError({file, line[i]}, "", "an empty cell, for " + name);
+    if (column.cells[i].empty())
+      throw text::InputError({file, line[i]}, "", "the row has an empty cell, for " + name);
     result.push_back(*text::parse_number(column.cells[i]) * unit.factor + unit.offset);
   }
   return result;
@@ -235,7 +236,7 @@ std::string measurement_csv(const ImportTable& table) {
   }
   const format::CsvFile back = format::parse_csv(text, table.file);
   if (back.rows.size() != table.line.size())
-    throw text::InputError({table.file, 0}, "", "a row has only empty cells");
+    throw text::InputError({table.file, 0}, "", "the row has only empty cells");
   return text;
 }
 

@@ -143,12 +143,13 @@ int listed_sense(const std::vector<LaserReading>& run, const std::vector<double>
 
 void check_counts(const LaserText& read, const std::string& file) {
   if (read.target_count && *read.target_count != read.targets_mm.size())
-    throw text::InputError(
-        read.targets_at, "Targets",
-        fmt::format("{} targets where the count is {}", read.targets_mm.size(), *read.target_count));
+    throw text::InputError(read.targets_at, "Targets",
+                           fmt::format("the section has {} targets, but the file states {}",
+                                       read.targets_mm.size(), *read.target_count));
   if (read.run_count && *read.run_count != read.runs.size())
-    throw text::InputError(read.runs_at, "Run-count",
-                           fmt::format("{} runs where the count is {}", read.runs.size(), *read.run_count));
+    throw text::InputError(
+        read.runs_at, "Run-count",
+        fmt::format("the section has {} runs, but the file states {}", read.runs.size(), *read.run_count));
   if (read.runs.empty()) throw text::InputError({file, 0}, "DEVIATIONS", "no readings");
   for (const auto& [number, run] : read.runs) {
     std::set<std::size_t> seen;

@@ -119,7 +119,8 @@ LoggedTable with_log(const ImportTable& tracker, const std::string& text, const 
   for (Index row = 1; row < time.size(); ++row)
     if (time[row] < time[row - 1])
       throw text::InputError({log_file, log.csv().line[static_cast<std::size_t>(row)]},
-                             format::columns::kTime, "the time decreases: a log must be in time order");
+                             format::columns::kTime,
+                             "the time decreases in this row: the rows of a log must be in time order");
   Eigen::MatrixXd axes(time.size(), static_cast<Index>(machine.axes.size()));
   for (std::size_t a = 0; a < machine.axes.size(); ++a)
     axes.col(static_cast<Index>(a)) = log.numbers(log.need(machine.axes[a].name));

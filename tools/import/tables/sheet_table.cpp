@@ -274,10 +274,10 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                                "): fill in the readings, then import the table again");
   if (!measured)
     throw text::InputError(heading, "",
-                           "nothing measured among the columns (" + format::reading_column_names() +
+                           "no column of the table is a reading (" + format::reading_column_names() +
                                ", or a deviation of an axis): assign one, such as " +
                                assignments_to_try(table, columns, guess) +
-                               "; --preview shows what was understood");
+                               "; --preview shows the meaning of each column");
   for (std::size_t k = 0; k < columns.size(); ++k)
     check_quantity(columns[k], guess, table.headings[k].text, heading);
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {

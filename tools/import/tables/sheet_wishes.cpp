@@ -55,8 +55,8 @@ std::size_t find_heading(const sheet::SheetTable& table, const std::string& word
 void refuse_heading(const sheet::SheetTable& table, const std::string& option, const std::string& words) {
   std::string known;
   for (const sheet::Heading& heading : table.headings) known += (known.empty() ? "" : ", ") + heading.text;
-  throw text::InputError(option + " \"" + words + "\": the sheet has no such heading; its headings are " +
-                         known);
+  throw text::InputError(option + " \"" + words +
+                         "\": the sheet has no column with this heading; its headings are " + known);
 }
 
 void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words) {
@@ -123,9 +123,10 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
       else if (name == "unit" && sheet::unit_meant(value))
         wishes.unit = *sheet::unit_meant(value);
       else
-        throw text::InputError(place, name,
-                               "unknown statement; known statements are column, deviation, leave, fill, set, "
-                               "separator, decimal, skip, table, sheet, comment, unit");
+        throw text::InputError(
+            place, name,
+            "this line of the profile has an unknown keyword; known keywords are column, deviation, leave, "
+            "fill, set, separator, decimal, skip, table, sheet, comment, unit");
     }
   }
 }

@@ -25,7 +25,8 @@ bool says_correction(const std::string& word);
 /// True for a word of "after the correction" or "without compensation". A column with a heading of this kind
 /// ("after the correction") does not contain a correction.
 bool says_state_of_correction(const std::string& word);
-/// An error across the motion ("Geradheit") or a rotation beside the motion ("Pitch"), without its direction.
+/// An error perpendicular to the motion ("Geradheit") or a rotation during the motion ("Pitch"), if the
+/// heading does not state its direction.
 bool says_straightness(const std::string& word);
 bool says_tilt(const std::string& word);
 /// True for a column with a number or a name of each row: "Nr".

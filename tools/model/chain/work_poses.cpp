@@ -40,8 +40,9 @@ WorkPoses work_poses(const Machine& machine) {
     if (const Table* table = machine.table_of(a); !range && table != nullptr && table->stations.size() > 1)
       range = std::array{table->stations.front().loc, table->stations.back().loc};
     if (!range)
-      throw text::InputError({machine.file, machine.axes[a].line}, machine.axes[a].name,
-                             "an axis needs min and max, or a place in <volume>");
+      throw text::InputError(
+          {machine.file, machine.axes[a].line}, machine.axes[a].name,
+          "this axis has no range: give min and max of the axis, or enter the axis in <volume>");
     ranges.push_back(*range);
   }
   return poses_over(machine, ranges);

@@ -21,8 +21,8 @@ Knowledge knowledge_of(const model::Machine& fitted);
 /// Selects the next poses, one after another, until the required U95 is reached. Each selected pose is the
 /// one that most reduces the mean square uncertainty of the tool point over the aim (I-optimal; Wu, Klimchik,
 /// Caro, Furet and Pashkevich 2013 for a test pose). The set-up of the readings may be new. A rigid motion of
-/// the whole machine does not count. For a part, the motion that its datums absorb does not count. Throws
-/// InputError if an axis has no range or if no parameter is free.
+/// the whole machine does not count. For a part, a motion that the alignment to its datums removes does not
+/// count. Throws InputError if an axis has no range or if no parameter is free.
 AccuracyPlan accuracy_plan(const Knowledge& knowledge, const AccuracyAim& aim,
                            const AccuracyOptions& options);
 

@@ -167,11 +167,13 @@ PositioningTest positioning_test(const model::Machine& machine, const Positionin
     throw text::InputError({}, std::to_string(count), "the test needs 2 to 500 targets");
   test.interval = (to - from) / static_cast<double>(count - 1);
   if (test.interval < 10 * kDigit)
-    throw text::InputError({}, std::to_string(count), "so many targets are closer than 0.1 mm (deg)");
+    throw text::InputError({}, std::to_string(count),
+                           "with so many targets the interval is below 0.1 mm (deg)");
   test.targets = targets_of(from, to, count, options.period);
   const bool is_long = !test.rotary && to - from > kLongAxis_mm;
   test.runs = options.runs > 0 ? options.runs : is_long ? kLongRuns : kRuns;
-  if (test.runs > kMostRuns) throw text::InputError({}, std::to_string(test.runs), "at most 50 runs");
+  if (test.runs > kMostRuns)
+    throw text::InputError({}, std::to_string(test.runs), "the test can have at most 50 runs");
   test.rest = rest_of(machine, test.axis, options.at);
   for (std::size_t i = 0; i < machine.axes.size(); ++i)
     if (i != test.axis) require_in_range(machine, i, test.rest[i], test.rest[i]);
@@ -190,7 +192,7 @@ std::string positioning_test_text(const model::Machine& machine, const Positioni
       axis.name, test.targets.size(), test.targets.front(), test.targets.back(), unit, test.interval, unit,
       test.runs, test.runs == 1 ? "" : "s", 2 * test.runs * test.targets.size());
   text += test.dwell_s > 0 ? fmt::format(", about {:.0f} minutes\n", std::max(1.0, test.minutes)) : "\n";
-  if (!rest.empty()) text += fmt::format("The other axes stand at {}.\n", rest);
+  if (!rest.empty()) text += fmt::format("The other axes are at {}.\n", rest);
   text += fmt::format("The axis moves {:g} {} beyond the first and the last target.\n", test.overrun, unit);
   if (test.runs < 2)
     text += "One run gives no repeatability. ISO 230-2 requires five runs (--runs 5) on an axis up to 2 m.\n";

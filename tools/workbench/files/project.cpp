@@ -79,7 +79,7 @@ void refuse_special(const fs::path& path, const std::string& name) {
 Project::Project(const std::string& directory) {
   std::error_code failed;
   root_ = fs::canonical(directory, failed);
-  if (failed || !fs::is_directory(root_)) throw text::InputError(directory + ": no such folder");
+  if (failed || !fs::is_directory(root_)) throw text::InputError(directory + ": this folder does not exist");
 }
 
 fs::path Project::checked(const std::string& name) const {
@@ -97,7 +97,7 @@ fs::path Project::existing(const std::string& name) const {
   fs::path path = checked(name);
   std::error_code failed;
   if (!fs::is_regular_file(path, failed) && !fs::is_directory(path, failed))
-    throw text::InputError("\"" + name + "\": no such file in the project");
+    throw text::InputError("\"" + name + "\": the project has no file of this name");
   return path;
 }
 

@@ -151,7 +151,7 @@ PlannedCommand CommandTable::plan(const nlohmann::json& request, const Project& 
   const auto found = std::find_if(std::begin(kAllowed), std::end(kAllowed),
                                   [&](const Allowed& one) { return one.name == name; });
   if (found == std::end(kAllowed))
-    throw text::InputError("\"" + name + "\": the workbench has no such command");
+    throw text::InputError("\"" + name + "\": the workbench has no command of this name");
   PlannedCommand command{name, text::words_in(name, " "), {}, found->on_board, found->for_history};
   std::size_t known = 1;
   for (const Json& option : named(allowed_, name, "the table").at("options")) {

@@ -44,11 +44,13 @@ CommandHistory::CommandHistory(const Project& project) : project_(project) {
   if (std::error_code failed; !fs::exists(path, failed)) return;
   const std::string text = text::read_file(path.string());
   if (text::nests_deeper_than(text, text::kMostJsonDepth))
-    throw text::InputError(path.string() + ": nests too deeply");
+    throw text::InputError(path.string() + ": the JSON of this file nests too deeply");
   const auto read = nlohmann::ordered_json::parse(text, nullptr, false);
-  if (!read.is_array()) throw text::InputError(path.string() + ": no list of commands");
+  if (!read.is_array())
+    throw text::InputError(path.string() + ": the file does not contain a list of commands");
   for (const auto& entry : read)
-    if (!is_entry(entry)) throw text::InputError(path.string() + ": an entry that is no command");
+    if (!is_entry(entry))
+      throw text::InputError(path.string() + ": the list of commands contains a value that is not a command");
   entries_ = read;
 }
 
@@ -82,7 +84,7 @@ void CommandHistory::undo() {
     save();
     return;
   }
-  throw text::InputError("nothing to undo");
+  throw text::InputError("there is no command to undo");
 }
 
 void CommandHistory::redo() {
@@ -93,7 +95,7 @@ void CommandHistory::redo() {
     save();
     return;
   }
-  throw text::InputError("nothing to do again");
+  throw text::InputError("there is no undone command to do again");
 }
 
 nlohmann::ordered_json CommandHistory::entries() const {

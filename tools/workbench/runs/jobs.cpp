@@ -105,7 +105,7 @@ void Jobs::finish(Job& job, int exit, const std::string& out, const std::string&
     try {
       history_.add(job.typed, job.command, job.result);
     } catch (const std::exception& error) {
-      job.text += std::string("not noted in the history: ") + error.what() + "\n";
+      job.text += std::string("the command was not written to the history: ") + error.what() + "\n";
     }
   }
   job.over = true;
