@@ -14,13 +14,13 @@ namespace vernier {
 /// distance between command and limit. The share is so small that the correction decreases within the slew
 /// limit at the joint's largest speed (the pin max-velocity, or the largest observed speed if it is larger).
 /// The correction at the output always changes within the slew limit. The drive stays within the joint's
-/// limits if the joint is not faster than its largest speed (max-velocity or observed speed). If a connected
-/// pin (command, position or feedback) has a value that is not a number, the reading of the joint is missing.
-/// After a missing reading, the command to the drive and the feedback to the controller keep their values. If
-/// the command jumps to the feedback position, this does not count as a jump of the axis. The reading
-/// continues from the new command. (LinuxCNC makes such a jump for a joint that is disabled.) A joint that is
-/// not homed has no reference position. The reading of a joint without reference does not change. When the
-/// joint is homed, the reading continues from the new zero.
+/// limits if the joint is never faster than the larger of max-velocity and its largest observed speed. If a
+/// connected pin (command, position or feedback) has a value that is not a number, the reading of the joint
+/// is missing. After a missing reading, the command to the drive and the feedback to the controller keep
+/// their values. If the command jumps to the feedback position, this does not count as a jump of the axis.
+/// The reading continues from the new command. (LinuxCNC makes such a jump for a joint that is disabled.) A
+/// joint that is not homed has no reference position. The reading of a joint without reference does not
+/// change. When the joint is homed, the reading continues from the new zero.
 class Joints : public AxisReader, public CorrectionWriter {
  public:
   /// `pins`: must exist longer than this object. `mm_per_unit`: unit of lengths of the machine, mm. Not

@@ -51,6 +51,9 @@ EQUIVALENT = [
     ("wrap.period <= 0 || wrap.reciprocal", ("||", "&&"), "the bound of the error refuses it"),
     ("wrap.period <= 0 ||", ("<=", "<"), "the bound of the error refuses it"),
     ("wrap.reciprocal <= 0 ||", ("<=", "<"), "the bound of the error refuses it"),
+    ("i < tick.lag_count; ++i) lags[i] = state.lag[i]", ("<", "<="), "one state more is copied, which nothing reads; 16 lags are all"),
+    ("shift >= 64 ? 0 : x.mantissa", (">=", ">"), "no angle reaches it: the smallest, 1 mHz at 2^30 mHz, needs a shift of 56"),
+    ("nanometres.shift > 94", ("94", "95"), "no setting reaches it"),
     ("kTravelGuard = 14", ("14", "15"), "one guard bit more: the widest value stays below 2^63"),
 ]
 

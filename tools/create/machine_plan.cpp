@@ -202,8 +202,10 @@ PlannedAxis parse_planned_axis(const std::string& words) {
     else if (parts[i].size() == 1 && std::string("XYZABC").find(parts[i]) != std::string::npos)
       axis.direction = parts[i].front();
     else
-      throw text::InputError("--axis " + words + ": \"" + parts[i] +
-                             "\": must be a direction (X Y Z along it, A B C about X Y Z) or wrap");
+      throw text::InputError(
+          "--axis " + words + ": \"" + parts[i] +
+          "\": must be X, Y, Z (motion along X, Y, Z), A, B, C (rotation about X, Y, Z), or the word wrap "
+          "(a rotary axis of one turn)");
   }
   if (axis.rollover && !axis.rotary())
     throw text::InputError("--axis " + words + ": only a rotary axis can wrap");

@@ -10,9 +10,9 @@ namespace vernier::diagnose {
 /// Returns accepted effects that are likely parts of one function that the catalogue does not contain; empty
 /// if there are no such effects. A curve and a cyclic error of one axis may both be real causes. A third
 /// function of the same axis at the same degree of freedom is evidence of one function that the search did
-/// not find. Locations with the same effect on the readings count as the same degree of freedom. If every row
-/// has only one reading, of one kind, functions of any axis count together. If all readings are of one kind,
-/// four functions of position exceed the limit. Three functions exceed the limit if one is a curve (three
+/// not find. Locations with the same effect on the readings count as the same degree of freedom. If all
+/// readings are of one kind, the functions of all axes count together towards the limit, and four functions
+/// of position exceed the limit. Three functions exceed the limit if one is a curve (three
 /// coefficients or more). Two curves also exceed the limit. On a circular path every function of position is
 /// a function of the angle. Two curves can represent every function of the angle. Cyclic errors whose periods
 /// are harmonics of each other count as one function. Two periods with a beat of less than one cycle over the

@@ -35,10 +35,10 @@ bool fits_and_predicts_better(const model::Measurement& rows, const Eigen::Vecto
 /// estimate: alternatives beyond `distance_of_fits`, alternatives after the first `most`, and alternatives
 /// whose fit does not converge. A form of an effect with more unknowns is not an alternative if its fit
 /// predicts the same readings as the accepted form. A thermal response of another structure
-/// (`thermal-response`) is fitted at any distance. The distance of a thermal response is at most 0 if it fits
-/// and predicts better than the accepted response. `accepted`: indices of the accepted effects, not empty. A
-/// negative distance means that the fit prefers the alternative. Computing time: one fit for each
-/// alternative.
+/// (`thermal-response`) is fitted at any distance. If a thermal response fits and predicts better than the
+/// accepted response, its distance (difference in BIC) is at most 0. `accepted`: indices of the accepted
+/// effects, not empty. A negative distance means that the fit prefers the alternative. Computing time: one
+/// fit for each alternative.
 Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
                                   std::size_t most, const DecisionFits& fits);
 

@@ -40,8 +40,9 @@ std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double len
 /// approach direction. The parameters A, E and M are differences over the length, so that all components
 /// contribute to their uncertainty. A component that is proportional to the distance is equal for both
 /// approach directions of a target and for all runs. Only the drift contributes to the uncertainty of B and
-/// R: for B between two means of `runs` readings, for R between both ends of a range. The components are
-/// those in public descriptions of ISO/TR 230-9. The components of the uncertainty are combined by the GUM.
+/// R: for B between two means of `runs` readings, for R at both ends of the repeatability range. The
+/// components are those in public descriptions of ISO/TR 230-9. The components of the uncertainty are
+/// combined by the GUM.
 std::map<std::string, double> budget_uncertainty(const PositioningBudget& budget, double length_mm,
                                                  double runs);
 

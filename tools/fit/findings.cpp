@@ -190,8 +190,8 @@ void add_exact_lengths(const FitResult& result, const model::Measurement& m,
     list.push_back(
         {kCode, 0,
          fmt::format("The radius of the tip ({0}) was taken as exact. Its error changes every touched "
-                     "radius, and through it the scales of the machine. To include its uncertainty "
-                     "U in mm, add --free {0} --prior {0}=U.",
+                     "radius, and through it the scales of the machine. To include its standard "
+                     "uncertainty u in mm, add --free {0} --prior {0}=u.",
                      tips)});
   if (const std::string names = exact_directions(m); !names.empty())
     list.push_back({kCode, 0,

@@ -325,7 +325,7 @@ class Oddities {
   void look_at(const model::Axis& axis, std::size_t index) {
     if (model::is_no_axis_name(m_, axis.name))
       findings_.error(axis.line, axis.name, model::kMeasuredName,
-                      "no measurement of this machine can be read");
+                      "the programs can read no measurement file of this machine; choose another name");
     bool by_table = false;
     for (std::size_t c = 0; c < 6; ++c) by_table |= used_.table_values.contains(index * 6 + c);
     if (!used_.axes.contains(index))
@@ -367,7 +367,7 @@ class Oddities {
   void look_at(const model::Input& input, std::size_t index) {
     if (model::is_no_input_name(m_, input.name))
       findings_.error(input.line, input.name, model::kMeasuredName,
-                      "no measurement of this machine can be read");
+                      "the programs can read no measurement file of this machine; choose another name");
     look_at_unit(input.name, input.unit, input.line, true);
     if (!used_.inputs.contains(index))
       findings_.warn(input.line, input.name, "no transform uses this input",

@@ -27,8 +27,9 @@ class HistogramOf {
   /// duration; 0 if the histogram is empty. `per_million`: share of the durations in 1e-6, for example 990000
   /// for the 99 % percentile. realtime, one pass over the bins.
   std::int64_t percentile_ns(std::uint64_t per_million) const noexcept {
-    // The rank is rounded up. For only a few values, the percentile is therefore one of the values. The
-    // function contains no division, because the tick calls this function. The counts are below 2^44.
+    // The rank is rounded up. For only a few values, the percentile is therefore the upper edge of the bin of
+    // one of the values, at most the largest value. The function contains no division, because the tick calls
+    // this function. The counts are below 2^44.
     const std::uint64_t wanted = count_ * per_million;
     std::uint64_t seen = 0;
     for (std::uint32_t bin = 0; bin < kBins; ++bin) {

@@ -340,16 +340,16 @@ std::string ModbusOutput::account() const {
   const std::scoped_lock lock(guard_);
   std::uint64_t all = 0;
   for (const std::uint64_t one : delays_) all += one;
-  char text[340];
-  std::snprintf(text, sizeof text,
-                "modbus-out register %d: %llu exchanges, %llu failed, %llu losses, %llu numbers of another "
-                "writer; from the tick to the answer "
-                "median %.1f ms, 99 %% %.1f ms, largest %.1f ms; a value stays %.3g ms more",
-                settings_.address, static_cast<unsigned long long>(exchanges_),
-                static_cast<unsigned long long>(failed_), static_cast<unsigned long long>(losses_),
-                static_cast<unsigned long long>(foreign_), share_of(delays_, all, 0.5),
-                share_of(delays_, all, 0.99), share_of(delays_, all, 1.0),
-                1e-3 * static_cast<double>(settings_.period.count));
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "modbus-out register %d: %llu exchanges, %llu failed, %llu losses, %llu sequence numbers of "
+      "another writer; from the tick to the answer "
+      "median %.1f ms, 99 %% %.1f ms, largest %.1f ms; each value then stays for one period, %.3g ms",
+      settings_.address, static_cast<unsigned long long>(exchanges_),
+      static_cast<unsigned long long>(failed_), static_cast<unsigned long long>(losses_),
+      static_cast<unsigned long long>(foreign_), share_of(delays_, all, 0.5), share_of(delays_, all, 0.99),
+      share_of(delays_, all, 1.0), 1e-3 * static_cast<double>(settings_.period.count));
   return text;
 }
 

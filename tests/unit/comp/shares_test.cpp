@@ -67,6 +67,10 @@ TEST(VerifyShares, NamesEveryCause) {
   EXPECT_EQ(with([](ShareProgram& p) { p.equation.channel_count = kMaxRegisters + 1; }), kLong);
   EXPECT_EQ(with([](ShareProgram& p) { p.equation.result_count = kMaxRegisters + 1; }), kLong);
   EXPECT_EQ(with([](ShareProgram& p) { p.equation.result_count = kMaxRegisters - 5; }), kLong) << "together";
+  // 2^32 registers less a few: with the registers of the tick their sum is a small number again.
+  EXPECT_EQ(with([](ShareProgram& p) { p.equation.constants.size = 0U - 3; }), kLong);
+  EXPECT_EQ(with([](ShareProgram& p) { p.equation.channel_count = 0U - 3; }), kLong);
+  EXPECT_EQ(with([](ShareProgram& p) { p.equation.result_count = 0U - 3; }), kLong);
   EXPECT_EQ(with([](ShareProgram& p) { p.shares.size = kMaxShares + 1; }), kLong);
   EXPECT_EQ(with([](ShareProgram& p) { p.equation.channel_count = 1; }), ProgramFault::kChannel);
   EXPECT_EQ(after([](Sample& s) { s.results = 0; }), kLong) << "an instruction without a register";

@@ -81,6 +81,8 @@ TEST(VerifyProgram, NamesEveryCause) {
   EXPECT_EQ(after([](Sample& s) { s.tables[0].columns = 0; }), ProgramFault::kTable);
   EXPECT_EQ(after([](Sample& s) { s.tables[0].degree = 2; }), ProgramFault::kTable);
   EXPECT_EQ(after([](Sample& s) { s.tables[0].pieces = 0; }), ProgramFault::kTable);
+  EXPECT_EQ(after([](Sample& s) { s.tables[1].pieces = 0; }), ProgramFault::kTable)
+      << "a table without a grid";
   EXPECT_EQ(after([](Sample& s) { s.tables[0].grid_multiplier /= 2; }), ProgramFault::kTable);
   EXPECT_EQ(after([](Sample& s) { s.tables[0].grid_shift = 64; }), ProgramFault::kTable);
   EXPECT_EQ(after([](Sample& s) { s.tables[1].grid_shift = 1; }), ProgramFault::kTable);
@@ -455,6 +457,7 @@ TEST(GridFindsEveryPiece, AlsoOfOneCount) {
   const std::int32_t records[] = {0, 1, 1 << 30, 0, 1, 1, 1, 1, 1 << 30, 0, 2, 1};
   EXPECT_TRUE(grid_finds_every_piece({records, 2, 1, 1, 1, 0}));
   EXPECT_FALSE(grid_finds_every_piece({records, 2, 1, 1, 1, 64}));
+  EXPECT_TRUE(grid_finds_every_piece({records, 1, 1, 1, 1, 63})) << "the largest shift: the only piece";
   EXPECT_FALSE(grid_finds_every_piece({records, 2, 1, 1, 1, 1}));
   const std::int32_t long_then_short[] = {0, 2, 1 << 30, 1, 1, 1, 2, 1, 1 << 30, 0, 2, 1};
   EXPECT_TRUE(grid_finds_every_piece({long_then_short, 2, 1, 1, 1, 1}));

@@ -167,7 +167,8 @@ void register_correct(CLI::App& vernier) {
                       "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command
       ->add_option("--deviation", arguments->deviation_um,
-                   "largest permitted distance between a block and the path with a continuous correction, um")
+                   "largest permitted distance between a written block and the ideal path, which is "
+                   "corrected at every point, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag(

@@ -25,8 +25,12 @@ void print_result(std::FILE* out, const simulate::SimulateResult& r, const simul
   fmt::print(out, "error before   rms {:.4g} um   max {:.4g} um\n", r.rms_before_um, r.max_before_um);
   fmt::print(out, "error after    rms {:.4g} um   max {:.4g} um\n", r.rms_after_um, r.max_after_um);
   fmt::print(out, "tilt before    max {:.4g} deg\n", r.tilt_before.maxCoeff());
-  fmt::print(out, "tilt after     max {:.4g} deg{}\n", r.tilt_after.maxCoeff(),
-             r.damped > 0 ? fmt::format(", damped towards singular poses in {} ticks", r.damped) : "");
+  fmt::print(
+      out, "tilt after     max {:.4g} deg{}\n", r.tilt_after.maxCoeff(),
+      r.damped > 0
+          ? fmt::format(", the correction of the tool direction was damped near singular poses in {} ticks",
+                        r.damped)
+          : "");
   fmt::print(out, "ticks saturated {}, slewing {}, beyond a declared range {}, overrun {}\n",
              r.loop.saturated, r.loop.slewing, r.loop.beyond_range, r.loop.health.overruns);
   if (r.loop.fault != Fault::kNone)

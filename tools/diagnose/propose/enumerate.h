@@ -43,8 +43,8 @@ std::vector<char> outshone_places(const Evidence& evidence);
 /// Returns the degrees of freedom of the chain that the observations can distinguish. Several degrees of
 /// freedom may have the same influence on all observations (all but 1e-7 of the direction). If several
 /// degrees of freedom have the same influence, only the first of them is in the result. Degrees of freedom of
-/// rows in the machine file have priority over those of an added row. `angles_apart`: true if an angle and a
-/// length with the same influence both stay in the result.
+/// transforms in the machine file have priority over those of the transform that with_base_row() adds.
+/// `angles_apart`: true if an angle and a length with the same influence both stay in the result.
 std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool angles_apart);
 
 }  // namespace vernier::diagnose

@@ -87,7 +87,7 @@ std::size_t source_index(const DelimitedFile& file, const MappedColumn& column) 
     if (*number >= 1 && *number <= width) return *number - 1;
     throw text::InputError(
         column.place.file.empty() ? text::Place{file.file, file.line.front()} : column.place, column.source,
-        "this column does not exist: the rows have " + std::to_string(width));
+        "this column does not exist: the rows have " + std::to_string(width) + " columns");
   }
   const auto found = std::find(file.header.begin(), file.header.end(), column.source);
   if (found == file.header.end())
