@@ -52,7 +52,9 @@ TEST_F(Sync, SeveralAreOneAndOldOnesDoNotQueueUp) {
 TEST(SyncSetUp, MissingBusIsNamed) {
   std::string error;
   EXPECT_EQ(CanSync::open("nocan", 0x80, error), nullptr);
-  EXPECT_NE(error.find("nocan: no "), std::string::npos) << error;
+  EXPECT_TRUE(error.find("nocan: no such interface") != std::string::npos ||
+              error.find("nocan: this kernel does not support CAN") != std::string::npos)
+      << error;
 }
 
 }  // namespace

@@ -631,7 +631,8 @@ TEST_F(ModbusOutputLoss, AnotherBoardIsDetectedAndNotWrittenOver) {
   EXPECT_EQ(blocks_of_others(plc_.blocks(), before, other.sequence()), 0u);
   EXPECT_EQ(ticks_->step(20'000), HalFault::kRefused);
   expect_return_without_a_step(plc_, *output_, *ticks_);
-  EXPECT_EQ(output_->account().find(" 0 sequence numbers of another"), std::string::npos) << output_->account();
+  EXPECT_EQ(output_->account().find(" 0 sequence numbers of another"), std::string::npos)
+      << output_->account();
 }
 
 // Another board may have begun while the controller could not be reached.
