@@ -169,7 +169,9 @@ std::vector<std::vector<int>> place_blocks(const Evidence& evidence, std::option
     if (count >= 2 * parts) {
       std::vector<int> stretches, targets;
       for (const std::size_t at : order) {
-        stretches.push_back(static_cast<int>(at * parts / count));
+        // Beyond the other rows at an end, a curve would have to extrapolate: the ends are never held out.
+        const std::size_t stretch = at * parts / count;
+        stretches.push_back(stretch == 0 || stretch + 1 == parts ? -1 : static_cast<int>(stretch) - 1);
         targets.push_back(static_cast<int>(at % parts));
       }
       all.push_back(std::move(stretches));

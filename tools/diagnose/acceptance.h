@@ -36,10 +36,11 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
 std::vector<std::vector<int>> level_blocks(const Evidence& evidence);
 
 /// Returns blocks of rows. All rows at one position are in the same block. Three divisions into blocks are
-/// possible: five consecutive parts of the range of an axis; every fifth position of the axis; the corners of
-/// the measured volume. The corners are the halves of the three axes with the most positions. Other rows at
-/// the same position cannot contradict what a term does between the positions. The result has one list for
-/// each of these divisions that has two blocks or more. axis: nullopt for the corners alone.
+/// possible: the three inner ones of five consecutive parts of the range of an axis; every fifth position of
+/// the axis; the corners of the measured volume. The corners are the halves of the three axes with the most
+/// positions. Other rows at the same position cannot contradict what a term does between the positions. The
+/// result has one list for each of these divisions that has two blocks or more. axis: nullopt for the corners
+/// alone.
 std::vector<std::vector<int>> place_blocks(const Evidence& evidence, std::optional<std::size_t> axis);
 
 }  // namespace vernier::diagnose

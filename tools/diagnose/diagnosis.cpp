@@ -19,6 +19,7 @@
 #include "tools/effects/fitted_effect.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/noise/noise.h"
+#include "tools/format/readings.h"
 #include "tools/maths/factors.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
@@ -59,6 +60,7 @@ class Diagnoser {
     const Findings found{options_,   measurement_,   machine_,      finder_, accepted_,
                          confirmed_, not_confirmed_, alternatives_, listed_};
     set_verdict(found, result_);
+    if (result_.verdict == Verdict::kUnexplained) result_.explanation += steps_of_noise();
     result_.causes = causes_not_rejected(found, result_);
     return std::move(result_);
   }
@@ -91,6 +93,22 @@ class Diagnoser {
         "The readings do not fit this machine: " + base_.absurd +
         ". Correct the measurement file or the machine file first; the diagnosis did not search for effects.";
     return std::move(result_);
+  }
+
+  /// Sentences about the steps that the noise model contains: they can be the error that has no name.
+  std::string steps_of_noise() const {
+    std::string text;
+    for (const fit::NoiseStep& step : result_.noise.steps) {
+      if (step.of_set_up() || step.row >= measurement_.line.size()) continue;
+      const auto kind = static_cast<format::ReadingKind>(step.kind);
+      const bool rotation = model::is_rotation(static_cast<model::ObservationKind>(step.kind));
+      text += fmt::format(
+          " The noise model contains a step at line {} ({:+.3g} {} in {}): the instrument, the target or the "
+          "machine possibly moved there.",
+          measurement_.line[step.row], step.height * result_.noise_unit.of(rotation),
+          rotation ? "urad" : "um", format::name_of(kind));
+    }
+    return text;
   }
 
   /// Options with the noise that the search found.

@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(Screws, Targets, testing::Values(5.08, 10, 12.7));
 TEST(FinePeriods, OfUnevenTargetsAreNamedOrListed) {
   constexpr int kSurveys = 24, kTargets = 13;
   std::mt19937_64 random(kSeed);
-  int named = 0;
+  int named = 0, open = 0;
   for (int k = 0; k < kSurveys; ++k) {
     // The steps of 47 mm are no multiple of the period; the targets are off by up to 2 mm.
     std::uniform_real_distribution<double> off(-2, 2);
@@ -155,6 +155,12 @@ TEST(FinePeriods, OfUnevenTargetsAreNamedOrListed) {
         [](double x) { return 0.004 * wave(x, 5); }, random));
 
     const bool is_named = answer.verdict == Verdict::kMissingEffect;
+    // Thirteen targets, each read twice: the best of all periods can explain another error as well.
+    if (answer.explanation.find("was read at 13 positions only") != std::string::npos) {
+      EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << answer.explanation;
+      ++open;
+      continue;
+    }
     ASSERT_TRUE(is_named || answer.verdict == Verdict::kAmbiguous)
         << "seed " << kSeed << ", survey " << k << ": " << answer.explanation;
     const bool is_first = std::abs(period_of(answer).value - 5) < 0.02;
@@ -163,6 +169,33 @@ TEST(FinePeriods, OfUnevenTargetsAreNamedOrListed) {
     named += is_named && is_first ? 1 : 0;
   }
   EXPECT_GT(named, 0) << "seed " << kSeed;
+  EXPECT_LT(open, kSurveys / 2) << "seed " << kSeed;
+}
+
+/// Thirteen targets, a smooth lead error beside a period of 11.4 mm: one short period explains both together
+/// as well as the two. Read at so few positions, no period is named.
+TEST(FinePeriods, BesideALeadErrorAtFewPositionsAreNotNamed) {
+  constexpr int kSurveys = 12, kTargets = 13;
+  std::mt19937_64 random(kSeed + 1);
+  int named = 0;
+  for (int k = 0; k < kSurveys; ++k) {
+    std::uniform_real_distribution<double> off(-8, 8), bend(-1, 1);
+    std::vector<double> targets;
+    for (int i = 0; i < kTargets; ++i) targets.push_back(47.0 * i + 9 + off(random));
+    const double square = bend(random), cubic = bend(random);
+    const Diagnosis answer = diagnosed(survey(
+        2 * kTargets, [&](int i) { return targets[static_cast<std::size_t>(i < kTargets ? i : 25 - i)]; },
+        [&](double x) {
+          const double u = x / 300 - 1;
+          return 0.002 * wave(x, 11.43) + 0.004 * (square * u * u + cubic * u * u * u);
+        },
+        random));
+    named += answer.verdict == Verdict::kMissingEffect && answer.ladder.at(1).effect == "cyclic-error" &&
+                     std::abs(period_of(answer).value - 11.43) > 0.1
+                 ? 1
+                 : 0;
+  }
+  EXPECT_LE(named, 1) << "wrong and sure, seed " << kSeed + 1;
 }
 
 /// The decrease of chi^2 at each frequency is that of a least-squares fit.

@@ -49,8 +49,7 @@ std::vector<ProductFactor> factors_of(const Evidence& evidence) {
   }
   take_named(format::columns::kFeed, s.feed);
   take_named(format::columns::kCurvature, s.curvature);
-  take_named(format::columns::kTime, s.time);
-  take_named(format::columns::kVisit, s.visit);
+  // Not the time and the number of visits: a polynomial of them holds for no other record.
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
     if (evidence.varies(s.input[i]) &&
         effects::class_of_input(machine.inputs[i]) != effects::InputClass::kSetpoint)
