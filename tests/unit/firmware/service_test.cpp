@@ -40,13 +40,13 @@ struct KeptHandler : CommandLink {
   CommandHandler* handler = nullptr;
 };
 
-/// A service whose store has its own context.
+/// A service whose store has its own context; `beside` false: a link waits for the store.
 class BesideStore : public testing::Test {
  protected:
-  explicit BesideStore(const BoardIdentity& identity = {}) {
+  explicit BesideStore(const BoardIdentity& identity = {}, bool beside = true) {
     ServiceOptions options;
     options.wiring = {{{"X"}, {"Y"}}, {"T"}};
-    options.store_beside = true;
+    options.store_beside = beside;
     options.upload.identity = identity;
     service_ = std::make_unique<Service>(options, Board{clock_, plant_, plant_, plant_}, store_);
     service_->boot();
@@ -198,6 +198,17 @@ TEST_F(BesideStore, PercentilesArePublishedOfTheWholeTimes) {
   EXPECT_NEAR(static_cast<double>(health.latency_ns[0]), 5e3, 200);
   EXPECT_NEAR(static_cast<double>(health.latency_ns[1]), 20e3, 800);
   EXPECT_NEAR(static_cast<double>(health.latency_ns[2]), 100e3, 4000);
+}
+
+class StoreInTheLink : public BesideStore {
+ protected:
+  StoreInTheLink() : BesideStore({}, false) {}
+};
+
+TEST_F(StoreInTheLink, EveryRequestIsAnsweredAtOnce) {
+  EXPECT_EQ(ask({static_cast<std::uint8_t>(LinkOp::kWeight), 1, 0, 0, 0, 0, 0}), LinkStatus::kDone);
+  EXPECT_EQ(ask(LinkOp::kConfirm), LinkStatus::kRefused) << "no trial";
+  EXPECT_EQ(link_.handler->give(static_cast<std::uint16_t>(Command::kDeactivate)), CommandGiven::kTaken);
 }
 
 /// A client that waits for replies; `meanwhile` runs before it looks again.

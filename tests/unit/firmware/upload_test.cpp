@@ -537,6 +537,19 @@ TEST(Programs, TrialWhoseTimeEndsWhileItIsConfirmedIsKept) {
   bench.programs.look_away();
 }
 
+TEST(Programs, TrialIsBeingGivenUpFromTheRequestUntilTheGuardianActs) {
+  ProgramsBench bench;
+  EXPECT_FALSE(bench.programs.give_up()) << "no trial";
+  EXPECT_FALSE(bench.programs.giving_up());
+  ASSERT_NE(bench.run_trial(), nullptr);
+  bench.guard();
+  EXPECT_FALSE(bench.programs.giving_up());
+  EXPECT_TRUE(bench.programs.give_up());
+  EXPECT_TRUE(bench.programs.giving_up());
+  bench.guard();
+  EXPECT_FALSE(bench.programs.giving_up());
+}
+
 // The guardian runs between two steps of the tick: the program taken, the old one not put away yet.
 TEST(Programs, ProgramThatCannotBeOfferedYetKeepsItsMemory) {
   ProgramsBench bench;
