@@ -63,8 +63,8 @@ void Service::read_enable() noexcept {
 
 void Service::tell_health(const TickReport& report) noexcept {
   if (board_.healthy == nullptr) return;
-  const bool well = report.latched == Fault::kNone && report.mode != Mode::kBoot &&
-                    report.mode != Mode::kChecking && !ending_;
+  // After a tick the mode is never Boot.
+  const bool well = report.latched == Fault::kNone && report.mode != Mode::kChecking && !ending_;
   if (well && options_.healthy_toggle > 0) return pump();
   const Told now = well ? Told::kWell : Told::kUnwell;
   // A line that could not be switched is tried again with the next tick.
@@ -107,9 +107,12 @@ Command Service::next_command() noexcept {
     to_clear_ = true;
     activated_ = taken_out_;
   }
-  // A fault that is still ramped out is cleared when it is out.
-  if (to_clear_ && asked == Command::kNone && cycle_.latched() != Fault::kNone)
+  // A fault that is still ramped out is cleared when it is out. Until then the cycle refuses every other
+  // command: it must not end the clearing.
+  if (to_clear_ && cycle_.latched() != Fault::kNone) {
+    if (asked != Command::kNone) cycle_.refuse_command();
     return cycle_.mode() == Mode::kFaulted ? Command::kClearFault : Command::kNone;
+  }
   to_clear_ = false;
   if (asked != Command::kNone || !options_.activate || activated_ || taken_out_) return asked;
   if (cycle_.mode() != Mode::kReady) return Command::kNone;
@@ -241,9 +244,8 @@ bool Service::tell_settings() noexcept {
   const std::uint32_t asked = settings_asked_.load(std::memory_order_acquire);
   if (asked == settings_told_.load(std::memory_order_relaxed)) return false;
   const SettingTicket newest{.ticks = asked};
-  if (!newest.reached_by(operator_.stored_ticks()) &&
-      !(operator_.refused() && newest.reached_by(operator_.refused_ticks())))
-    return false;
+  const bool refused = operator_.refused() && newest.reached_by(operator_.refused_ticks());
+  if (!newest.reached_by(operator_.stored_ticks()) && !refused) return false;
   settings_told_.store(asked, std::memory_order_relaxed);
   return true;
 }

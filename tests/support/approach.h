@@ -48,7 +48,8 @@ class Approach : public Trajectory {
   Profile profile_;
 };
 
-/// A board with axes X, Y, Z and a probe that touches once at a moment of the profile.
+/// A board with axes X, Y, Z and a probe that touches once at a moment of the profile. `x`: its first axis;
+/// `actual`: reads the actual positions; null: the board has only those of the plant.
 struct TouchRig {
   SimSlotStore store{1 << 16};
   Approach motion;
@@ -58,17 +59,22 @@ struct TouchRig {
   std::unique_ptr<Service> service;
 
   TouchRig(const Profile& profile, const ProbeSettings& probe, InstantNs stamp_resolution,
-           InstantNs most_late = {})
+           InstantNs most_late = {}, const Wiring::Axis& x = {"X"}, AxisReader* actual = nullptr)
       : motion(profile),
         clock({}, most_late),
         plant(motion, 3, 0, PlantOptions{.gives_motion = false, .faults = {}}),
         line(stamp_resolution) {
     ServiceOptions options;
-    options.wiring = {{{"X"}, {"Y"}, {"Z"}}, {}};
+    options.wiring = {{x, {"Y"}, {"Z"}}, {}};
     options.probe = probe;
-    service = std::make_unique<Service>(
-        options, Board{.clock = clock, .axes = plant, .inputs = plant, .corrections = plant, .probe = &line},
-        store);
+    service = std::make_unique<Service>(options,
+                                        Board{.clock = clock,
+                                              .axes = plant,
+                                              .inputs = plant,
+                                              .corrections = plant,
+                                              .probe = &line,
+                                              .actual = actual},
+                                        store);
   }
   /// Runs from standstill to the end of the profile; edges: moments of the profile, s, and what they are.
   /// Each reaches the board with the tick after it.

@@ -6,10 +6,9 @@
 namespace vernier {
 
 void ModeControl::latch(Fault fault, Health& health) noexcept {
-  // While checking, no correction is in the drives, and a missing device is not a fault yet. A lost image
-  // does not return by waiting.
-  const bool checking = mode_ == Mode::kBoot || mode_ == Mode::kChecking;
-  if (fault == Fault::kNone || (checking && fault != Fault::kImageLost)) return;
+  // While checking (check() has ended Boot), no correction is in the drives, and a missing device is not a
+  // fault yet. A lost image does not return by waiting.
+  if (fault == Fault::kNone || (mode_ == Mode::kChecking && fault != Fault::kImageLost)) return;
   if (latched_ != Fault::kNone) return;
   latched_ = fault;
   ++health.faults;

@@ -200,7 +200,8 @@ bool Link::put_tick(Writer& out, std::uint64_t number, const TickRecord& tick) c
 LinkStatus Link::newest(Writer& out) const {
   const std::uint64_t count = exchange_.ticks.count();
   TickRecord tick;
-  if (count == 0 || !exchange_.ticks.read(count - 1, tick)) return LinkStatus::kNotReady;
+  // Before the first tick this is the largest number, which was not written yet.
+  if (!exchange_.ticks.read(count - 1, tick)) return LinkStatus::kNotReady;
   return put_tick(out, count - 1, tick) ? LinkStatus::kDone : LinkStatus::kNotReady;
 }
 
@@ -473,7 +474,7 @@ void Link::fill_registers(std::uint16_t* values) {
   TickRecord tick;
   HealthRecord health;
   const std::uint64_t count = exchange_.ticks.count();
-  if (count == 0 || !exchange_.ticks.read(count - 1, tick) || !exchange_.health.read(health)) return;
+  if (!exchange_.ticks.read(count - 1, tick) || !exchange_.health.read(health)) return;
   values[kLiveMode] = tick.mode;
   values[kLiveFault] = tick.fault;
   values[kLiveHolding] = tick.holding;

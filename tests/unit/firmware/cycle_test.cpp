@@ -284,14 +284,33 @@ TEST(Cycle, EachSaturatedTickIsCountedOnce) {
   Rig rig({}, board_lets_10_um_out());
   ASSERT_TRUE(rig.run_to(Mode::kActive));
   const std::uint64_t before = rig.cycle().health().saturated;
-  std::uint64_t saturated = 0;
-  for (int i = 0; i < 3000; ++i) {
+  std::uint64_t saturated = 0, by_image = 0, by_board = 0;
+  for (int i = 0; i < 20'000; ++i) {
     const TickReport report = rig.tick();
-    const int held = (rig.cycle().limits(0) | rig.cycle().limits(1)) & (kAtBoardLimit | kAtOutputLimit);
-    saturated += (report.output.flags & kSaturated) != 0 || held != 0 ? 1 : 0;
+    const bool image = (report.output.flags & kSaturated) != 0,
+               board = (rig.cycle().limits(0) & kAtBoardLimit) != 0;
+    saturated += image || board ? 1 : 0;
+    by_image += image ? 1 : 0, by_board += board && !image ? 1 : 0;
   }
-  EXPECT_GT(saturated, 0u);
+  EXPECT_GT(by_image, 0u) << "beyond 30 um";
+  EXPECT_GT(by_board, 0u) << "between 10 and 30 um";
   EXPECT_EQ(rig.cycle().health().saturated - before, saturated);
+}
+
+// With a limit of 0 every correction is at its limit, but no correction is not.
+TEST(Cycle, AxisWithoutACorrectionIsAtNoLimit) {
+  Rig rig;  // at 20 degC, where Y needs none
+  const auto image = small_image();
+  BoundProgram bound(image->view);
+  std::vector<Output> outputs(bound.program.outputs.begin(), bound.program.outputs.end());
+  for (Output& out : outputs) out.limit = 0;
+  bound.program.outputs = {outputs.data(), static_cast<std::uint32_t>(outputs.size())};
+  rig.cycle().use(bound);
+  for (int i = 0; i < 100; ++i) rig.tick();
+  EXPECT_NE(rig.cycle().wanted(0).count, 0);
+  EXPECT_NE(rig.cycle().limits(0) & kAtImageLimit, 0);
+  EXPECT_EQ(rig.cycle().wanted(1).count, 0);
+  EXPECT_EQ(rig.cycle().limits(1) & kAtImageLimit, 0);
 }
 
 TEST(Cycle, InputAtTheEndOfItsPlausibleRangeIsPlausible) {

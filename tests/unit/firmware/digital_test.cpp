@@ -133,6 +133,29 @@ TEST_F(Digital, ClearedFaultWaitsForTheActivationAlthoughTheLineComesOn) {
   expect_wait(again);
 }
 
+TEST_F(Digital, FaultCanBeClearedWhileTheLineIsOffButNotAfterTheEnd) {
+  const auto clear = [&] {
+    const_cast<Exchange&>(rig_.service().exchange()).command = Command::kClearFault;
+    rig_.run(500);
+  };
+  const auto fault = [&] {
+    rig_.service().cycle().tick(TimeUs(1), Command::kNone, Fault::kOverrun);
+    enable_.on = false;
+    rig_.run(1000);
+    ASSERT_EQ(mode(), Mode::kFaulted);
+  };
+  enable_.on = true;
+  rig_.run(3000);
+  fault();
+  clear();
+  EXPECT_EQ(mode(), Mode::kReady);
+  EXPECT_EQ(rig_.plant().written(1), AxisTravel{});
+  fault();
+  rig_.service().end();
+  clear();
+  EXPECT_EQ(mode(), Mode::kFaulted);
+}
+
 TEST_F(Digital, HealthySaysSoFromReadyUntilAFault) {
   enable_.on = true;
   rig_.run(50);
@@ -174,6 +197,27 @@ TEST(DigitalPump, TogglesWhileAllIsWellAndStandsOtherwise) {
   rig.run(1000);
   EXPECT_EQ(healthy.writes, ended);
   EXPECT_FALSE(healthy.on);
+}
+
+// An edge that the line did not take is no edge: the relay behind it needs the next one in time.
+TEST(DigitalPump, EdgeThatTheLineRefusesComesInTheNextTickThatItTakes) {
+  const SigningKey key = new_key();
+  SimSlotStore store(1 << 16);
+  Switch healthy;
+  UploadRig rig(store, key, TimeUs(5'000'000), nullptr, &healthy, 10);
+  rig.send(make_upload(small_image_bytes(2e-5), key, 5, 0));
+  rig.run(2000);
+  for (const bool before = healthy.on; healthy.on == before;) rig.run(1);
+  const bool level = healthy.on;
+  healthy.broken = true;
+  rig.run(15);
+  healthy.broken = false;
+  rig.run(1);
+  EXPECT_NE(healthy.on, level);
+  rig.run(9);
+  EXPECT_NE(healthy.on, level);
+  rig.run(1);
+  EXPECT_EQ(healthy.on, level) << "ten ticks after the edge that the line took";
 }
 
 }  // namespace

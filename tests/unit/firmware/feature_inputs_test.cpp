@@ -214,6 +214,25 @@ TEST(FeatureInputs, BridgeAFewMissingSamplesAndStartAgainAfterMore) {
   EXPECT_EQ(answers(1), 1);
 }
 
+// Before the first sample there is nothing that could bridge a gap.
+TEST(FeatureInputs, SignalThatIsSilentAtFirstFillsItsWindowWithSamplesOnly) {
+  SetInputs source;
+  const FeatureRequest request{.input = 1, .of = 0, .feature = Feature::kRms, .window = 20, .bridged = 3};
+  FeatureInputs inputs(source, 2, {request}, TimeUs(1000));
+  InputMicro value;
+  source.silent[0] = true;
+  for (int i = 0; i < 3; ++i) inputs.begin_tick();
+  source.silent[0] = false;
+  source.values[0] = InputMicro(50'000);
+  for (int i = 0; i < 19; ++i) {
+    inputs.begin_tick();
+    EXPECT_EQ(inputs.read_input(1, value), HalFault::kNoReading) << i;
+  }
+  inputs.begin_tick();
+  ASSERT_EQ(inputs.read_input(1, value), HalFault::kNone);
+  EXPECT_EQ(value.count, 50'000);
+}
+
 TEST(FeatureInputs, AreSilentWhereUndefined) {
   SetInputs source;
   FeatureInputs inputs(source, 3,

@@ -127,6 +127,29 @@ TEST_F(InController, ClearWhileTheFaultIsStillRampedOutIsKeptUntilItIsOut) {
   EXPECT_EQ(cycle().mode(), Mode::kActive) << "the sensor is back";
 }
 
+// The second command was refused, and the clear was lost with it.
+TEST_F(InController, CommandThatIsRefusedMeanwhileDoesNotEndTheClear) {
+  for (int i = 0; i < 6000 && cycle().mode() != Mode::kRampOut; ++i) run(1);
+  ASSERT_EQ(cycle().mode(), Mode::kRampOut);
+  service_->order(Command::kClearFault);
+  run(1);
+  service_->order(Command::kActivate);
+  run(1);
+  EXPECT_EQ(cycle().health().refused_commands, 1u) << "the operator learns of it";
+  run(3000);
+  EXPECT_EQ(cycle().latched(), Fault::kNone);
+  EXPECT_EQ(cycle().mode(), Mode::kActive);
+}
+
+TEST_F(InController, ClearWithoutAFaultIsRefusedAndChangesNothing) {
+  run(2000);
+  ASSERT_EQ(cycle().mode(), Mode::kActive);
+  service_->order(Command::kClearFault);
+  run(10);
+  EXPECT_EQ(cycle().mode(), Mode::kActive);
+  EXPECT_EQ(cycle().health().refused_commands, 1u);
+}
+
 TEST_F(InController, ClearDoesNotBringInWhatWasTakenOut) {
   run(4000);
   service_->order(Command::kDeactivate);
@@ -218,6 +241,17 @@ TEST(ContinuousAxis, TakesAnImageInWhichItRollsOver) {
   EXPECT_EQ(bind(image->view, wiring, TimeUs(1000), bound, offender), BindFault::kAxisKind);
   wiring.axes = {{"X"}, {.name = "C", .rotary = true, .rollover = false, .continuous = true}};
   EXPECT_EQ(bind(image->view, wiring, TimeUs(1000), bound, offender), BindFault::kNone);
+}
+
+TEST(BoundAxis, RotaryAxisOfAnImageIsNoLinearAxisOfTheBoard) {
+  const auto image = small_image();
+  BoundProgram bound(image->view);
+  Name offender;
+  Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
+  EXPECT_EQ(bind(image->view, wiring, TimeUs(1000), bound, offender), BindFault::kNone);
+  wiring.axes = {{"X"}, {.name = "Y", .rotary = true}};
+  EXPECT_EQ(bind(image->view, wiring, TimeUs(1000), bound, offender), BindFault::kAxisKind);
+  EXPECT_EQ(offender, "Y");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <random>
 #include <set>
 
+#include "tests/support/interrupted_write.h"
 #include "tests/unit/firmware/upload_rig.h"
 #include "tools/text/words.h"
 #include "tools/upload/client.h"
@@ -342,20 +343,24 @@ TEST(Challenges, NeverRepeatAndDifferBetweenStarts) {
   for (const int count : ones) EXPECT_NEAR(count, mean, most);
 }
 
-/// A signed command that answers a challenge.
-std::vector<std::uint8_t> signed_hold(const SigningKey& key, const ChallengeReply& answers) {
+/// A signed request (its op and payload) that answers a challenge.
+std::vector<std::uint8_t> signed_request(const SigningKey& key, const ChallengeReply& answers,
+                                         const std::vector<std::uint8_t>& rest) {
   SignedRequestHead head{};
   std::memcpy(head.magic, kRequestMagic, sizeof(head.magic));
   std::memcpy(head.nonce, answers.nonce, sizeof(head.nonce));
   std::memcpy(head.challenge, answers.challenge, sizeof(head.challenge));
-  const std::vector<std::uint8_t> rest = {static_cast<std::uint8_t>(LinkOp::kCommand),
-                                          static_cast<std::uint8_t>(Command::kHold)};
   const SignedRequest proof = sign_request(key, head, rest);
   std::vector<std::uint8_t> request = {static_cast<std::uint8_t>(LinkOp::kSigned), 1};
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&proof);
   request.insert(request.end(), bytes, bytes + sizeof(proof));
   request.insert(request.end(), rest.begin(), rest.end());
   return request;
+}
+
+std::vector<std::uint8_t> signed_hold(const SigningKey& key, const ChallengeReply& answers) {
+  return signed_request(
+      key, answers, {static_cast<std::uint8_t>(LinkOp::kCommand), static_cast<std::uint8_t>(Command::kHold)});
 }
 
 // Four clients without a key that asked for challenges were enough.
@@ -390,6 +395,61 @@ TEST(Challenges, OfOthersDoNotUseUpTheOperatorsOne) {
   gate.forget(kOperator);
   EXPECT_EQ(opened(gate.challenge(LinkAccess::kCommand, {1, 2}, TimeUs(0))), LinkStatus::kStale)
       << "of another connection";
+}
+
+TEST(SignedRequests, AreTakenForTheRightsOfTheirKeyUntilItIsRetired) {
+  const auto status = [](const TrustedKey& rights, LinkOp op) {
+    const SigningKey key = new_key();
+    BoardIdentity identity;
+    TrustedKey trusted = rights;
+    trusted.key = key.public_part();
+    identity.keys.push_back(trusted);
+    Gate gate(identity, Nonce{1}, ChallengeSeed{1});
+    const auto request = signed_request(key, gate.challenge(LinkAccess::kUpload, {}, TimeUs(0)),
+                                        {static_cast<std::uint8_t>(op), 1});
+    return gate
+        .open(request.data(), static_cast<std::uint32_t>(request.size()), LinkAccess::kUpload, {}, TimeUs(0))
+        .status;
+  };
+  TrustedKey operators, engineers, former;
+  operators.upload = engineers.command = false, former.retired = true;
+  EXPECT_EQ(status({}, LinkOp::kCommand), LinkStatus::kDone);
+  EXPECT_EQ(status({}, LinkOp::kConfirm), LinkStatus::kDone);
+  EXPECT_EQ(status(operators, LinkOp::kCommand), LinkStatus::kDone);
+  EXPECT_EQ(status(operators, LinkOp::kConfirm), LinkStatus::kBadSignature);
+  EXPECT_EQ(status(engineers, LinkOp::kCommand), LinkStatus::kBadSignature);
+  EXPECT_EQ(status(engineers, LinkOp::kConfirm), LinkStatus::kDone);
+  EXPECT_EQ(status(former, LinkOp::kCommand), LinkStatus::kBadSignature);
+  EXPECT_EQ(status(former, LinkOp::kConfirm), LinkStatus::kBadSignature);
+}
+
+// No longer request is copied, and none is executed: the link answers that its length is wrong.
+TEST_F(GateTest, RequestOfAnImpossibleSizeIsNeitherOpenedNorExecuted) {
+  const BoardIdentity identity(key_.public_part());
+  Gate gate(identity, Nonce{1}, ChallengeSeed{1});
+  std::vector<std::uint8_t> request(kMaxRequestBytes, 0);
+  const auto opened = [&] {
+    return gate.open(request.data(), static_cast<std::uint32_t>(request.size()), LinkAccess::kUpload, {},
+                     TimeUs(0));
+  };
+  const auto answer = [&](LinkOp op) {
+    request[0] = static_cast<std::uint8_t>(op);
+    return static_cast<LinkStatus>(way_->ask(request).at(2));
+  };
+  request[0] = static_cast<std::uint8_t>(LinkOp::kCommand);
+  EXPECT_EQ(opened().status, LinkStatus::kUnsigned) << "the longest request";
+  request.push_back(0);
+  EXPECT_EQ(opened().status, LinkStatus::kDone);
+  EXPECT_EQ(opened().request, request.data());
+  for (const LinkOp op : {LinkOp::kCommand, LinkOp::kSigned, LinkOp::kHello})
+    EXPECT_EQ(answer(op), LinkStatus::kBadLength) << static_cast<int>(op);
+  request = {static_cast<std::uint8_t>(LinkOp::kCommand)};
+  EXPECT_EQ(opened().status, LinkStatus::kDone);
+  EXPECT_TRUE(way_->ask(request).empty()) << "half a head";
+  request[0] = static_cast<std::uint8_t>(LinkOp::kIdentify);
+  EXPECT_FALSE(Gate::is_identify(request.data(), 1));
+  request.push_back(1);
+  EXPECT_TRUE(Gate::is_identify(request.data(), 2));
 }
 
 // What touches the store is executed beside the links: exactly these requests, also without any payload.
@@ -514,6 +574,106 @@ TEST_F(LinkTest, ImageIsOnTrialWhileTheOneOnTrialRuns) {
   EXPECT_EQ(image(), ImageState::kConfirmed);
   rig_.run(10);
   EXPECT_EQ(image(), ImageState::kTrial);
+}
+
+/// The status of a request without a payload, or with a given one.
+LinkStatus status_of(Link& link, LinkOp op, const std::vector<std::uint8_t>& payload = {}) {
+  std::vector<std::uint8_t> request = {static_cast<std::uint8_t>(op), 1};
+  request.insert(request.end(), payload.begin(), payload.end());
+  std::uint8_t reply[kMaxReplyBytes] = {};
+  link.answer(request.data(), static_cast<std::uint32_t>(request.size()), reply, TimeUs(1));
+  return static_cast<LinkStatus>(reply[2]);
+}
+
+TEST_F(LinkTest, BeforeTheFirstTickThereIsNoState) {
+  for (const LinkOp op : {LinkOp::kTick, LinkOp::kState}) {
+    UploadRig blank(store_, key_);
+    Link link(const_cast<Exchange&>(blank.service().exchange()), blank.uploader(), wiring_, TimeUs(1000),
+              identity_);
+    EXPECT_EQ(status_of(link, op), LinkStatus::kNotReady);
+    blank.run(1);
+    EXPECT_EQ(status_of(link, op), LinkStatus::kDone);
+  }
+}
+
+// The tick may be interrupted at any point: a link shows nothing rather than half of it.
+TEST_F(LinkTest, HalfWrittenStateIsNotShown) {
+  rig_.run(10);
+  auto& exchange = const_cast<Exchange&>(rig_.service().exchange());
+  std::uint16_t registers[kLiveRegisters];
+  const auto mode = [&] {
+    link_.fill_registers(registers);
+    return static_cast<Mode>(registers[kLiveMode]);
+  };
+  {
+    const InterruptedWrite write(exchange.state);
+    EXPECT_EQ(status_of(link_, LinkOp::kState), LinkStatus::kNotReady);
+    EXPECT_EQ(status_of(link_, LinkOp::kTick), LinkStatus::kDone);
+    EXPECT_EQ(mode(), Mode::kChecking);
+  }
+  {
+    const InterruptedWrite write(exchange.health);
+    EXPECT_EQ(status_of(link_, LinkOp::kHealth, {0}), LinkStatus::kNotReady);
+    EXPECT_EQ(mode(), Mode::kBoot) << "registers of zeros";
+  }
+  EXPECT_EQ(mode(), Mode::kChecking);
+  EXPECT_EQ(status_of(link_, LinkOp::kState), LinkStatus::kDone);
+}
+
+TEST_F(LinkTest, SharesAreThoseOfTheRunningProgramOrNone) {
+  constexpr int kPublishedEvery = 100;  // ticks; Service::kTicksPerEquation
+  const auto shares = [&] { return status_of(link_, LinkOp::kShares, {0, 0}); };
+  auto& exchange = const_cast<Exchange&>(rig_.service().exchange());
+  EXPECT_EQ(shares(), LinkStatus::kNotReady) << "nothing runs";
+  for (const std::uint64_t issued : {5u, 6u}) {
+    const auto image = make_upload(small_image_bytes(1e-5 * static_cast<double>(issued)), key_, issued, 0);
+    ASSERT_EQ(rig_.send(image).fault, UploadFault::kNone);
+    rig_.run(3);
+    ASSERT_EQ(rig_.uploader().confirm().fault, UploadFault::kNone);
+    rig_.run(3);
+    EXPECT_EQ(shares(), LinkStatus::kNotReady) << "published of the program before, or of none";
+    rig_.run(kPublishedEvery);
+    EXPECT_EQ(shares(), LinkStatus::kDone);
+  }
+  const InterruptedWrite write(exchange.equation);
+  EXPECT_EQ(shares(), LinkStatus::kNotReady);
+}
+
+TEST_F(LinkTest, NameOfAShareBelongsToOneProgram) {
+  ASSERT_EQ(rig_.send(make_upload(small_image_bytes(2e-5), key_, 5, 0)).fault, UploadFault::kNone);
+  rig_.run(10);
+  const auto name = [&](std::uint16_t index, std::uint32_t programs) {
+    std::vector<std::uint8_t> payload(6);
+    std::memcpy(payload.data(), &index, sizeof(index));
+    std::memcpy(payload.data() + 2, &programs, sizeof(programs));
+    return status_of(link_, LinkOp::kShareName, payload);
+  };
+  const auto names = static_cast<std::uint16_t>(rig_.service().cycle().program().share_names.size);
+  ASSERT_GT(names, 0);
+  EXPECT_EQ(name(static_cast<std::uint16_t>(names - 1), 1), LinkStatus::kDone);
+  EXPECT_EQ(name(names, 1), LinkStatus::kBadValue) << "beyond the shares";
+  EXPECT_EQ(name(0, 2), LinkStatus::kBadValue) << "of another program";
+}
+
+// The trial before has ended for the tick, but not yet for the medium or the guardian.
+TEST_F(LinkTest, UploadBeginsWhenTheTrialBeforeIsPutAway) {
+  const auto begin = [&] { return status_of(link_, LinkOp::kBegin, {0, 1, 0, 0}); };
+  Uploader& uploader = rig_.uploader();
+  const auto guard = [&] { uploader.programs().guard(TimeUs(1)); };
+  ASSERT_EQ(rig_.send(make_upload(small_image_bytes(2e-5), key_, 5, 0)).fault, UploadFault::kNone);
+  guard();
+  EXPECT_EQ(begin(), LinkStatus::kRefused) << "on trial";
+  ASSERT_EQ(uploader.confirm().fault, UploadFault::kNone);
+  EXPECT_EQ(begin(), LinkStatus::kNotReady) << "the guardian does not know it yet";
+  guard();
+  EXPECT_EQ(begin(), LinkStatus::kDone);
+  ASSERT_EQ(rig_.send(make_upload(small_image_bytes(3e-5), key_, 6, 0)).fault, UploadFault::kNone);
+  guard();
+  ASSERT_EQ(uploader.revert().fault, UploadFault::kNone);
+  guard();
+  EXPECT_EQ(begin(), LinkStatus::kNotReady) << "the medium does not say it yet";
+  ASSERT_TRUE(uploader.look_after_store());
+  EXPECT_EQ(begin(), LinkStatus::kDone);
 }
 
 TEST_F(LinkTest, OnlyAxesAndInputsHaveNames) {

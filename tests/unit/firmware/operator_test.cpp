@@ -24,6 +24,18 @@ void spoil(SimSlotStore& store, std::uint32_t place, std::uint32_t byte, std::ui
   store.write_record(place, bytes, sizeof(bytes));
 }
 
+/// Writes a state to both places, as a board does.
+void put(SimSlotStore& store, const OperatorState& state) {
+  OperatorRecords records;
+  for (int i = 0; i < 2; ++i) {
+    const OperatorChange change = records.change_to(state);
+    std::uint8_t bytes[sizeof(OperatorRecord)];
+    std::memcpy(bytes, &change.record, sizeof(bytes));
+    ASSERT_EQ(store.write_record(change.place, bytes, sizeof(bytes)), HalFault::kNone);
+    records.stored(change);
+  }
+}
+
 class OperatorSetting : public testing::Test {
  protected:
   OperatorSetting() {
@@ -137,6 +149,41 @@ TEST_F(OperatorSetting, RecordHasTheAxesOfTheBoardAndNoFurtherOne) {
     EXPECT_EQ(record.state.axis[i], 0u) << i;
     EXPECT_EQ(record.state.weight[i], 0) << i;
   }
+}
+
+TEST_F(OperatorSetting, StoredWeightThatNoAxisCanHaveIsIgnored) {
+  const auto restored = [&](std::int32_t weight) {
+    OperatorState state;
+    state.axis[0] = operator_axis("X", 1), state.weight[0] = weight;
+    put(store_, state);
+    UploadRig rig(store_, key_);
+    EXPECT_EQ(rig.service().operator_memory().found(), StoredPair::kIntact);
+    return exchange(rig).axis_weight[0].load();
+  };
+  EXPECT_EQ(restored(0), 0);
+  EXPECT_EQ(restored(kFullWeight.count / 2), kFullWeight.count / 2);
+  EXPECT_EQ(restored(-1), kFullWeight.count);
+  EXPECT_EQ(restored(kFullWeight.count + 1), kFullWeight.count);
+}
+
+// Of a later firmware, whose fault may be still there.
+TEST_F(OperatorSetting, StoredFaultThatThisFirmwareDoesNotKnowKeepsTheCorrectionOut) {
+  OperatorState state;
+  state.fault = kFaultCount - 1;
+  put(store_, state);
+  {
+    UploadRig rig(store_, key_);
+    EXPECT_EQ(rig.service().cycle().latched(), static_cast<Fault>(kFaultCount - 1));
+    EXPECT_FALSE(rig.service().deactivated());
+  }
+  state.fault = kFaultCount;
+  put(store_, state);
+  UploadRig rig(store_, key_);
+  EXPECT_EQ(rig.service().cycle().latched(), Fault::kNone);
+  EXPECT_TRUE(rig.service().deactivated());
+  rig.run(3000);
+  EXPECT_EQ(mode(rig), Mode::kReady);
+  EXPECT_EQ(rig.plant().written(0), AxisTravel{});
 }
 
 TEST_F(OperatorSetting, LatchedFaultOutlivesAStartUntilItIsCleared) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/approach.h"
+#include "tests/support/interrupted_write.h"
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
 
@@ -99,6 +100,78 @@ TEST(Probing, SaysThatTheRingHasForgottenALateEdge) {
   const auto touches = rig.touches();
   ASSERT_EQ(touches.size(), 1u);
   EXPECT_EQ(touches[0].fault, static_cast<std::uint8_t>(LatchFault::kTooOld));
+}
+
+// The line was closed before the board saw it: when the contact closed is not known, so it has no position.
+TEST(Probing, MissedTouchIsToldWithoutAPosition) {
+  const Profile profile{.feed_mm_s = 10};
+  TouchRig rig(profile, published_probe(), kResolution);
+  rig.run(profile, {{0.2, false}, {0.3, true}, {0.32, false}}, kResolution);
+  const auto touches = rig.touches();
+  ASSERT_EQ(touches.size(), 2u);
+  EXPECT_EQ(touches[0].kind, static_cast<std::uint8_t>(TouchKind::kMissed));
+  EXPECT_EQ(touches[0].fault, 0);
+  EXPECT_EQ(touches[0].missing, 1u);
+  EXPECT_EQ(touches[0].flags & kTouchInWorkpiece, 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(touches[0].position[i], 0);
+    EXPECT_EQ(touches[0].workpiece_nm[i], 0);
+  }
+  EXPECT_EQ(touches[1].kind, static_cast<std::uint8_t>(TouchKind::kTouch));
+  EXPECT_NE(touches[1].position[0], 0);
+}
+
+TEST(Probing, RotaryAxisNamedXIsNoCoordinateOfTheWorkpiece) {
+  const Profile profile{.feed_mm_s = 10};
+  TouchRig rig(profile, published_probe(), kResolution, {}, {.name = "X", .rotary = true});
+  rig.run(profile, {{0.2, true}, {0.22, false}}, kResolution);
+  const auto touches = rig.touches();
+  ASSERT_EQ(touches.size(), 1u);
+  EXPECT_EQ(touches[0].fault, 0);
+  EXPECT_NE(touches[0].position[0], 0);
+  EXPECT_EQ(touches[0].flags & kTouchInWorkpiece, 0);
+  for (const std::int64_t coordinate : touches[0].workpiece_nm) EXPECT_EQ(coordinate, 0);
+}
+
+/// Encoders that are 5 um beyond the command; that of Y gives no reading.
+class Encoders : public PositionReader {
+ public:
+  HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
+    if (plant == nullptr || axis == 1) return HalFault::kNoReading;
+    const HalFault fault = plant->read_axis(axis, reading);
+    reading.position.count += 5000;
+    return fault;
+  }
+  SimPlant* plant = nullptr;
+};
+
+TEST(Probing, TakesTheActualPositionAndTheCommandedOneOfAnAxisWithoutAReading) {
+  const Profile profile{.feed_mm_s = 10};
+  Encoders encoders;
+  TouchRig commanded(profile, published_probe(), kResolution),
+      actual(profile, published_probe(), kResolution, {}, {"X"}, &encoders);
+  encoders.plant = &actual.plant;
+  for (TouchRig* const rig : {&commanded, &actual})
+    rig->run(profile, {{0.2, true}, {0.22, false}}, kResolution);
+  ASSERT_EQ(commanded.touches().size(), 1u);
+  ASSERT_EQ(actual.touches().size(), 1u);
+  const TouchRecord by_command = commanded.touches()[0], by_encoder = actual.touches()[0];
+  EXPECT_EQ(by_encoder.position[0], by_command.position[0] + 5000);
+  EXPECT_EQ(by_encoder.position[1], by_command.position[1]) << "no reading";
+  EXPECT_EQ(by_encoder.position[2], by_command.position[2] + 5000);
+}
+
+TEST(Probing, TouchWaitsForAFrameThatIsBeingWritten) {
+  const Profile profile{.feed_mm_s = 10};
+  TouchRig rig(profile, published_probe(), kResolution);
+  auto& exchange = const_cast<Exchange&>(rig.service->exchange());
+  {
+    const InterruptedWrite write(exchange.workpiece);
+    rig.run(profile, {{0.2, true}, {0.22, false}}, kResolution);
+    EXPECT_TRUE(rig.touches().empty());
+  }
+  rig.plant.advance(), rig.service->tick();
+  EXPECT_EQ(rig.touches().size(), 1u);
 }
 
 TEST(Probing, TurnsIntoTheWorkpiecesCoordinates) {

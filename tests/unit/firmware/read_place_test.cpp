@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "tables/operator_record.h"
 #include "tables/slots.h"
 
 namespace vernier::read_place_test {
@@ -37,40 +38,46 @@ class OnePlace : public SlotStore {
   HalFault finish_image(std::uint32_t, std::uint32_t) noexcept override { return HalFault::kRefused; }
 };
 
-TEST(ReadPlace, PlaceThatIsNotThereIsNotWritten) {
+/// Every kind of record that a store has.
+template <class Record>
+class ReadPlace : public testing::Test {};
+using Records = testing::Types<SlotRecord, SlotRecordV1, OperatorRecord>;
+TYPED_TEST_SUITE(ReadPlace, Records);
+
+TYPED_TEST(ReadPlace, PlaceThatIsNotThereIsNotWritten) {
   OnePlace store;
   for (const HalFault nothing : {HalFault::kNoReading, HalFault::kNoDevice}) {
     store.without = nothing;
-    EXPECT_FALSE(read_place<SlotRecord>(store, 0).written);
+    EXPECT_FALSE(read_place<TypeParam>(store, 0).written);
   }
   store.without = HalFault::kRefused;
-  EXPECT_TRUE(read_place<SlotRecord>(store, 0).written) << "an empty file, or one that cannot be read";
+  EXPECT_TRUE(read_place<TypeParam>(store, 0).written) << "an empty file, or one that cannot be read";
 }
 
-TEST(ReadPlace, ErasedFlashIsNotWrittenAndOneOtherByteIs) {
+TYPED_TEST(ReadPlace, ErasedFlashIsNotWrittenAndOneOtherByteIs) {
   OnePlace store;
-  store.bytes.assign(sizeof(SlotRecord), 0xff);
-  EXPECT_FALSE(read_place<SlotRecord>(store, 0).written);
+  store.bytes.assign(sizeof(TypeParam), 0xff);
+  EXPECT_FALSE(read_place<TypeParam>(store, 0).written);
   store.bytes.back() = 0xfe;
-  EXPECT_TRUE(read_place<SlotRecord>(store, 0).written);
+  EXPECT_TRUE(read_place<TypeParam>(store, 0).written);
 }
 
-TEST(ReadPlace, FurtherBytesAreNoneOfARecord) {
+TYPED_TEST(ReadPlace, FurtherBytesAreNoneOfARecord) {
   OnePlace store;
-  store.bytes.assign(sizeof(SlotRecord), 0);
+  store.bytes.assign(sizeof(TypeParam), 0);
   store.bytes[0] = 7;
-  EXPECT_EQ(read_place<SlotRecord>(store, 0).record.magic, 7u);
+  EXPECT_EQ(read_place<TypeParam>(store, 0).record.magic, 7u);
   store.bytes.push_back(0xff);
-  EXPECT_EQ(read_place<SlotRecord>(store, 0).record.magic, 7u) << "flash behind the record is erased";
+  EXPECT_EQ(read_place<TypeParam>(store, 0).record.magic, 7u) << "flash behind the record is erased";
   store.ones = false;
-  EXPECT_EQ(read_place<SlotRecord>(store, 0).record.magic, 0u) << "a file has no bytes behind it";
-  EXPECT_TRUE(read_place<SlotRecord>(store, 0).written);
+  EXPECT_EQ(read_place<TypeParam>(store, 0).record.magic, 0u) << "a file has no bytes behind it";
+  EXPECT_TRUE(read_place<TypeParam>(store, 0).written);
   store.ones = true;
   store.bytes.back() = 0;
-  EXPECT_EQ(read_place<SlotRecord>(store, 0).record.magic, 0u);
-  store.bytes.resize(sizeof(SlotRecord) - 1);
-  EXPECT_EQ(read_place<SlotRecord>(store, 0).record.magic, 0u) << "cut";
-  EXPECT_TRUE(read_place<SlotRecord>(store, 0).written);
+  EXPECT_EQ(read_place<TypeParam>(store, 0).record.magic, 0u);
+  store.bytes.resize(sizeof(TypeParam) - 1);
+  EXPECT_EQ(read_place<TypeParam>(store, 0).record.magic, 0u) << "cut";
+  EXPECT_TRUE(read_place<TypeParam>(store, 0).written);
 }
 
 }  // namespace

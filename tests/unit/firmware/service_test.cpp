@@ -5,8 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <optional>
 
 #include "tests/unit/firmware/upload_rig.h"
+#include "tools/text/error.h"
+#include "tools/upload/client.h"
 
 namespace vernier::service_test {
 namespace {
@@ -36,13 +40,14 @@ struct KeptHandler : CommandLink {
   CommandHandler* handler = nullptr;
 };
 
-/// A service whose store has its own context.
+/// A service whose store has its own context; `beside` false: a link waits for the store.
 class BesideStore : public testing::Test {
  protected:
-  BesideStore() {
+  explicit BesideStore(const BoardIdentity& identity = {}, bool beside = true) {
     ServiceOptions options;
     options.wiring = {{{"X"}, {"Y"}}, {"T"}};
-    options.store_beside = true;
+    options.store_beside = beside;
+    options.upload.identity = identity;
     service_ = std::make_unique<Service>(options, Board{clock_, plant_, plant_, plant_}, store_);
     service_->boot();
     service_->serve(link_, TimeUs(0), {.access = LinkAccess::kUpload, .plain_commands = true});
@@ -52,6 +57,13 @@ class BesideStore : public testing::Test {
     for (int i = 0; i < ticks; ++i) plant_.advance(), service_->tick();
   }
   std::uint32_t later() { return link_.handler->later(ticket_, reply_); }
+  /// The status of the reply; no value: the reply comes later.
+  std::optional<LinkStatus> ask(const std::vector<std::uint8_t>& request) {
+    const auto size = static_cast<std::uint32_t>(request.size());
+    if (link_.handler->answer(request.data(), size, reply_) == CommandHandler::kLater) return std::nullopt;
+    return static_cast<LinkStatus>(reply_[2]);
+  }
+  std::optional<LinkStatus> ask(LinkOp op) { return ask({static_cast<std::uint8_t>(op), 1}); }
   void give(Command command) {
     ASSERT_EQ(link_.handler->give(static_cast<std::uint16_t>(command)), CommandGiven::kLater);
     ticket_ = link_.handler->ticket();
@@ -86,6 +98,65 @@ TEST_F(BesideStore, LinksAreWokenWhenARequestIsDone) {
   EXPECT_TRUE(service_->look_after_store());
   EXPECT_NE(later(), CommandHandler::kLater);
   EXPECT_FALSE(service_->look_after_store());
+}
+
+TEST_F(BesideStore, TakesOneRequestAtATimeAndALinkAnswersTheOthers) {
+  ASSERT_EQ(ask(LinkOp::kConfirm), std::nullopt);
+  for (int i = 0; i < 20; ++i)
+    EXPECT_EQ(ask(LinkOp::kConfirm), LinkStatus::kNotReady) << "still in the store";
+  EXPECT_EQ(ask(LinkOp::kHello), LinkStatus::kDone) << "needs no store";
+  EXPECT_TRUE(service_->look_after_store());
+  // A client that does not collect its reply has gone: after ten refusals the store is free again.
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(ask(LinkOp::kConfirm), LinkStatus::kNotReady) << i;
+  EXPECT_EQ(ask(LinkOp::kConfirm), std::nullopt);
+}
+
+TEST_F(BesideStore, OnlyASettingThatActsIsAnsweredLater) {
+  const auto weight_of = [](std::uint8_t axis) {
+    return std::vector<std::uint8_t>{static_cast<std::uint8_t>(LinkOp::kWeight), 1, axis, 0, 0, 0, 0};
+  };
+  EXPECT_EQ(ask(weight_of(7)), LinkStatus::kBadValue) << "no such axis: nothing will be stored";
+  EXPECT_EQ(ask(LinkOp::kHello), LinkStatus::kDone) << "no setting";
+  EXPECT_EQ(ask({static_cast<std::uint8_t>(LinkOp::kBegin), 1, 0, 1, 0, 0}), LinkStatus::kRefused)
+      << "an upload begins in memory";
+  EXPECT_EQ(ask(weight_of(0)), std::nullopt);
+}
+
+TEST_F(BesideStore, HalfARequestHasNoReply) {
+  for (const LinkOp op : {LinkOp::kHello, LinkOp::kCommand, LinkOp::kIdentify, LinkOp::kSigned}) {
+    const auto code = static_cast<std::uint8_t>(op);
+    reply_[0] = 0xaa;
+    EXPECT_EQ(link_.handler->answer(&code, 1, reply_), 0u) << int{code};
+    EXPECT_EQ(reply_[0], 0xaa) << int{code};
+  }
+}
+
+TEST_F(BesideStore, RegisterGivesAWholeCommandAndOneUntilTheTickTakesIt) {
+  constexpr auto kDeactivate = static_cast<std::uint16_t>(Command::kDeactivate);
+  EXPECT_EQ(link_.handler->give(0x100 | kDeactivate), CommandGiven::kRefused) << "not its low byte";
+  EXPECT_EQ(service_->exchange().command.load(), Command::kNone);
+  EXPECT_EQ(link_.handler->give(kDeactivate), CommandGiven::kLater);
+  EXPECT_EQ(link_.handler->give(kDeactivate), CommandGiven::kRefused) << "the tick has not taken the first";
+}
+
+TEST_F(BesideStore, RefusalByTheMediumIsAnsweredAtOnceForTheSettingThatItRefused) {
+  service_->look_after_store();
+  store_.cut_power_after(0);
+  for (int setting = 0; setting < 2; ++setting) {
+    give(Command::kDeactivate);
+    EXPECT_FALSE(service_->look_after_store()) << "the tick has not taken the command";
+    EXPECT_EQ(later(), CommandHandler::kLater) << "the medium has refused only earlier settings";
+    run(3);
+    EXPECT_TRUE(service_->look_after_store());
+    ASSERT_EQ(later(), 1u);
+    EXPECT_EQ(reply_[0], 1) << "not stored";
+  }
+  store_.restore_power();
+  give(Command::kDeactivate);
+  run(3);
+  EXPECT_TRUE(service_->look_after_store());
+  ASSERT_EQ(later(), 1u);
+  EXPECT_EQ(reply_[0], 0) << "stored";
 }
 
 TEST_F(BesideStore, SettingThatTheStoreDoesNotTakeIsAnsweredAfterFiveSeconds) {
@@ -127,6 +198,98 @@ TEST_F(BesideStore, PercentilesArePublishedOfTheWholeTimes) {
   EXPECT_NEAR(static_cast<double>(health.latency_ns[0]), 5e3, 200);
   EXPECT_NEAR(static_cast<double>(health.latency_ns[1]), 20e3, 800);
   EXPECT_NEAR(static_cast<double>(health.latency_ns[2]), 100e3, 4000);
+}
+
+class StoreInTheLink : public BesideStore {
+ protected:
+  StoreInTheLink() : BesideStore({}, false) {}
+};
+
+TEST_F(StoreInTheLink, EveryRequestIsAnsweredAtOnce) {
+  EXPECT_EQ(ask({static_cast<std::uint8_t>(LinkOp::kWeight), 1, 0, 0, 0, 0, 0}), LinkStatus::kDone);
+  EXPECT_EQ(ask(LinkOp::kConfirm), LinkStatus::kRefused) << "no trial";
+  EXPECT_EQ(link_.handler->give(static_cast<std::uint16_t>(Command::kDeactivate)), CommandGiven::kTaken);
+}
+
+/// A client that waits for replies; `meanwhile` runs before it looks again.
+struct Waits : upload::Transport {
+  Waits(CommandHandler& one, const std::function<void()>& act) : handler(one), meanwhile(act) {}
+  std::vector<std::uint8_t> ask(const std::vector<std::uint8_t>& request) override {
+    std::vector<std::uint8_t> reply(kMaxReplyBytes);
+    std::uint32_t size =
+        handler.answer(request.data(), static_cast<std::uint32_t>(request.size()), reply.data());
+    const std::uint32_t ticket = handler.ticket();
+    for (int looks = 0; size == CommandHandler::kLater && looks < 20; ++looks) {
+      meanwhile();
+      size = handler.later(ticket, reply.data());
+    }
+    EXPECT_NE(size, CommandHandler::kLater);
+    reply.resize(size == CommandHandler::kLater ? 0 : size);
+    return reply;
+  }
+  CommandHandler& handler;
+  const std::function<void()>& meanwhile;
+};
+
+struct HasKey {
+  SigningKey key_ = new_key();
+};
+
+/// As above, with a key, and a client that signs with it.
+class BesideStoreWithKey : protected HasKey, public BesideStore {
+ protected:
+  BesideStoreWithKey() : BesideStore(BoardIdentity(key_.public_part())) { board_.sign_with(key_); }
+  std::function<void()> meanwhile_ = [this] { service_->look_after_programs(); };
+  upload::Client board_{std::make_unique<Waits>(*link_.handler, meanwhile_)};
+};
+
+// The client of a revert may upload the next image at once: by then the guardian has ended the trial.
+TEST_F(BesideStoreWithKey, RevertIsAnsweredWhenTheGuardianHasEndedTheTrial) {
+  int looks = 0, woken = 0;
+  const auto store_looks = [&] { ++looks, woken += service_->look_after_store() ? 1 : 0; };
+  meanwhile_ = store_looks;
+  EXPECT_THROW(board_.revert(), text::LimitNotMet) << "no trial";
+  EXPECT_EQ(looks, 1) << "nothing to wait for";
+  meanwhile_ = [&] { service_->look_after_programs(); };
+  const auto image = make_upload(small_image_bytes(2e-5), key_, 5, 0);
+  board_.upload(image, [](double) {});
+  board_.confirm();
+  meanwhile_();
+  run(3);
+  meanwhile_();
+  board_.upload(make_upload(small_image_bytes(3e-5), key_, 6, 0), [](double) {});
+  meanwhile_();
+  ASSERT_EQ(service_->uploader().programs().trial(), Trial::kRunning);
+  // WHEN the guardian runs only after the store has looked three times
+  looks = woken = 0;
+  meanwhile_ = [&] {
+    if (looks == 3) {
+      EXPECT_EQ(woken, 0) << "no reply yet";
+      service_->guard();
+    }
+    store_looks();
+  };
+  board_.revert();
+  EXPECT_EQ(looks, 4);
+  EXPECT_EQ(woken, 1);
+  // AND a second revert finds no trial, and does not wait for one
+  looks = 0, meanwhile_ = store_looks;
+  EXPECT_THROW(board_.revert(), text::LimitNotMet);
+  EXPECT_EQ(looks, 1);
+}
+
+TEST_F(BesideStoreWithKey, OnlyTheRevertItselfWaitsForTheEndOfATrial) {
+  const auto image = make_upload(small_image_bytes(2e-5), key_, 5, 0);
+  board_.upload(image, [](double) {});
+  board_.confirm();
+  meanwhile_();
+  board_.upload(make_upload(small_image_bytes(3e-5), key_, 6, 0), [](double) {});
+  meanwhile_();
+  // GIVEN a revert that the guardian has not executed yet
+  ASSERT_EQ(const_cast<Uploader&>(service_->uploader()).revert().fault, UploadFault::kNone);
+  ASSERT_TRUE(service_->uploader().programs().giving_up());
+  meanwhile_ = [&] { service_->look_after_store(); };
+  EXPECT_EQ(board_.confirmed([](double) {}), image);
 }
 
 TEST(ServiceState, IsThatOfTheAxesOfTheBoardOnly) {

@@ -117,5 +117,24 @@ TEST(Sync, StandingStillIsAFaultOfTheClock) {
   EXPECT_EQ(bench.report.latched, Fault::kClock);
 }
 
+// No tick takes longer than the count of a thousand; the schedule starts again with the sign.
+TEST(Sync, NoMoreThanAThousandLeftOutSignsAreCounted) {
+  Rig rig;
+  SimClock clock;
+  Signs signs(clock);
+  Runner runner(rig.cycle(), clock, TimeUs(500), &signs, TimeUs(20'000));
+  signs.at = {InstantNs(500'000)};
+  runner.step(Command::kNone);
+  clock.spend(InstantNs(900'000'000));  // 1800 periods, and less than a step of the clock
+  signs.at = {clock.now(), clock.now() + InstantNs(500'000)};
+  const InstantNs late = clock.now();
+  runner.step(Command::kNone);
+  EXPECT_EQ(rig.cycle().health().skipped, 1000u);
+  EXPECT_EQ(runner.woke(), late);
+  runner.step(Command::kNone);
+  EXPECT_EQ(runner.woke(), late + InstantNs(500'000));
+  EXPECT_EQ(rig.cycle().health().skipped, 1000u);
+}
+
 }  // namespace
 }  // namespace vernier::sync_test

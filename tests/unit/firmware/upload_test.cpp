@@ -201,6 +201,9 @@ INSTANTIATE_TEST_SUITE_P(
                   bytes = signed_again({bytes.begin() + sizeof(UploadHeader), bytes.end()}, key, kIssued + 1,
                                        kSecurity, "mill-2");
                 }},
+        Refused{"NotAnUpload", UploadFault::kNotAnUpload, [](auto& bytes, const auto&) { bytes[0] = 'v'; }},
+        Refused{"HeaderOfAnotherSize", UploadFault::kNotAnUpload,
+                [](auto& bytes, const auto&) { bytes[offsetof(UploadHeader, header_bytes)] ^= 8; }},
         Refused{"OldForm", UploadFault::kOldForm,
                 [](auto& bytes, const auto&) {
                   std::memcpy(bytes.data(), kUploadMagicV1, sizeof(kUploadMagicV1));
@@ -252,9 +255,29 @@ TEST_F(Upload, RetiredKeyKeepsItsImageRunningAndSignsNoOther) {
   EXPECT_TRUE(without.image_lost());
 }
 
-TEST_F(Upload, StoreOfTheVersionBeforeRuns) {
+TEST_F(Upload, KeyWithoutTheRightSignsNoImage) {
+  const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
+  for (const bool may : {true, false}) {
+    Exchange exchange;
+    BoardIdentity identity;
+    identity.keys.push_back({.key = key_.public_part(), .name = {}, .upload = may});
+    SimSlotStore store(1 << 16);
+    Uploader uploader(store, wiring, exchange, {TimeUs(1000), identity});
+    const auto bytes = upload(2e-5);
+    const auto size = static_cast<std::uint32_t>(bytes.size());
+    ASSERT_EQ(uploader.begin(size).fault, UploadFault::kNone);
+    ASSERT_EQ(uploader.add(0, bytes.data(), size).fault, UploadFault::kNone);
+    EXPECT_EQ(uploader.finish().fault, may ? UploadFault::kNone : UploadFault::kKeyMayNot);
+  }
+}
+
+/// Writes the confirmed image of the small machine to a store as the version before did; `spoil` changes its
+/// header before it is signed.
+void write_old_store(
+    SimSlotStore& store, const SigningKey& key,
+    const std::function<void(UploadHeaderV1&)>& spoil = [](UploadHeaderV1&) {}) {
   const auto image = small_image_bytes(2e-5);
-  const auto now = make_upload(image, key_, kIssued, 0);
+  const auto now = make_upload(image, key, kIssued, 0);
   UploadHeader header;
   std::memcpy(&header, now.data(), sizeof(header));
   UploadHeaderV1 old{};
@@ -262,16 +285,21 @@ TEST_F(Upload, StoreOfTheVersionBeforeRuns) {
   old.header_bytes = sizeof(old), old.image_bytes = header.image_bytes;
   old.issued = kIssued, old.fingerprint = header.fingerprint;
   std::memcpy(old.key, header.key, sizeof(old.key));
+  spoil(old);
   crypto_sign_state state;
   crypto_sign_init(&state);
   crypto_sign_update(&state, reinterpret_cast<const std::uint8_t*>(&old), kSignedHeaderBytesV1);
   crypto_sign_update(&state, image.data(), image.size());
-  crypto_sign_final_create(&state, old.signature, nullptr, key_.secret.data());
+  crypto_sign_final_create(&state, old.signature, nullptr, key.secret.data());
   SlotRecordV1 record{kSlotMagicV1, 1, kIssued, 0, 0, kNoSlot, 0, 0};
   record.checksum = crc32c(reinterpret_cast<const std::uint8_t*>(&record), offsetof(SlotRecordV1, checksum));
-  store_.write_image(0, 0, reinterpret_cast<const std::uint8_t*>(&old), sizeof(old));
-  store_.write_image(0, sizeof(old), image.data(), static_cast<std::uint32_t>(image.size()));
-  store_.write_record(0, reinterpret_cast<const std::uint8_t*>(&record), sizeof(record));
+  store.write_image(0, 0, reinterpret_cast<const std::uint8_t*>(&old), sizeof(old));
+  store.write_image(0, sizeof(old), image.data(), static_cast<std::uint32_t>(image.size()));
+  store.write_record(0, reinterpret_cast<const std::uint8_t*>(&record), sizeof(record));
+}
+
+TEST_F(Upload, StoreOfTheVersionBeforeRuns) {
+  write_old_store(store_, key_);
   UploadRig rig(store_, key_);
   EXPECT_EQ(rig.boot_result().fault, UploadFault::kNone) << describe(rig.boot_result());
   rig.run(3000);
@@ -279,6 +307,103 @@ TEST_F(Upload, StoreOfTheVersionBeforeRuns) {
   // The floor came along, and the next image is of this version.
   EXPECT_EQ(rig.send(upload(3e-5, kIssued)).fault, UploadFault::kOlder);
   EXPECT_EQ(rig.send(upload(3e-5, kIssued + 1)).fault, UploadFault::kNone);
+}
+
+/// Notes the most bytes of an image that were asked for in one piece.
+class AskedStore : public SimSlotStore {
+ public:
+  using SimSlotStore::SimSlotStore;
+  HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,
+                      std::uint32_t size) noexcept override {
+    most = std::max(most, size);
+    return SimSlotStore::read_image(slot, offset, bytes, size);
+  }
+  std::uint32_t most = 0;
+};
+
+// Its memory for an image ends there.
+TEST_F(Upload, NoMoreThanAnImagesMemoryIsReadWhateverTheHeaderSays) {
+  const std::uint32_t most = (1 << 16) - sizeof(UploadHeader);
+  for (const std::uint32_t claimed : {most, most + 1, UINT32_MAX}) {
+    AskedStore now(1 << 16), before(1 << 16);
+    {
+      UploadRig rig(now, key_);
+      ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+      ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+    }
+    std::uint8_t bytes[4];
+    std::memcpy(bytes, &claimed, sizeof(bytes));
+    ASSERT_EQ(now.write_image(0, offsetof(UploadHeader, image_bytes), bytes, sizeof(bytes)), HalFault::kNone);
+    write_old_store(before, key_, [&](UploadHeaderV1& header) { header.image_bytes = claimed; });
+    for (AskedStore* const store : {&now, &before}) {
+      store->most = 0;
+      UploadRig rig(*store, key_);
+      EXPECT_EQ(rig.boot_result().fault, UploadFault::kNotAnUpload) << claimed;
+      EXPECT_EQ(store->most > 1000, claimed == most) << "only what fits is asked for";
+      EXPECT_LE(store->most, most);
+    }
+  }
+}
+
+TEST_F(Upload, StoredHeaderOfTheVersionBeforeHasItsOwnSize) {
+  write_old_store(store_, key_, [](UploadHeaderV1& header) { header.header_bytes += 8; });
+  EXPECT_EQ(UploadRig(store_, key_).boot_result().fault, UploadFault::kNotAnUpload);
+}
+
+TEST_F(Upload, RepairIsTriedAgainUntilTheMediumTakesIt) {
+  {
+    UploadRig rig(store_, key_);
+    ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+    ASSERT_EQ(rig.uploader().confirm().fault, UploadFault::kNone);
+  }
+  store_.cut_record(0, 10);
+  UploadRig rig(store_, key_);
+  ASSERT_TRUE(rig.uploader().damaged());
+  store_.cut_power_after(0);
+  EXPECT_FALSE(rig.uploader().repair());
+  EXPECT_TRUE(rig.uploader().damaged());
+  store_.restore_power();
+  EXPECT_TRUE(rig.uploader().repair());
+  EXPECT_FALSE(rig.uploader().damaged());
+  const std::uint64_t written = store_.written();
+  EXPECT_TRUE(rig.uploader().repair());
+  EXPECT_EQ(store_.written(), written) << "nothing to repair";
+}
+
+TEST_F(Upload, EndOfATrialIsRecordedAgainUntilTheMediumTakesIt) {
+  UploadRig rig(store_, key_);
+  Uploader& uploader = rig.uploader();
+  ASSERT_EQ(rig.send(upload(2e-5)).fault, UploadFault::kNone);
+  rig.run(3);
+  EXPECT_FALSE(uploader.look_after_store()) << "the trial runs";
+  EXPECT_EQ(uploader.record().trial, 0);
+  store_.cut_power_after(0);
+  ASSERT_EQ(uploader.revert().fault, UploadFault::kNone);
+  rig.run(3);
+  EXPECT_FALSE(uploader.look_after_store());
+  EXPECT_EQ(uploader.programs().trial(), Trial::kOver);
+  EXPECT_NE(uploader.slots().trial(), kNoSlot) << "as the medium says";
+  EXPECT_EQ(uploader.record().trial, kNoSlot) << "as it is";
+  store_.restore_power();
+  EXPECT_TRUE(uploader.look_after_store());
+  EXPECT_EQ(uploader.programs().trial(), Trial::kNone);
+  EXPECT_EQ(uploader.slots().trial(), kNoSlot);
+}
+
+TEST_F(Upload, GivenImageThatFindsNoMemoryIsRefused) {
+  const Wiring wiring{{{"X"}, {"Y"}}, {"T"}};
+  const auto image = small_image_bytes(2e-5);
+  const auto size = static_cast<std::uint32_t>(image.size());
+  const auto boot = [&](std::uint32_t image_bytes, bool taken) {
+    Exchange exchange(16, 16);
+    SimSlotStore store(image_bytes + sizeof(UploadHeader));
+    Uploader uploader(store, wiring, exchange, {TimeUs(1000), key_.public_part(), TimeUs(60'000'000), 1});
+    const ProgramRef other = taken ? uploader.programs().take() : nullptr;
+    return uploader.boot_with(image).fault;
+  };
+  EXPECT_EQ(boot(size, false), UploadFault::kNone);
+  EXPECT_EQ(boot(size - 1, false), UploadFault::kTooLarge);
+  EXPECT_EQ(boot(size, true), UploadFault::kTooLarge) << "the only memory is in use";
 }
 
 TEST_F(Upload, BoardWithoutAKeyTrustsNobody) {
@@ -377,6 +502,84 @@ TEST_F(Upload, GoingBackStartsTheConfirmedImageAnewUnlessItRuns) {
   revert();
   EXPECT_EQ(tick(), first);
   EXPECT_FALSE(first->reads_input[kMaxInputs - 1]);
+}
+
+/// The programs of a board, with the tick's part in the hands of the test.
+struct ProgramsBench {
+  Exchange exchange{16, 16};
+  Programs programs{exchange, 2, 1024};
+  BoundProgram before;
+  /// The tick takes what is offered; the guardian learns of it when the tick has put the old one away.
+  void take() { EXPECT_NE(exchange.offered.exchange(nullptr), nullptr); }
+  void put_away() { exchange.retired.store(&before); }
+  void guard(std::int64_t now_us = 0) { programs.guard(TimeUs(now_us)); }
+  LoadedProgram* run_trial(TimeUs trial = TimeUs(1000)) {
+    ProgramRef program = programs.take();
+    LoadedProgram* const raw = program.get();
+    if (raw != nullptr) programs.run_trial(std::move(program), trial);
+    return raw;
+  }
+};
+
+TEST(Programs, TrialWhoseTimeEndsWhileItIsConfirmedIsKept) {
+  ProgramsBench bench;
+  LoadedProgram* const tried = bench.run_trial();
+  bench.guard();
+  bench.take(), bench.put_away(), bench.guard();
+  ASSERT_TRUE(bench.programs.begin_to_keep());
+  bench.guard(2000);  // after its time, while the record is being written
+  EXPECT_EQ(bench.programs.trial(), Trial::kConfirming);
+  EXPECT_EQ(bench.exchange.offered.load(), nullptr);
+  bench.programs.kept(true);
+  bench.guard(2001);
+  EXPECT_EQ(bench.programs.trial(), Trial::kNone);
+  EXPECT_EQ(bench.programs.look(), tried);
+  bench.programs.look_away();
+}
+
+TEST(Programs, TrialIsBeingGivenUpFromTheRequestUntilTheGuardianActs) {
+  ProgramsBench bench;
+  EXPECT_FALSE(bench.programs.give_up()) << "no trial";
+  EXPECT_FALSE(bench.programs.giving_up());
+  ASSERT_NE(bench.run_trial(), nullptr);
+  bench.guard();
+  EXPECT_FALSE(bench.programs.giving_up());
+  EXPECT_TRUE(bench.programs.give_up());
+  EXPECT_TRUE(bench.programs.giving_up());
+  bench.guard();
+  EXPECT_FALSE(bench.programs.giving_up());
+}
+
+// The guardian runs between two steps of the tick: the program taken, the old one not put away yet.
+TEST(Programs, ProgramThatCannotBeOfferedYetKeepsItsMemory) {
+  ProgramsBench bench;
+  ProgramRef first = bench.programs.take();
+  bench.programs.run_confirmed(std::move(first));
+  bench.guard();
+  bench.take();
+  LoadedProgram* const second = bench.run_trial();
+  ASSERT_NE(second, nullptr);
+  bench.guard();
+  EXPECT_EQ(bench.exchange.offered.load(), nullptr);
+  EXPECT_EQ(bench.programs.take(), nullptr) << "both memories are in use";
+  bench.put_away(), bench.guard();
+  EXPECT_EQ(bench.exchange.offered.load(), &second->bound);
+}
+
+TEST(Programs, ProgramThatALinkReadsKeepsItsMemoryUntilTheLinkLooksAway) {
+  ProgramsBench bench;
+  LoadedProgram* const tried = bench.run_trial();
+  bench.guard();
+  bench.take(), bench.put_away(), bench.guard();
+  ASSERT_EQ(bench.programs.look(), tried);
+  // WHEN its trial ends and the tick has left it
+  ASSERT_TRUE(bench.programs.give_up());
+  bench.guard();
+  bench.take(), bench.put_away(), bench.guard();
+  EXPECT_TRUE(tried->taken.load());
+  bench.programs.look_away();
+  bench.guard();
+  EXPECT_FALSE(tried->taken.load());
 }
 
 // A medium that gives only a part of its records has had some.
@@ -558,10 +761,30 @@ TEST_F(Upload, PiecesOutOfOrderAreRefusedAndARepeatedOneIsNot) {
   EXPECT_EQ(uploader.add(200, bytes.data() + 200, 100).fault, UploadFault::kOutOfOrder);
   EXPECT_EQ(uploader.add(50, bytes.data() + 50, 100).fault, UploadFault::kOutOfOrder);
   EXPECT_EQ(uploader.finish().fault, UploadFault::kIncomplete);
+  EXPECT_EQ(uploader.add(100, bytes.data() + 100, 0).fault, UploadFault::kTooLarge) << "no piece at all";
   const auto rest = static_cast<std::uint32_t>(bytes.size() - 100);
   EXPECT_EQ(uploader.add(100, bytes.data() + 100, rest + 1).fault, UploadFault::kTooLarge);
   EXPECT_EQ(uploader.add(100, bytes.data() + 100, rest).fault, UploadFault::kNone);
   EXPECT_EQ(uploader.finish().fault, UploadFault::kNone);
+}
+
+// For every fault, every detail of it and the longest name.
+TEST_F(Upload, LongestReasonFitsIntoItsLine) {
+  UploadResult result;
+  while (result.offender.size() + 1 < kImageNameBytes) result.offender.add('W');
+  const std::string name = result.offender.c_str();
+  std::size_t longest = 0;
+  for (int fault = 0; fault < kUploadFaultCount; ++fault)
+    for (int detail = 0; detail <= UINT8_MAX; ++detail) {
+      result.fault = static_cast<UploadFault>(fault);
+      result.image = static_cast<ImageFault>(detail);
+      result.bind = static_cast<BindFault>(detail);
+      const Line line = describe(result);
+      const std::string text = line.c_str();
+      EXPECT_EQ(text.substr(text.size() - name.size()), name) << text;
+      longest = std::max(longest, text.size());
+    }
+  EXPECT_LT(longest, sizeof(Line::text) - 1) << "one byte is free at least";
 }
 
 TEST_F(Upload, FinishesOnce) {
