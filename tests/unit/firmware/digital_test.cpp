@@ -199,7 +199,7 @@ TEST(DigitalPump, TogglesWhileAllIsWellAndStandsOtherwise) {
   EXPECT_FALSE(healthy.on);
 }
 
-// An edge that the line did not take is no edge: the relay behind it needs the next one in time.
+// The relay did not see an edge that the line refused. It needs the next edge in time.
 TEST(DigitalPump, EdgeThatTheLineRefusesComesInTheNextTickThatItTakes) {
   const SigningKey key = new_key();
   SimSlotStore store(1 << 16);

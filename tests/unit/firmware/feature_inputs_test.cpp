@@ -214,7 +214,7 @@ TEST(FeatureInputs, BridgeAFewMissingSamplesAndStartAgainAfterMore) {
   EXPECT_EQ(answers(1), 1);
 }
 
-// Before the first sample there is nothing that could bridge a gap.
+// Before the first sample no value can replace a missing one.
 TEST(FeatureInputs, SignalThatIsSilentAtFirstFillsItsWindowWithSamplesOnly) {
   SetInputs source;
   const FeatureRequest request{.input = 1, .of = 0, .feature = Feature::kRms, .window = 20, .bridged = 3};

@@ -127,7 +127,7 @@ TEST_F(InController, ClearWhileTheFaultIsStillRampedOutIsKeptUntilItIsOut) {
   EXPECT_EQ(cycle().mode(), Mode::kActive) << "the sensor is back";
 }
 
-// The second command was refused, and the clear was lost with it.
+// The second command was refused, and the board forgot the clear.
 TEST_F(InController, CommandThatIsRefusedMeanwhileDoesNotEndTheClear) {
   for (int i = 0; i < 6000 && cycle().mode() != Mode::kRampOut; ++i) run(1);
   ASSERT_EQ(cycle().mode(), Mode::kRampOut);
@@ -241,6 +241,14 @@ TEST(ContinuousAxis, TakesAnImageInWhichItRollsOver) {
   EXPECT_EQ(bind(image->view, wiring, TimeUs(1000), bound, offender), BindFault::kAxisKind);
   wiring.axes = {{"X"}, {.name = "C", .rotary = true, .rollover = false, .continuous = true}};
   EXPECT_EQ(bind(image->view, wiring, TimeUs(1000), bound, offender), BindFault::kNone);
+}
+
+TEST(BoundAxis, ImageOfAnotherCycleTimeIsNotBound) {
+  const auto image = small_image();
+  BoundProgram bound(image->view);
+  Name offender;
+  EXPECT_EQ(bind(image->view, {{{"X"}, {"Y"}}, {"T"}}, TimeUs(500), bound, offender), BindFault::kTick);
+  EXPECT_EQ(offender, "1000 us") << "what the image needs";
 }
 
 TEST(BoundAxis, RotaryAxisOfAnImageIsNoLinearAxisOfTheBoard) {

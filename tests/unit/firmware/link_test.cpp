@@ -351,10 +351,10 @@ std::vector<std::uint8_t> signed_request(const SigningKey& key, const ChallengeR
   std::memcpy(head.nonce, answers.nonce, sizeof(head.nonce));
   std::memcpy(head.challenge, answers.challenge, sizeof(head.challenge));
   const SignedRequest proof = sign_request(key, head, rest);
-  std::vector<std::uint8_t> request = {static_cast<std::uint8_t>(LinkOp::kSigned), 1};
-  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&proof);
-  request.insert(request.end(), bytes, bytes + sizeof(proof));
-  request.insert(request.end(), rest.begin(), rest.end());
+  std::vector<std::uint8_t> request(kRequestHeaderBytes + sizeof(proof) + rest.size());
+  request[0] = static_cast<std::uint8_t>(LinkOp::kSigned), request[1] = 1;
+  std::memcpy(request.data() + kRequestHeaderBytes, &proof, sizeof(proof));
+  std::copy(rest.begin(), rest.end(), request.end() - static_cast<std::ptrdiff_t>(rest.size()));
   return request;
 }
 
@@ -423,7 +423,7 @@ TEST(SignedRequests, AreTakenForTheRightsOfTheirKeyUntilItIsRetired) {
   EXPECT_EQ(status(former, LinkOp::kConfirm), LinkStatus::kBadSignature);
 }
 
-// No longer request is copied, and none is executed: the link answers that its length is wrong.
+// The gate does not copy a request that is too long. The link then answers that the length is wrong.
 TEST_F(GateTest, RequestOfAnImpossibleSizeIsNeitherOpenedNorExecuted) {
   const BoardIdentity identity(key_.public_part());
   Gate gate(identity, Nonce{1}, ChallengeSeed{1});
@@ -450,6 +450,20 @@ TEST_F(GateTest, RequestOfAnImpossibleSizeIsNeitherOpenedNorExecuted) {
   EXPECT_FALSE(Gate::is_identify(request.data(), 1));
   request.push_back(1);
   EXPECT_TRUE(Gate::is_identify(request.data(), 2));
+}
+
+// The right of the link is tested before the signature.
+TEST_F(GateTest, RequestBeyondTheRightsOfItsLinkIsNotAllowedUnsignedEither) {
+  const auto status = [&](std::vector<std::uint8_t> request) {
+    return static_cast<LinkStatus>(way_->ask(request).at(2));
+  };
+  over(LinkAccess::kRead);
+  EXPECT_EQ(status({static_cast<std::uint8_t>(LinkOp::kCommand), 1, 1}), LinkStatus::kNotAllowed);
+  over(LinkAccess::kUpload);
+  EXPECT_EQ(status({static_cast<std::uint8_t>(LinkOp::kCommand), 1, 1}), LinkStatus::kUnsigned);
+  std::vector<std::uint8_t> cover(kRequestHeaderBytes + sizeof(SignedRequest));
+  cover[0] = static_cast<std::uint8_t>(LinkOp::kSigned);
+  EXPECT_EQ(status(cover), LinkStatus::kBadLength) << "a cover without a request";
 }
 
 // What touches the store is executed beside the links: exactly these requests, also without any payload.
@@ -596,7 +610,7 @@ TEST_F(LinkTest, BeforeTheFirstTickThereIsNoState) {
   }
 }
 
-// The tick may be interrupted at any point: a link shows nothing rather than half of it.
+// The tick may be interrupted at any point. A link then shows no state, and never half of a state.
 TEST_F(LinkTest, HalfWrittenStateIsNotShown) {
   rig_.run(10);
   auto& exchange = const_cast<Exchange&>(rig_.service().exchange());
@@ -655,7 +669,7 @@ TEST_F(LinkTest, NameOfAShareBelongsToOneProgram) {
   EXPECT_EQ(name(0, 2), LinkStatus::kBadValue) << "of another program";
 }
 
-// The trial before has ended for the tick, but not yet for the medium or the guardian.
+// The previous trial has ended, but the medium or the guardian has not recorded its end yet.
 TEST_F(LinkTest, UploadBeginsWhenTheTrialBeforeIsPutAway) {
   const auto begin = [&] { return status_of(link_, LinkOp::kBegin, {0, 1, 0, 0}); };
   Uploader& uploader = rig_.uploader();

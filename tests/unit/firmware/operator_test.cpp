@@ -166,7 +166,7 @@ TEST_F(OperatorSetting, StoredWeightThatNoAxisCanHaveIsIgnored) {
   EXPECT_EQ(restored(kFullWeight.count + 1), kFullWeight.count);
 }
 
-// Of a later firmware, whose fault may be still there.
+// A later firmware may have stored this fault, and its cause may be still present.
 TEST_F(OperatorSetting, StoredFaultThatThisFirmwareDoesNotKnowKeepsTheCorrectionOut) {
   OperatorState state;
   state.fault = kFaultCount - 1;

@@ -5,6 +5,7 @@
 
 #include "tests/support/approach.h"
 #include "tests/support/interrupted_write.h"
+#include "tests/unit/firmware/upload_rig.h"
 #include "tools/text/error.h"
 #include "tools/upload/client.h"
 
@@ -102,7 +103,7 @@ TEST(Probing, SaysThatTheRingHasForgottenALateEdge) {
   EXPECT_EQ(touches[0].fault, static_cast<std::uint8_t>(LatchFault::kTooOld));
 }
 
-// The line was closed before the board saw it: when the contact closed is not known, so it has no position.
+// The contact opened without having closed: its time is unknown, and therefore it has no position.
 TEST(Probing, MissedTouchIsToldWithoutAPosition) {
   const Profile profile{.feed_mm_s = 10};
   TouchRig rig(profile, published_probe(), kResolution);
@@ -172,6 +173,56 @@ TEST(Probing, TouchWaitsForAFrameThatIsBeingWritten) {
   }
   rig.plant.advance(), rig.service->tick();
   EXPECT_EQ(rig.touches().size(), 1u);
+}
+
+/// Deviation of X: 100 um in 100 mm.
+constexpr const char* kScaledMachine = R"xml(<machine name="scaled">
+  <variables>
+    <static><k value="0.001" nominal="0" unit=""/></static>
+    <machineaxes><X rotary="false" min="0" max="600" maxcorrection="1" maxslew="50"/></machineaxes>
+  </variables>
+  <transforms branch="tool"><sixdof n="1" X="X+k*X" Y="0" Z="0" rX="0" rY="0" rZ="0"/></transforms>
+</machine>)xml";
+
+// Without a correction the tool is at the counted position plus the deviation of the axis. With the whole
+// correction the tool is at the counted position.
+TEST(Probing, CompensatedPositionHasTheDeviationThatNoDriveCorrects) {
+  const Machine machine = parse_machine(kScaledMachine, "scaled.xml");
+  const auto image = compile_machine(machine, kScaledMachine, {}).image;
+  const Profile profile{.feed_mm_s = 1};
+  for (const bool active : {false, true}) {
+    TouchRig rig(profile, published_probe(), kResolution);
+    ASSERT_EQ(rig.service->boot_with(image).fault, UploadFault::kNone);
+    if (active) {
+      for (int i = 0; i < 500; ++i) rig.plant.advance(), rig.service->tick();
+      rig.service->order(Command::kActivate);
+      for (int i = 0; i < 3000; ++i) rig.plant.advance(), rig.service->tick();
+    }
+    rig.plant.release();
+    for (int i = 0; i < 1000; ++i) rig.plant.advance(), rig.service->tick();
+    rig.line.put(rig.clock.now(), true);
+    for (int i = 0; i < 20; ++i) rig.plant.advance(), rig.service->tick();
+    ASSERT_EQ(rig.service->cycle().mode(), active ? Mode::kActive : Mode::kReady);
+    ASSERT_EQ(rig.touches().size(), 1u);
+    const TouchRecord touch = rig.touches()[0];
+    EXPECT_EQ(touch.flags & kTouchUncompensated, 0) << "the deviation is known";
+    const double deviation = active ? 0 : 1e-3 * static_cast<double>(touch.position[0]);
+    // At the corrected position the deviation is k X / (1 + k), k^2 X = 11 nm less at 11 mm; a tick of motion
+    // (1 um) changes it by 1 nm.
+    EXPECT_NEAR(static_cast<double>(touch.compensated[0] - touch.position[0]), deviation, 15);
+    EXPECT_EQ(touch.compensated[2], touch.position[2]) << "the image corrects X alone";
+  }
+}
+
+TEST(Probing, TouchOfAFaultedBoardIsMarked) {
+  const Profile profile{.feed_mm_s = 10};
+  for (const Fault fault : {Fault::kNone, Fault::kOverrun}) {
+    TouchRig rig(profile, published_probe(), kResolution);
+    rig.service->cycle().restore(fault);
+    rig.run(profile, {{0.2, true}, {0.22, false}}, kResolution);
+    ASSERT_EQ(rig.touches().size(), 1u);
+    EXPECT_EQ((rig.touches()[0].flags & kTouchWhileFaulted) != 0, fault != Fault::kNone);
+  }
 }
 
 TEST(Probing, TurnsIntoTheWorkpiecesCoordinates) {

@@ -61,6 +61,36 @@ TEST(Runner, FollowingItsCallerItCountsCallsAndNotTheClock) {
   EXPECT_EQ(bench.health().overruns + bench.health().skipped, 0u);
 }
 
+/// A clock that goes on between two looks at it: a tick takes this time.
+class BusyClock : public Clock {
+ public:
+  InstantNs now() noexcept override { return now_ = now_ + taken; }
+  HalFault sleep_until(InstantNs) noexcept override { return HalFault::kNone; }
+  InstantNs taken{1000};
+
+ private:
+  InstantNs now_;
+};
+
+TEST(Runner, TicksOfACallerThatTakeLongerThanTheirPeriodAreAFault) {
+  Rig rig;
+  BusyClock clock;
+  Runner runner(rig.cycle(), clock, TimeUs(1000));
+  runner.follow_caller();
+  const auto step = [&] {
+    rig.plant().advance();
+    return runner.step(Command::kNone).latched;
+  };
+  while (rig.cycle().mode() != Mode::kReady) step();
+  clock.taken = InstantNs(1'000'000);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(step(), Fault::kNone) << "exactly a period";
+  EXPECT_EQ(rig.cycle().health().overruns, 0u);
+  clock.taken = InstantNs(1'000'001);
+  for (std::uint32_t i = 0; i < OverrunLimits{}.in_a_row; ++i) EXPECT_EQ(step(), Fault::kNone) << i;
+  EXPECT_EQ(rig.cycle().health().overruns, OverrunLimits{}.in_a_row);
+  EXPECT_EQ(step(), Fault::kOverrun);
+}
+
 TEST(Runner, LateTickIsAnOverrunAndTheScheduleIsKept) {
   RunnerBench bench;
   bench.step();

@@ -243,7 +243,7 @@ class BesideStoreWithKey : protected HasKey, public BesideStore {
   upload::Client board_{std::make_unique<Waits>(*link_.handler, meanwhile_)};
 };
 
-// The client of a revert may upload the next image at once: by then the guardian has ended the trial.
+// The reply tells the client that it may upload the next image: the guardian must have ended the trial.
 TEST_F(BesideStoreWithKey, RevertIsAnsweredWhenTheGuardianHasEndedTheTrial) {
   int looks = 0, woken = 0;
   const auto store_looks = [&] { ++looks, woken += service_->look_after_store() ? 1 : 0; };

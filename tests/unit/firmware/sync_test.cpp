@@ -117,7 +117,7 @@ TEST(Sync, StandingStillIsAFaultOfTheClock) {
   EXPECT_EQ(bench.report.latched, Fault::kClock);
 }
 
-// No tick takes longer than the count of a thousand; the schedule starts again with the sign.
+// The loop of a tick is limited to a thousand periods. The schedule starts again with the signal.
 TEST(Sync, NoMoreThanAThousandLeftOutSignsAreCounted) {
   Rig rig;
   SimClock clock;

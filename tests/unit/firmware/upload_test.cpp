@@ -321,7 +321,7 @@ class AskedStore : public SimSlotStore {
   std::uint32_t most = 0;
 };
 
-// Its memory for an image ends there.
+// The memory for an image has the size of a slot without the header.
 TEST_F(Upload, NoMoreThanAnImagesMemoryIsReadWhateverTheHeaderSays) {
   const std::uint32_t most = (1 << 16) - sizeof(UploadHeader);
   for (const std::uint32_t claimed : {most, most + 1, UINT32_MAX}) {
@@ -348,6 +348,23 @@ TEST_F(Upload, NoMoreThanAnImagesMemoryIsReadWhateverTheHeaderSays) {
 TEST_F(Upload, StoredHeaderOfTheVersionBeforeHasItsOwnSize) {
   write_old_store(store_, key_, [](UploadHeaderV1& header) { header.header_bytes += 8; });
   EXPECT_EQ(UploadRig(store_, key_).boot_result().fault, UploadFault::kNotAnUpload);
+}
+
+TEST_F(Upload, StoredImageOfTheVersionBeforeIsCheckedToo) {
+  const auto fault = [&](const std::function<void(UploadHeaderV1&)>& spoil) {
+    SimSlotStore store(1 << 16);
+    write_old_store(store, key_, spoil);
+    return UploadRig(store, key_).boot_result().fault;
+  };
+  EXPECT_EQ(fault([](UploadHeaderV1&) {}), UploadFault::kNone);
+  EXPECT_EQ(fault([](UploadHeaderV1& header) { header.fingerprint ^= 1; }), UploadFault::kFingerprint);
+  EXPECT_EQ(fault([](UploadHeaderV1& header) { header.key[0] ^= 1; }), UploadFault::kForeignKey);
+  write_old_store(store_, key_);
+  std::uint8_t byte = 0;
+  ASSERT_EQ(store_.read_image(0, 700, &byte, 1), HalFault::kNone);
+  byte ^= 8;
+  ASSERT_EQ(store_.write_image(0, 700, &byte, 1), HalFault::kNone);
+  EXPECT_EQ(UploadRig(store_, key_).boot_result().fault, UploadFault::kSignature);
 }
 
 TEST_F(Upload, RepairIsTriedAgainUntilTheMediumTakesIt) {
@@ -550,7 +567,8 @@ TEST(Programs, TrialIsBeingGivenUpFromTheRequestUntilTheGuardianActs) {
   EXPECT_FALSE(bench.programs.giving_up());
 }
 
-// The guardian runs between two steps of the tick: the program taken, the old one not put away yet.
+// The guardian runs in the middle of a tick: the tick has taken the new program, and has not returned the
+// old program yet.
 TEST(Programs, ProgramThatCannotBeOfferedYetKeepsItsMemory) {
   ProgramsBench bench;
   ProgramRef first = bench.programs.take();
