@@ -354,7 +354,7 @@ INSTANTIATE_TEST_SUITE_P(
             "source = { kind = \"sim\" }\n[input.D]\nunit = \"um\"\nsource = { kind = \"feature\", of = "
             "\"A\", feature = \"DISPLACEMENT\", corner_Hz = 20 }\n[input.A]\nunit = \"g\"\nsource = { kind "
             "= \"sim\" }",
-            "input.D.source: the settings do not give a window or a filter"},
+            "input.D.source: the settings `window` or `corner_Hz` are outside their limits"},
         BadBoard{"DisplacementWindow", "source = { kind = \"sim\" }",
                  "source = { kind = \"sim\" }\n[input.D]\nunit = \"um\"\nsource = { kind = \"feature\", of = "
                  "\"A\", feature = \"DISPLACEMENT\", corner_Hz = 1, window = 800 }\n[input.A]\nunit = "

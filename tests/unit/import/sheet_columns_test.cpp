@@ -292,7 +292,7 @@ const Case kCases[] = {
     {"ActualOfARotaryAxis", "Soll C [°];Ist C [°]\n0;0,001\n30;30,002\n60;59,999\n",
      "C[deg],rz[deg]\n0,0.001\n30,30.002\n60,59.999\n"},
     {"DeviationOfAnAxisWithoutAReading", "Soll U [mm];Abweichung U [um]\n0;1\n100;2\n",
-     "refused: s.csv:1: nothing measured"},
+     "refused: s.csv:1: no column of the table is a reading"},
     {"DeviationAfterACorrection", "Soll X [mm];Abweichung X nach Korrektur [um]\n0;1\n100;2\n",
      "X[mm],x[mm]\n0,0.001\n100,100.002\n"},
     {"DeviationWithoutCompensation", "Soll X [mm];Deviation X without compensation [um]\n0;1\n100;2\n",

@@ -158,7 +158,7 @@ TEST(Tracker, ErrorsNameFileLineAndWord) {
                   "data.txt:2: \"qw\""));
   EXPECT_TRUE(
       has(message_of("column 1=qw\ncolumn 2=qx\ncolumn 3=qy\ncolumn 4=qz\nset rx[deg]=1\n", "1,0,0,0\n"),
-          "gives this column twice"));
+          "mapped twice, in two forms"));
   EXPECT_TRUE(
       has(message_of("column 1 = x[mm]\ncolumn 2 = role\n", "1,fit\n2,chek\n"), "data.txt:2: \"chek\""));
 }

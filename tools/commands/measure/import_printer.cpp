@@ -68,7 +68,7 @@ void add_printer_kind(CLI::App& kind) {
       ->type_name(kReads)
       ->required();
   kind.add_option("--profile", arguments->options.profile,
-                  "name of the saved mesh; default: the only mesh of the file");
+                  "name of the saved mesh; default: the only saved mesh");
   kind.add_option("--on", arguments->options.artefact, "name of the <artefact> of the bed")
       ->capture_default_str();
   kind.add_option("--offset", arguments->offset,
