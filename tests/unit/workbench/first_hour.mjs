@@ -143,7 +143,10 @@ async function axesThatStood(page) {
   );
   await page.click('#read-differently');
   await page.choose('#sheet-of-workbook', 'Deckblatt');
-  await page.until("document.querySelector('#import-box .error')?.textContent.includes('no column of the table is a reading')", 'the cover to be refused');
+  await page.until(
+    "document.querySelector('#import-box .error')?.textContent.includes('no column of the table is a reading')",
+    'the cover to be refused',
+  );
   // Fitted, without check rows: the sheet states what the fit did not have.
   execFileSync(vernier, ['fit', machine, 'laser_x_with_axes.csv', '-o', join(top, 'plain.xml')], { cwd: folder, stdio: 'ignore' });
   await page.drop([{ name: 'plain.xml', bytes: readFileSync(join(top, 'plain.xml')) }]);
