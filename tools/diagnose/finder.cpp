@@ -699,9 +699,9 @@ Alternatives Finder::alternatives_to(std::size_t item) const {
         continue;
       }
     }
+    if (pool_.same_cause(item, alternative) || !too_large(alternative).empty()) continue;
     if (distance < thresholds_.distance_of_fits && predicts_worse(alternative, item)) continue;
-    if (!pool_.same_cause(item, alternative) && too_large(alternative).empty())
-      found.other.push_back({alternative, distance});
+    found.other.push_back({alternative, distance});
   }
   std::sort(found.other.begin(), found.other.end(),
             [](const Alternative& a, const Alternative& b) { return a.distance < b.distance; });

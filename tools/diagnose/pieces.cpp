@@ -8,16 +8,6 @@
 namespace vernier::diagnose {
 namespace {
 
-/// Returns the period of an item in the unit of its axis; 0 if it has no period.
-double period_of(const Pool& pool, std::size_t item) {
-  auto value = pool[item].scored.scanned.begin();
-  for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(pool.candidate(item))) {
-    if (unknown.kind == effects::UnknownKind::kPeriod) return *value;
-    ++value;
-  }
-  return 0;
-}
-
 bool harmonics(double a, double b, double allowed) {
   if (a <= 0 || b <= 0) return false;
   const double ratio = std::max(a, b) / std::min(a, b);
@@ -37,7 +27,7 @@ bool is_function_of_its_axis(const Evidence& evidence, const effects::Candidate&
 
 /// A wave with enough periods in the range to be identified.
 bool is_plain_wave(const Evidence& evidence, const Pool& pool, std::size_t item) {
-  const double period = period_of(pool, item);
+  const double period = pool.period_of(item).value_or(0);
   if (period <= 0 || !pool.candidate(item).choice.axis) return false;
   const Evidence::Range range = evidence.range_of(*pool.candidate(item).choice.axis);
   return range.high - range.low >= evidence.thresholds().shape.periods_of_a_wave * period;
@@ -61,7 +51,8 @@ std::vector<std::size_t> largest_group(const Evidence& evidence, const Pool& poo
     for (const std::size_t item : items) {
       if (!counts(item) || !alike(first, item)) continue;
       const bool harmonic = std::any_of(group.begin(), group.end(), [&](std::size_t other) {
-        return harmonics(period_of(pool, item), period_of(pool, other), evidence.thresholds().shape.harmonic);
+        return harmonics(pool.period_of(item).value_or(0), pool.period_of(other).value_or(0),
+                         evidence.thresholds().shape.harmonic);
       });
       if (!harmonic) group.push_back(item);
     }
@@ -82,7 +73,8 @@ std::vector<std::size_t> unresolved_periods(const Evidence& evidence, const Pool
       if (x.choice.axis != y.choice.axis || !moves_alike(evidence, *x.choice.place, *y.choice.place))
         continue;
       const Evidence::Range range = evidence.range_of(*x.choice.axis);
-      if (unresolved(period_of(pool, a), period_of(pool, b), range.high - range.low)) return {a, b};
+      if (unresolved(pool.period_of(a).value_or(0), pool.period_of(b).value_or(0), range.high - range.low))
+        return {a, b};
     }
   return {};
 }
@@ -116,7 +108,7 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
   // a chirp.
   const auto beside_a_curve = [&](std::size_t wave) {
     return std::any_of(items.begin(), items.end(), [&](std::size_t item) {
-      return choice(item).axis == choice(wave).axis && period_of(pool, item) <= 0 &&
+      return choice(item).axis == choice(wave).axis && pool.period_of(item).value_or(0) <= 0 &&
              static_cast<double>(pool[item].columns.cols()) >= thresholds.curve;
     });
   };

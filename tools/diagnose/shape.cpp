@@ -116,14 +116,6 @@ std::vector<std::size_t> of_other_axes(const Evidence& evidence, const Pool& poo
   return others;
 }
 
-/// Found period of an item, unit of the axis; nullopt if the item has none.
-std::optional<double> period_of(const Pool& pool, std::size_t item) {
-  const std::vector<effects::CandidateUnknown> scanned = effects::scanned_unknowns(pool.candidate(item));
-  for (std::size_t i = 0; i < scanned.size(); ++i)
-    if (scanned[i].kind == effects::UnknownKind::kPeriod) return pool[item].scored.scanned[i];
-  return std::nullopt;
-}
-
 /// Decrease of the sum of squares by columns beside others, and their number.
 struct Explained {
   double squares = 0;
@@ -141,8 +133,8 @@ Explained explained_by(const Evidence& evidence, const Eigen::MatrixXd& raw, con
 /// Returns the natural logarithm of a bound of the p-value of the periods along an axis: the probability that
 /// the best of all periods down to those that were found explains as much of any error that repeats at the
 /// few measured positions (a lead error, a worn place). The part of a random pattern that two of r directions
-/// do not explain is below x with the probability x^((r - 2) / 2). 0 if the axis was read at so many
-/// positions that no period explains an unrelated pattern.
+/// do not explain is below x with the probability x^((r - 2) / 2). Minus infinity if the axis was read at so
+/// many positions that no period explains an unrelated pattern.
 double log_chance_of_periods(const Evidence& evidence, const Pool& pool,
                              const std::vector<std::size_t>& items, std::size_t item,
                              const Eigen::MatrixXd& beside) {
@@ -158,7 +150,7 @@ double log_chance_of_periods(const Evidence& evidence, const Pool& pool,
   for (const std::size_t one : items) {
     if (std::find(apart.begin(), apart.end(), one) != apart.end()) continue;
     along.push_back(one);
-    if (const std::optional<double> period = period_of(pool, one)) {
+    if (const std::optional<double> period = pool.period_of(one)) {
       // The frequencies that the search compares; the order of several periods does not matter.
       const double tries = evidence.thresholds().fine.per_range * (range.high - range.low) / *period;
       log_tries += std::log(std::max(1.0, tries)) - std::log(++periods);
@@ -203,14 +195,15 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
         "{} has {:.0f} coefficients, but the readings determine only {:.0f} independent functions of the "
         "axis beside the model: any function of the axis would fit equally well",
         pool.candidate(item).spoken, unknowns, shape.seen);
-  if (period_of(pool, item) &&
-      log_chance_of_periods(evidence, pool, items, item, beside) > limits.change_chance)
+  if (!pool.period_of(item)) return {};
+  if (const double chance = log_chance_of_periods(evidence, pool, items, item, beside);
+      chance > limits.change_chance)
     return fmt::format(
         "{}: the axis was read at {} positions only, and the best of all periods explains other errors that "
         "repeat at these positions nearly as well (p = {:.1g}); read the axis at more positions, at uneven "
         "distances",
         pool.candidate(item).spoken, positions_read(positions(evidence, *choice.axis), limits.apart),
-        std::min(1.0, std::exp(log_chance_of_periods(evidence, pool, items, item, beside))));
+        std::min(1.0, std::exp(chance)));
   return {};
 }
 

@@ -250,6 +250,12 @@ double noise_of(const model::Measurement& rows, const Convention& convention) {
   return has_uncertainty(rows) ? 1 : convention.misfit_mm;
 }
 
+/// True if even the largest plausible error of a parameter changes the readings by less than their noise.
+bool is_below_noise(const SeenBesideThings& seen, const Convention& convention, Eigen::Index at,
+                    double noise) {
+  return std::sqrt(seen.squares[at]) * convention.most[at] < noise;
+}
+
 /// Enlarges the scales of parameters whose effect the unknown places of touched objects absorb: an error that
 /// the readings show by the share f is as large as the residual divided by f, at most kMostError. A parameter
 /// is unseen if even the largest error changes the readings by less than their noise in total: what its
@@ -270,23 +276,23 @@ void enlarge_absorbed(const model::Machine& centre, const model::Measurement& ro
     convention.most[at] = times * convention.scale[at];
     convention.scale[at] =
         std::min(times * convention.scale[at], convention.scale[at] / std::max(seen.share[at], 1e-12));
-    if (std::sqrt(seen.squares[at]) * convention.most[at] < noise) convention.unseen[i] = 1;
+    if (is_below_noise(seen, convention, at, noise)) convention.unseen[i] = 1;
   }
 }
 
 }  // namespace
 
-bool see_again(const model::Machine& fitted, const model::Measurement& rows,
+bool see_again(const model::Machine& machine, const Eigen::VectorXd& point, const model::Measurement& rows,
                const model::ParameterSet& parameters, Convention& convention) {
-  if (std::count(convention.unseen.begin(), convention.unseen.end(), 0) ==
-      static_cast<std::ptrdiff_t>(convention.unseen.size()))
+  if (std::find(convention.unseen.begin(), convention.unseen.end(), 1) == convention.unseen.end())
     return false;
+  model::Machine fitted = machine;
+  parameters.set(fitted, point);
   const SeenBesideThings seen = seen_beside_things(fitted, rows, parameters);
   bool more = false;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
     if (convention.unseen[i] == 0 ||
-        std::sqrt(seen.squares[at]) * convention.most[at] < noise_of(rows, convention))
+        is_below_noise(seen, convention, static_cast<Eigen::Index>(i), noise_of(rows, convention)))
       continue;
     convention.unseen[i] = 0;
     more = true;

@@ -28,7 +28,7 @@ Convention convention_of(const model::Machine& machine, const model::Measurement
 /// readings do not determine the zero of a rotary axis if the tool is nominally on this axis. If the fit
 /// finds the tool at a distance from the axis, the readings determine the zero. Returns true if the readings
 /// determine a parameter that counted as not determined. rows: of the fit.
-bool see_again(const model::Machine& fitted, const model::Measurement& rows,
+bool see_again(const model::Machine& machine, const Eigen::VectorXd& point, const model::Measurement& rows,
                const model::ParameterSet& parameters, Convention& convention);
 
 }  // namespace vernier::fit

@@ -475,9 +475,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
     };
     solved();
     if (hold_turned_away(end, convention)) solved();
-    model::Machine found = machine;
-    result.parameters.set(found, end.point);
-    if (see_again(found, rows, result.parameters, convention)) {
+    if (see_again(machine, end.point, rows, result.parameters, convention)) {
       problem.hold_unseen(convention.unseen);
       solved();
     }

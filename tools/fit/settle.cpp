@@ -321,7 +321,8 @@ class Settler {
       const bool whole = unknowns > 0 && n * std::pow(p + unknowns, 2) < kMostNoiseProducts;
       MatrixXd of_things(residual.size(), 0);
       if (whole) of_things = problem_.things_jacobian(result_.point)(fitted, Eigen::all);
-      if (whole || n * p * p < kMostNoiseProducts) basis = fitted_directions(dense(), of_things, residual.norm());
+      if (whole || n * p * p < kMostNoiseProducts)
+        basis = fitted_directions(dense(), of_things, residual.norm());
       // The scales leave a part of the fitted directions in the residual, which is no noise.
       VectorXd beside = residual;
       if (basis.cols() > 0) beside -= basis * (basis.transpose() * residual);

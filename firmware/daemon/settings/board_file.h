@@ -43,7 +43,7 @@ struct BoardFile {
   SignalSource enable, healthy;        // digital lines from and to the controller of the machine
   std::vector<LinkEntry> links;        // kinds: "modbus-tcp", "modbus-rtu", "isotp"
   int priority = 80;                   // priority in SCHED_FIFO
-  std::string watchdog;                // device of a hardware watchdog; empty if there is none
+  std::string watchdog;                // device of a hardware watchdog; empty: no watchdog
   std::vector<std::string> key_files;  // files of public keys, which are already read
 };
 

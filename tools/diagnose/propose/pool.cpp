@@ -266,4 +266,13 @@ bool Pool::same_kind(std::size_t a, std::size_t b) const {
   return kinds(a) == kinds(b);
 }
 
+std::optional<double> Pool::period_of(std::size_t i) const {
+  auto value = (*this)[i].scored.scanned.begin();
+  for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(candidate(i))) {
+    if (unknown.kind == effects::UnknownKind::kPeriod) return *value;
+    ++value;
+  }
+  return std::nullopt;
+}
+
 }  // namespace vernier::diagnose

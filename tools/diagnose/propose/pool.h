@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -57,6 +58,8 @@ class Pool {
 
   /// Returns the columns of several candidates side by side.
   Eigen::MatrixXd columns(const std::vector<std::size_t>& items) const;
+  /// Returns the period of an item in the unit of its axis; nullopt if the item has no period.
+  std::optional<double> period_of(std::size_t i) const;
   /// True if a candidate is a term of the product search, without a name in the catalogue.
   bool is_custom(std::size_t i) const { return candidate(i).choice.effect == &effects::custom_effect(); }
   /// Returns the share of the sum of squares of one candidate's columns that is in the span of another

@@ -41,24 +41,17 @@ class Filter {
 
   /// Whitens the readings of the series in place. Returns the logarithm of the determinant.
   double run(Eigen::MatrixXd& readings) {
-    const Eigen::Index quantities = readings.rows();
+    return readings.rows() == 1 ? run_rows<1>(readings) : run_rows<Eigen::Dynamic>(readings);
+  }
+
+ private:
+  /// `kRows`: number of quantities, if it is known to the compiler: one needs no vector.
+  template <int kRows>
+  double run_rows(Eigen::MatrixXd& readings) {
     LogProduct determinant;
-    if (quantities == 1) {
-      std::array<double, kActive> state{};
-      for (std::size_t i = 0; i < series_.reading.size(); ++i) {
-        predict(i, [&](int k, double factor) { state[at(k)] *= factor; });
-        const double variance = update();
-        double& reading = readings(0, series_.reading[i]);
-        double innovation = reading;
-        for (int k = 0; k < kActive; ++k) innovation -= state[at(k)];
-        for (int k = 0; k < kActive; ++k) state[at(k)] += gain_[at(k)] * innovation;
-        reading = innovation / std::sqrt(variance);
-        determinant.multiply(variance);
-      }
-      return determinant.value();
-    }
-    Eigen::MatrixXd state = Eigen::MatrixXd::Zero(quantities, kActive);
-    Eigen::VectorXd innovation(quantities);
+    Eigen::Matrix<double, kRows, kActive> state =
+        Eigen::Matrix<double, kRows, kActive>::Zero(readings.rows(), kActive);
+    Eigen::Matrix<double, kRows, 1> innovation(readings.rows());
     for (std::size_t i = 0; i < series_.reading.size(); ++i) {
       predict(i, [&](int k, double factor) {
         if (factor == 0)
@@ -67,7 +60,7 @@ class Filter {
           state.col(k) *= factor;
       });
       const double variance = update();
-      auto reading = readings.col(series_.reading[i]);
+      auto reading = readings.col(series_.reading[i]).template head<kRows>(readings.rows());
       innovation = reading;
       for (int k = 0; k < kActive; ++k) innovation -= state.col(k);
       for (int k = 0; k < kActive; ++k) state.col(k) += gain_[at(k)] * innovation;
@@ -77,7 +70,6 @@ class Filter {
     return determinant.value();
   }
 
- private:
   static constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
   /// Moves the states from the reading before to reading `i`. `scale(k, factor)`: multiplies state k.
