@@ -114,7 +114,8 @@ TEST_F(RolloutTest, StopsAtTheFirstWorseMachineAndTakesItBack) {
   EXPECT_EQ(roll("--go-on"), 0) << said();
   EXPECT_EQ(states(), "kept kept kept");
   EXPECT_TRUE(answer()["assurance"]["holds"]) << answer();
-  EXPECT_NE(answer()["assurance"]["not_covered"].dump().find("--judge is missing"), std::string::npos) << answer();
+  EXPECT_NE(answer()["assurance"]["not_covered"].dump().find("--judge is missing"), std::string::npos)
+      << answer();
   EXPECT_EQ(slots(1).issued, first) << "what was kept is left alone";
   EXPECT_NE(slots(3).confirmed_fingerprint, slots(2).confirmed_fingerprint) << "each has its own image";
   EXPECT_EQ(vernier("fleet list --registry fleet.db"), 0);
