@@ -390,6 +390,23 @@ ExcludedRows left_out_of(const Diagnosis& clean, const model::Measurement& all,
   return left;
 }
 
+/// Withdraws a cause that was found without outliers if the check rows, with the excluded ones, contradict
+/// it.
+void withdraw_if_all_check_rows_contradict(Diagnosis& clean, const model::Measurement& all,
+                                           const VerdictThresholds& thresholds) {
+  if (!is_named(clean.verdict) || clean.left_out->check_rows == 0) return;
+  const model::Measurement rows = model::rebind(all, clean.base.machine, clean.end.machine);
+  if (!is_worse_on_check_rows(all, fit::residuals(clean.base.machine, all), rows,
+                              fit::residuals(clean.end.machine, rows), thresholds))
+    return;
+  clean.verdict = Verdict::kUnexplained;
+  clean.causes.clear();
+  clean.explanation =
+      "No cause is named: with the check rows that were excluded as outliers, the residual of "
+      "the check rows increases. " +
+      clean.explanation;
+}
+
 bool has_effect_of_runs(const Diagnosis& answer) {
   return std::any_of(answer.candidates.begin(), answer.candidates.end(), [](const CandidateFinding& one) {
     return one.accepted && !one.candidate.choice.runs.empty();
@@ -412,6 +429,7 @@ Diagnosis searched(const std::string& text, const model::Machine& machine,
   if (!rest || rows.rows() != measurement.rows()) return all;
   Diagnosis clean = Diagnoser(text, machine, model::select_rows(measurement, rest->kept), options).run();
   clean.left_out = left_out_of(clean, measurement, rest->kept);
+  withdraw_if_all_check_rows_contradict(clean, measurement, options.thresholds.verdict);
   if (!rest->step.empty() && all.explanation.find(rest->step) == std::string::npos)
     all.explanation += " " + rest->step;
   // Rows that follow each other moved together if an effect of runs is beside them: the motion was within a

@@ -22,6 +22,19 @@ std::size_t role_of(const model::Measurement& rows, const model::Observation& on
   return rows.check[one.row] != 0 ? 1 : 0;
 }
 
+/// Returns the absolute value of each weighted residual of the check rows.
+std::vector<double> check_sizes(const model::Measurement& rows, const Eigen::VectorXd& residual) {
+  const bool with_u = fit::has_uncertainty(rows);
+  std::vector<double> sizes;
+  for (std::size_t i = 0; i < rows.observations.size(); ++i) {
+    const model::Observation& one = rows.observations[i];
+    if (role_of(rows, one) == 0) continue;
+    const double u = with_u ? model::uncertainty_of(rows, one) : 1;
+    sizes.push_back(u > 0 ? std::abs(residual[static_cast<Eigen::Index>(i)]) / u : 0);
+  }
+  return sizes;
+}
+
 /// Returns rows with a reading more than `far` standard deviations from the fit. The standard
 /// deviation is that of most readings of the same role (fit or check row), and at least u. Check
 /// rows that fail as a whole are therefore no outliers.
@@ -170,7 +183,7 @@ std::optional<OutliersToBlame> outliers_to_blame(const model::Machine& machine,
                                                  const VerdictThresholds& thresholds) {
   if (!fit::has_uncertainty(measurement)) return std::nullopt;  // the expected residual is unknown
   const auto peeled = peel(machine, measurement, of_all, thresholds.outlier_spreads,
-                           thresholds.outliers_alone * static_cast<double>(measurement.rows()));
+                           thresholds.most_outliers * static_cast<double>(measurement.rows()));
   if (!peeled || peeled->fit.freedom <= 0) return std::nullopt;
   const double freedom = peeled->fit.freedom;
   if (peeled->fit.chi_square / freedom > 1 + thresholds.noise_sigmas * std::sqrt(2 / freedom))
@@ -191,9 +204,8 @@ std::optional<WithoutOutliers> without_gross_outliers(const model::Machine& mach
                                                       const VerdictThresholds& thresholds) {
   const bool with_u = fit::has_uncertainty(measurement);
   const double far = with_u ? thresholds.outlier_spreads : thresholds.outlier_spreads_without_u;
-  const double share = with_u ? thresholds.outliers_beside : thresholds.outliers_alone;
-  auto peeled =
-      peel(machine, measurement, of_all, far, std::max(1.0, share * static_cast<double>(measurement.rows())));
+  auto peeled = peel(machine, measurement, of_all, far,
+                     std::max(1.0, thresholds.most_outliers * static_cast<double>(measurement.rows())));
   if (!peeled) return std::nullopt;
   std::string step = step_in_words(measurement, peeled->kept, std::log(thresholds.structure));
   return WithoutOutliers{
@@ -202,6 +214,22 @@ std::optional<WithoutOutliers> without_gross_outliers(const model::Machine& mach
                   "other rows (as after a lost beam or a displaced target).",
                   rows_in_words(*peeled, measurement), far),
       std::move(step)};
+}
+
+bool is_worse_on_check_rows(const model::Measurement& rows_before, const Eigen::VectorXd& before,
+                            const model::Measurement& rows_after, const Eigen::VectorXd& after,
+                            const VerdictThresholds& thresholds) {
+  const bool with_u = fit::has_uncertainty(rows_after);
+  const std::vector<double> sizes_before = check_sizes(rows_before, before),
+                            sizes_after = check_sizes(rows_after, after);
+  const double spread = std::max(maths::robust_spread(sizes_after), with_u ? 1.0 : 0.0);
+  const double far = spread * (with_u ? thresholds.outlier_spreads : thresholds.outlier_spreads_without_u);
+  const auto square = [far](const std::vector<double>& sizes) {
+    return std::accumulate(sizes.begin(), sizes.end(), 0.0, [far](double sum, double size) {
+      return sum + std::min(size, far) * std::min(size, far);
+    });
+  };
+  return square(sizes_after) > square(sizes_before);
 }
 
 }  // namespace vernier::diagnose

@@ -43,12 +43,19 @@ struct WithoutOutliers {
 double log_p_of_groups(std::size_t all, std::size_t out, std::size_t groups);
 
 /// Excludes the rows with a gross outlier: a reading far from the model with the effects found so far. The
-/// excluded rows are at most a given share of all rows (VerdictThresholds::outliers_beside). Returns nullopt
+/// excluded rows are at most a given share of all rows (VerdictThresholds::most_outliers). Returns nullopt
 /// if there are no gross outliers, or if their share of the rows is too large. `machine`, `of_all`: the model
 /// with the effects found so far, and its residual.
 std::optional<WithoutOutliers> without_gross_outliers(const model::Machine& machine,
                                                       const model::Measurement& measurement,
                                                       const Eigen::VectorXd& of_all,
                                                       const VerdictThresholds& thresholds);
+
+/// True if a second model increases the sum of squares of the weighted residual of the check rows. A residual
+/// beyond the limit of an outlier counts as a residual at this limit, so that true outliers hardly change the
+/// result. Each model has its rows and its residual, mm or deg.
+bool is_worse_on_check_rows(const model::Measurement& rows_before, const Eigen::VectorXd& before,
+                            const model::Measurement& rows_after, const Eigen::VectorXd& after,
+                            const VerdictThresholds& thresholds);
 
 }  // namespace vernier::diagnose

@@ -96,7 +96,36 @@ bool follows_from_position(const Evidence& evidence, const effects::Candidate& c
   });
 }
 
+bool depends_on_time(const Evidence& evidence, const effects::Candidate& candidate) {
+  const auto drivers = drivers_of(evidence.machine(), candidate);
+  return std::any_of(drivers.begin(), drivers.end(), [](const auto& driver) {
+    return driver.first == static_cast<int>(model::SymbolKind::kTime);
+  });
+}
+
+bool depends_on_temperature(const Evidence& evidence, const effects::Candidate& candidate) {
+  return std::any_of(candidate.choice.inputs.begin(), candidate.choice.inputs.end(),
+                     [&](const std::string& name) {
+                       const auto input = evidence.machine().find_input(name);
+                       return input && effects::class_of_input(evidence.machine().inputs[*input]) ==
+                                           effects::InputClass::kTemperature;
+                     });
+}
+
 }  // namespace
+
+std::vector<std::size_t> pieces_of_unrecorded_heat(const Evidence& evidence, const Pool& pool,
+                                                   const std::vector<std::size_t>& items) {
+  for (const std::size_t a : items)
+    for (const std::size_t b : items) {
+      const effects::Candidate &x = pool.candidate(a), &y = pool.candidate(b);
+      if (!x.choice.place || !y.choice.place || !depends_on_temperature(evidence, x) ||
+          depends_on_temperature(evidence, y) || !depends_on_time(evidence, y))
+        continue;
+      if (moves_alike(evidence, *x.choice.place, *y.choice.place)) return {a, b};
+    }
+  return {};
+}
 
 std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const Pool& pool,
                                                 const std::vector<std::size_t>& items) {

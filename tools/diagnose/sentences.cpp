@@ -101,6 +101,13 @@ std::string pieces_in_words(const std::vector<std::string>& names) {
       names.size(), fmt::join(names, "; "));
 }
 
+std::string unrecorded_heat_in_words(const std::vector<std::string>& names) {
+  return fmt::format(
+      "{} effects together reduce the residual to the noise, but they are probably parts of one response to "
+      "a source of heat that no thermometer records: {}. Record a temperature at the motors and bearings.",
+      names.size(), fmt::join(names, "; "));
+}
+
 std::string not_confirmed_in_words(const std::vector<std::string>& names) {
   return names.empty() ? "" : fmt::format("The check rows do not confirm {}.", fmt::join(names, ", "));
 }

@@ -45,6 +45,10 @@ std::string aliases_in_words(const effects::Candidate& candidate, double period,
 /// Returns the sentence about effects that are likely parts of one function of position.
 std::string pieces_in_words(const std::vector<std::string>& names);
 
+/// Returns the sentence about effects that are likely parts of the response to a source of heat that no
+/// thermometer records.
+std::string unrecorded_heat_in_words(const std::vector<std::string>& names);
+
 /// Returns the sentence "The check rows do not confirm A, B." with the given names; empty if there are no
 /// names.
 std::string not_confirmed_in_words(const std::vector<std::string>& names);

@@ -58,7 +58,7 @@ class Decision {
     std::string (Decision::*explains)();
     Verdict verdict;
   };
-  static const std::array<Rule, 17> kRules;
+  static const std::array<Rule, 18> kRules;
 
   // The rules, in the order of the table.
 
@@ -141,19 +141,29 @@ class Decision {
   /// u states the whole uncertainty of a reading. If named effects leave a drift that u does not contain, the
   /// drift may be another error of the machine that no recorded quantity follows. An input, the time or the
   /// run can follow this error by chance: the whitened residual does not show it.
+  /// No instrument drifts from row to row: such a drift is an error of the machine beside every effect.
   std::string drift_beyond_u() {
     if (answer_.noise.drift <= 0 || !fit::has_uncertainty(found_.measurement)) return {};
-    const auto slow = std::find_if(accepted_.begin(), accepted_.end(),
-                                   [this](std::size_t item) { return can_follow_a_drift(item); });
-    if (slow == accepted_.end()) return {};
-    const double square = mean_square_beside_steps();
+    const bool quick = drift_is_from_row_to_row();
+    const auto doubtful = std::find_if(accepted_.begin(), accepted_.end(),
+                                       [&](std::size_t item) { return quick || can_follow_a_drift(item); });
+    if (doubtful == accepted_.end()) return {};
+    const double square = mean_square_of_drift();
     if (square <= limits_.doubtful_uncertainty) return {};
     return fmt::format(
-        "An error that changes slowly remains, and u does not state it: the residual of the fit rows is "
+        "An error that changes {} remains, and u does not state this error: the residual of the readings is "
         "{:.2g} u (noise model: {}). Either the instrument drifts, or an error of the machine depends on no "
         "recorded quantity. No cause is named; {} is only a candidate.{}",
-        std::sqrt(square), ::vernier::fit::in_words(answer_.noise, answer_.noise_unit),
-        pool_.candidate(*slow).spoken, check_rows_in_words(answer_.ladder, accepted_.size()));
+        quick ? "from row to row" : "slowly", std::sqrt(square),
+        ::vernier::fit::in_words(answer_.noise, answer_.noise_unit), pool_.candidate(*doubtful).spoken,
+        check_rows_in_words(answer_.ladder, accepted_.size()));
+  }
+
+  /// A warm-up in time beside an effect of a temperature: probably one response to heat that no thermometer
+  /// of the survey follows.
+  std::string heat_without_thermometer() {
+    const std::vector<std::size_t> parts = pieces_of_unrecorded_heat(finder_.evidence(), pool_, accepted_);
+    return parts.empty() ? "" : unrecorded_heat_in_words(names_of(parts));
   }
 
   /// The error of the check rows must not exceed that of the fit rows, except for their own scatter
@@ -318,6 +328,12 @@ class Decision {
     return residual;
   }
 
+  bool drift_is_from_row_to_row() const {
+    const fit::NoiseLayout layout = fit::noise_layout(rows_, fit::fitted_readings(fit::fit_weights(rows_)),
+                                                      found_.options.thresholds.layout);
+    return answer_.noise.time_constant < limits_.rows_of_a_drift * layout.step;
+  }
+
   /// Can a term repeat a part of a drift? True if the term depends on an input, the time or the run, at any
   /// position, or if only a search of products found it.
   bool can_follow_a_drift(std::size_t item) const {
@@ -330,18 +346,27 @@ class Decision {
     });
   }
 
-  /// Returns the mean square of the weighted residual of the fit rows, correlated errors included, except for
-  /// the steps of the instrument.
-  double mean_square_beside_steps() const {
-    const double freedom = std::max(1.0, answer_.end.freedom);
-    const std::vector<fit::NoiseStep>& steps = answer_.noise.steps;
-    if (steps.empty()) return answer_.end.chi_square / freedom;
+  /// Returns the mean square of the weighted residual over the fit readings that drift, correlated errors
+  /// included, except for the steps of the instrument.
+  double mean_square_of_drift() const {
+    const fit::NoiseModel& noise = answer_.noise;
     const Eigen::VectorXd weights = fit::fit_weights(rows_);
     const std::vector<std::size_t> fitted = fit::fitted_readings(weights);
-    const Eigen::VectorXd left = weights(fitted).cwiseProduct(answer_.end.residual(fitted));
-    const fit::NoiseLayout layout = fit::noise_layout(rows_, fitted, found_.options.thresholds.layout);
-    const Eigen::MatrixXd columns = fit::step_columns(layout, steps, left.size());
-    return (left - columns * maths::least_norm(columns, left)).squaredNorm() / freedom;
+    Eigen::VectorXd left = weights(fitted).cwiseProduct(answer_.end.residual(fitted));
+    if (!noise.steps.empty()) {
+      const fit::NoiseLayout layout = fit::noise_layout(rows_, fitted, found_.options.thresholds.layout);
+      const Eigen::MatrixXd columns = fit::step_columns(layout, noise.steps, left.size());
+      left -= columns * maths::least_norm(columns, left);
+    }
+    double sum = 0, drifting = 0;
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+      const auto kind = static_cast<int>(rows_.observations[fitted[i]].kind);
+      if (!fit::is_drifting(noise.drifts, kind)) continue;
+      sum += std::pow(left[static_cast<Eigen::Index>(i)], 2);
+      ++drifting;
+    }
+    const double freedom = std::max(1.0, answer_.end.freedom) / static_cast<double>(fitted.size());
+    return sum / std::max(1.0, freedom * drifting);
   }
 
   /// Returns a sentence about the instrument if errors correlated in time or by run are as large
@@ -468,7 +493,7 @@ class Decision {
 
 // The order is the precedence: the instrument before the machine, no name before a doubtful name,
 // several names before one.
-const std::array<Decision::Rule, 17> Decision::kRules = {{
+const std::array<Decision::Rule, 18> Decision::kRules = {{
     {&Decision::time_base, Verdict::kInstrument},
     {&Decision::outliers, Verdict::kInstrument},
     {&Decision::step_beside_a_name, Verdict::kUnexplained},
@@ -480,6 +505,7 @@ const std::array<Decision::Rule, 17> Decision::kRules = {{
     {&Decision::not_down_to_noise, Verdict::kUnexplained},
     {&Decision::pieces, Verdict::kUnexplained},
     {&Decision::drift_beyond_u, Verdict::kUnexplained},
+    {&Decision::heat_without_thermometer, Verdict::kUnexplained},
     {&Decision::check_contradicts, Verdict::kUnexplained},
     {&Decision::terms_without_name, Verdict::kUnexplained},
     {&Decision::shape_contradicts, Verdict::kUnexplained},

@@ -309,6 +309,85 @@ TEST(Verdict, TheErrorOfAllCheckRowsIsStatedBesideOutliers) {
   EXPECT_NE(answer.explanation.find("1 check row is left out"), std::string::npos) << answer.explanation;
 }
 
+/// The error of the previous motion is in no column. Named as backlash before, without one row of twelve.
+TEST(Verdict, RowsThatDependOnThePreviousMotionAreNoOutliers) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "X[mm],dirX,x[mm],u[um],run,role\n";
+  const auto dir_of = [](int i) { return i / 12 % 2 == 0 ? 1 : -1; };
+  for (int i = 0; i < 400; ++i) {
+    const double x = 5.0 * (i * 37 % 100);
+    const double error = 0.006 * dir_of(std::max(0, i - 1));
+    text += fmt::format("{},{},{:.6f},1,r{},{}\n", x, dir_of(i), x + error + noise(random), i / 100,
+                        i % 5 == 4 ? "check" : "fit");
+  }
+
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+
+  EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_FALSE(answer.left_out.has_value()) << answer.explanation;
+}
+
+/// No instrument drifts from row to row by three times its uncertainty.
+TEST(Verdict, ADriftFromRowToRowLeavesNoName) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal;
+  for (const double rows : {1.5, 40.0}) {
+    const double keep = std::exp(-1 / rows);
+    std::vector<double> drift(400);
+    for (std::size_t i = 1; i < drift.size(); ++i)
+      drift[i] = keep * drift[i - 1] + 0.003 * std::sqrt(1 - keep * keep) * normal(random);
+    const Measurement survey = rows_with(
+        [&](int i) { return drift[static_cast<std::size_t>(i)] + (i / 3 % 2 == 0 ? 0.002 : -0.002); },
+        machine);
+
+    const Diagnosis answer = diagnose::diagnose(kAxis, machine, survey);
+
+    const bool quick = rows < 3;
+    EXPECT_EQ(answer.verdict, quick ? Verdict::kUnexplained : Verdict::kMissingEffect)
+        << "seed " << kSeed << ", " << rows << " rows: " << answer.explanation;
+    EXPECT_EQ(answer.explanation.find("An error that changes from row to row remains") == 0, quick)
+        << answer.explanation;
+  }
+}
+
+/// A thermometer far from the motor follows the motor's heat only in part: the growth by this thermometer and
+/// a warm-up in time are parts of one response.
+TEST(Verdict, AWarmUpBesideAGrowthIsHeatThatNoThermometerRecords) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string rows = "t[s],X[mm],x[mm],u[um],T_room[degC],run,role\n";
+  for (int i = 0; i < 400; ++i) {
+    const double x = 5.0 * (i * 37 % 100), t = 30.0 * i, room = 20 + 2 * std::sin(t / 900);
+    const double error = 0.02 * (1 - std::exp(-t / 1800)) + 0.004 * (room - 20);
+    rows += fmt::format("{},{},{:.6f},1,{:.4f},r{},{}\n", t, x, x + error + noise(random), room, i / 100,
+                        i % 5 == 4 ? "check" : "fit");
+  }
+
+  const Diagnosis answer = diagnose::diagnose(kAxis, machine, parse_measurement(rows, "m.csv", machine));
+
+  EXPECT_EQ(answer.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << answer.explanation;
+  EXPECT_NE(answer.explanation.find("that no thermometer records"), std::string::npos) << answer.explanation;
+}
+
+TEST(Verdict, ExcludedCheckRowsCountUpToTheLimitOfAnOutlier) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  const Measurement rows = rows_with([](int) { return 0.0; }, machine);
+  const VerdictThresholds thresholds;
+  Eigen::VectorXd before = Eigen::VectorXd::Constant(400, 0.002), after = before / 2;
+  EXPECT_FALSE(is_worse_on_check_rows(rows, before, rows, after, thresholds));
+  // A true outlier of 300 u in one check row, larger by 100 um with the second model: still better.
+  before[4] = 0.3;
+  after[4] = 0.4;
+  EXPECT_FALSE(is_worse_on_check_rows(rows, before, rows, after, thresholds));
+  // Seven of 80 check rows become outliers: 7 * (36 - 4) is more than 73 * (4 - 1).
+  for (int i = 9; i < 44; i += 5) after[i] = 0.01;
+  EXPECT_TRUE(is_worse_on_check_rows(rows, before, rows, after, thresholds));
+}
+
 TEST(Verdict, ChanceOfSuccessiveRowsIsThatOfTheRunsTest) {
   // Two of four rows: three of the six pairs are neighbours.
   EXPECT_NEAR(std::exp(log_p_of_groups(4, 2, 1)), 0.5, 1e-12);
