@@ -119,8 +119,9 @@ std::vector<std::size_t> pieces_of_unrecorded_heat(const Evidence& evidence, con
   for (const std::size_t a : items)
     for (const std::size_t b : items) {
       const effects::Candidate &x = pool.candidate(a), &y = pool.candidate(b);
-      if (!x.choice.place || !y.choice.place || !depends_on_temperature(evidence, x) ||
-          depends_on_temperature(evidence, y) || !depends_on_time(evidence, y))
+      const bool slow = depends_on_temperature(evidence, x) || !x.choice.runs.empty();
+      if (!slow || !x.choice.place || !y.choice.place || depends_on_temperature(evidence, y) ||
+          !depends_on_time(evidence, y))
         continue;
       if (moves_alike(evidence, *x.choice.place, *y.choice.place)) return {a, b};
     }

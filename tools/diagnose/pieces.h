@@ -21,9 +21,9 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
                                                 const std::vector<std::size_t>& items);
 
 /// Returns two accepted effects at locations that move the readings alike: one effect depends on a
-/// temperature, the other effect depends on the time but on no temperature. Both are probably parts of one
-/// response to a source of heat that no thermometer of the survey records. Returns an empty list if there
-/// are no two such effects.
+/// temperature or shifts runs, the other effect depends on the time but on no temperature. Both are probably
+/// parts of one response to a source of heat that no thermometer of the survey records. Returns an empty list
+/// if there are no two such effects.
 std::vector<std::size_t> pieces_of_unrecorded_heat(const Evidence& evidence, const Pool& pool,
                                                    const std::vector<std::size_t>& items);
 

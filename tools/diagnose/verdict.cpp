@@ -148,7 +148,7 @@ class Decision {
     const auto doubtful = std::find_if(accepted_.begin(), accepted_.end(),
                                        [&](std::size_t item) { return quick || can_follow_a_drift(item); });
     if (doubtful == accepted_.end()) return {};
-    const double square = mean_square_of_drift();
+    const double square = mean_square_beside_steps(quick);
     if (square <= limits_.doubtful_uncertainty) return {};
     return fmt::format(
         "An error that changes {} remains, and u does not state this error: the residual of the readings is "
@@ -346,9 +346,9 @@ class Decision {
     });
   }
 
-  /// Returns the mean square of the weighted residual over the fit readings that drift, correlated errors
-  /// included, except for the steps of the instrument.
-  double mean_square_of_drift() const {
+  /// Returns the mean square of the weighted residual of the fit readings, correlated errors included, except
+  /// for the steps of the instrument. `drifting`: true selects the readings that drift.
+  double mean_square_beside_steps(bool drifting) const {
     const fit::NoiseModel& noise = answer_.noise;
     const Eigen::VectorXd weights = fit::fit_weights(rows_);
     const std::vector<std::size_t> fitted = fit::fitted_readings(weights);
@@ -358,15 +358,15 @@ class Decision {
       const Eigen::MatrixXd columns = fit::step_columns(layout, noise.steps, left.size());
       left -= columns * maths::least_norm(columns, left);
     }
-    double sum = 0, drifting = 0;
+    double sum = 0, count = 0;
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       const auto kind = static_cast<int>(rows_.observations[fitted[i]].kind);
-      if (!fit::is_drifting(noise.drifts, kind)) continue;
+      if (drifting && !fit::is_drifting(noise.drifts, kind)) continue;
       sum += std::pow(left[static_cast<Eigen::Index>(i)], 2);
-      ++drifting;
+      ++count;
     }
     const double freedom = std::max(1.0, answer_.end.freedom) / static_cast<double>(fitted.size());
-    return sum / std::max(1.0, freedom * drifting);
+    return sum / std::max(1.0, freedom * count);
   }
 
   /// Returns a sentence about the instrument if errors correlated in time or by run are as large

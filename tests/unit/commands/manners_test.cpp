@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 #include <filesystem>
@@ -104,6 +105,37 @@ TEST_F(Manners, CheckStatesItsVerdictAndTheFileThatItDoesNotWrite) {
               said("is no free parameter of f.xml; diagnose a longer measurement, and fit"))
       << said_;
   EXPECT_FALSE(fs::exists(folder_ + "/right.xml"));
+}
+
+/// A day of a machine had 86 million cycles, which took half a minute.
+TEST_F(Manners, LongMeasurementIsCorrectedInASlowerLoop) {
+  write_file(folder_ + "/a.xml",
+             "<machine><variables><static><k value=\"0\"/></static><machineaxes>"
+             "<X min=\"0\" max=\"600\" maxcorrection=\"0.5\" maxslew=\"1\"/></machineaxes></variables>"
+             "<transforms><sixdof X=\"X+k*X\"/></transforms></machine>");
+  const auto survey = [](int seconds_apart) {
+    std::string rows = "t[s],X[mm],x[mm],u[um],role\n";
+    for (int i = 0; i < 49; ++i) {  // 300 um/m, readings scattered by 0.5 um, in a fixed order
+      const int x = 37 * i % 49 * 12;
+      rows += std::to_string(seconds_apart * i) + "," + std::to_string(x) + "," +
+              std::to_string(1.0003 * x + 0.0002 * (7 * i % 5 - 2)) + ",0.5," +
+              (i % 4 == 3 ? "check" : "fit") + "\n";
+    }
+    return rows;
+  };
+  for (const auto& [apart, rate] :
+       std::vector<std::pair<int, std::string>>{{60, "1 kHz"}, {1800, "200 Hz"}}) {
+    write_file(folder_ + "/a.csv", survey(apart));
+    EXPECT_EQ(run("vernier improve a.xml a.csv -o out --yes --json r.json"), 0) << said_;
+    EXPECT_TRUE(said("\n" + rate + " loop, ")) << said_;
+    const nlohmann::json loop = nlohmann::json::parse(read_file(folder_ + "/r.json"))["simulation"];
+    EXPECT_LE(loop["ticks"].get<double>(), 2e7);
+    EXPECT_GT(loop["rms_before_um"].get<double>(), 50);
+    EXPECT_LT(loop["rms_after_um"].get<double>(), 0.5) << "a loop of " << rate;
+  }
+  write_file(folder_ + "/a.csv", survey(40'000));
+  EXPECT_EQ(run("vernier improve a.xml a.csv -o out --yes"), 0) << said_;
+  EXPECT_TRUE(said("the measurement lasts longer than eleven days; divide it into shorter files")) << said_;
 }
 
 TEST_F(Manners, RecordsInAnglesOnlyHaveFiguresInAngles) {
