@@ -21,6 +21,8 @@ EQUIVALENT = [
     ("i < program_.equation.lag_count; ++i) lags_before_[i] = lags_[i]", ("<", "<="), "one state more is copied, which nothing reads; 16 lags are all"),
     ("count_ > begin_ &&", (">", ">="), "a ring without samples is emptied again"),
     ("int bit = kRatioBits + 4;", ("4", "5"), "one bit more, which no ratio below 16 has"),
+    ("return numerator < 0 ? -quotient", ("<", "<="), "zero is its own opposite"),
+    ("constexpr unsigned kGuardBits = 8;", ("8", "9"), "one guard bit more: the position differs by less than a part of 256 of a count"),
     ("nanometres.shift > 94", (">", ">="), "no setting reaches it"),
     ("s.b >= e.lag_count", (">=", ">"), "a state that is not counted is refused at the end as well"),
     ("(a.high < 0 ? -a.high : 0)", ("<", "<="), "zero is its own opposite"),

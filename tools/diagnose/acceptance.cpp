@@ -134,12 +134,6 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
   return result;
 }
 
-HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
-                       Eigen::Index watched_count, bool within_runs) {
-  return leave_blocks_out(evidence, columns, watched_first, watched_count,
-                          within_runs ? evidence.parts_of_runs() : evidence.blocks());
-}
-
 std::vector<std::vector<int>> level_blocks(const Evidence& evidence) {
   const model::States& states = evidence.measurement().states;
   const AcceptanceThresholds& thresholds = evidence.thresholds().acceptance;

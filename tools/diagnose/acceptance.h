@@ -8,23 +8,18 @@
 
 namespace vernier::diagnose {
 
-/// Result of a leave-one-run-out test of the columns (regressors) that a model would gain.
+/// Result of a leave-one-block-out test of the columns (regressors) that a model would gain.
 struct HeldOut {
-  double chi_square = 0;          // sum over all rows; each row is predicted from the other runs
-  std::vector<double> agreement;  // cosine, for each run left out, between the contribution of the watched
-                                  // columns in this run and in all runs
+  double chi_square = 0;          // sum over all rows; each row is predicted from the other blocks
+  std::vector<double> agreement;  // cosine, for each block left out, between the contribution of the watched
+                                  // columns in this block and in all blocks
 };
 
-/// Leave-one-run-out test: predicts every run of the fit rows from the other runs. The regressors are the
-/// free parameters of the model and `columns`, after projection on the orthogonal complement of those
-/// parameters. Parameters that only the held-out run determines are fitted to the held-out run.
-/// `within_runs`: true leaves out parts of runs instead of whole runs, for effects that are a property of a
-/// run. `watched_first`, `watched_count`: first index and number of the columns whose agreement is reported.
-HeldOut leave_runs_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
-                       Eigen::Index watched_count, bool within_runs = false);
-
-/// Leave-one-block-out test: predicts each block of the fit rows from the other blocks, with the method of
-/// leave_runs_out. `blocks`: the index of the block for each fit observation.
+/// Leave-one-block-out test: predicts every block of the fit rows from the other blocks. The regressors are
+/// the free parameters of the model and `columns`, after projection on the orthogonal complement of those
+/// parameters. Parameters that only the held-out block determines are fitted to the held-out block.
+/// `watched_first`, `watched_count`: first index and number of the columns whose agreement is reported.
+/// `blocks`: the index of the block for each fit observation; a negative index is never held out.
 HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& columns, Eigen::Index watched_first,
                          Eigen::Index watched_count, const std::vector<int>& blocks);
 

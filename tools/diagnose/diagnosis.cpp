@@ -100,13 +100,10 @@ class Diagnoser {
     std::string text;
     for (const fit::NoiseStep& step : result_.noise.steps) {
       if (step.of_set_up() || step.row >= measurement_.line.size()) continue;
-      const auto kind = static_cast<format::ReadingKind>(step.kind);
-      const bool rotation = model::is_rotation(static_cast<model::ObservationKind>(step.kind));
       text += fmt::format(
-          " The noise model contains a step at line {} ({:+.3g} {} in {}): the instrument, the target or the "
-          "machine possibly moved there.",
-          measurement_.line[step.row], step.height * result_.noise_unit.of(rotation),
-          rotation ? "urad" : "um", format::name_of(kind));
+          " The noise model contains a step at line {} ({}): the instrument, the target or the machine "
+          "possibly moved there.",
+          measurement_.line[step.row], fit::step_in_words(step, result_.noise_unit));
     }
     return text;
   }

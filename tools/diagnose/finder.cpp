@@ -433,28 +433,48 @@ void Finder::ban_hollow_products() {
   }
 }
 
+std::vector<int> Finder::runs_to_hold_out(std::size_t item) const {
+  const bool of_run = !pool_.candidate(item).choice.runs.empty() || shows_in_one_block(item);
+  return of_run ? evidence_.parts_of_runs() : evidence_.blocks();
+}
+
 std::string Finder::failed_test(std::size_t item) const {
   const Selection rest = evaluate(without(item));
   if (rest.criterion - criterion_ < thresholds_.evidence)
     return fmt::format("evidence: the BIC decreases by less than {:g}", thresholds_.evidence);
+  const double gain = rest.chi_square - chi_square_;
+  if (std::string failed = failed_on_runs(item, gain); !failed.empty()) return failed;
+  if (std::string failed = failed_on_levels(item, gain); !failed.empty()) return failed;
+  if (std::string failed = failed_on_positions(item, gain); !failed.empty()) return failed;
+  return too_large(item);
+}
+
+std::string Finder::failed_on_runs(std::size_t item, double gain) const {
   const Eigen::Index count = pool_[item].columns.cols();
   std::vector<std::size_t> others = without(item), all = {item};
   all.insert(all.end(), others.begin(), others.end());
-  const bool of_run = !pool_.candidate(item).choice.runs.empty() || shows_in_one_block(item);
-  const HeldOut with = leave_runs_out(evidence_, pool_.columns(all), 0, count, of_run);
-  const HeldOut less = leave_runs_out(evidence_, pool_.columns(others), 0, 0, of_run);
-  const double gain = rest.chi_square - chi_square_;
+  const std::vector<int> runs = runs_to_hold_out(item);
+  const HeldOut with = leave_blocks_out(evidence_, pool_.columns(all), 0, count, runs);
+  const HeldOut less = leave_blocks_out(evidence_, pool_.columns(others), 0, 0, runs);
   if (less.chi_square - with.chi_square < thresholds_.held_out_share * gain)
     return "test `held out`: the effect does not reduce the residual of held-out runs";
   std::size_t agree = 0;
   for (const double cosine : with.agreement) agree += cosine > thresholds_.stable_cosine ? 1 : 0;
   if (static_cast<double>(agree) < thresholds_.stable_runs * static_cast<double>(with.agreement.size()))
     return "test `stability`: the coefficients of the effect change if the fit does not use one of the runs";
-  if (has_input(item, effects::InputClass::kFeature))
-    for (const std::vector<int>& levels : level_blocks(evidence_))
-      if (held_out_decrease(item, levels) < thresholds_.held_out_share * gain)
-        return "test `held out`: the effect does not reduce the residual of readings at held-out feeds or "
-               "temperatures";
+  return {};
+}
+
+std::string Finder::failed_on_levels(std::size_t item, double gain) const {
+  if (!has_input(item, effects::InputClass::kFeature)) return {};
+  for (const std::vector<int>& levels : level_blocks(evidence_))
+    if (held_out_decrease(item, levels) < thresholds_.held_out_share * gain)
+      return "test `held out`: the effect does not reduce the residual of readings at held-out feeds or "
+             "temperatures";
+  return {};
+}
+
+std::string Finder::failed_on_positions(std::size_t item, double gain) const {
   // Other rows at the same positions cannot contradict what a term does between them.
   const bool found = pool_.is_custom(item);
   const double least = found ? thresholds_.held_out_share * gain
@@ -462,7 +482,7 @@ std::string Finder::failed_test(std::size_t item) const {
   for (const std::vector<int>& places : place_blocks(evidence_, pool_.candidate(item).choice.axis))
     if (held_out_decrease(item, places) < least)
       return "test `held out`: the effect does not reduce the residual of readings at held-out positions";
-  return too_large(item);
+  return {};
 }
 
 double Finder::variance_of_reading() const {
@@ -473,30 +493,36 @@ double Finder::variance_of_reading() const {
 double Finder::held_out_decrease(std::size_t item, const std::vector<int>& blocks) const {
   std::vector<std::size_t> others = without(item), all = {item};
   all.insert(all.end(), others.begin(), others.end());
-  return leave_blocks_out(evidence_, pool_.columns(others), 0, 0, blocks).chi_square -
-         leave_blocks_out(evidence_, pool_.columns(all), 0, 0, blocks).chi_square;
+  return held_out_square(others, blocks) - held_out_square(all, blocks);
 }
 
 double Finder::held_out_evidence(std::size_t item) const {
-  const bool of_run = !pool_.candidate(item).choice.runs.empty() || shows_in_one_block(item);
-  return held_out_decrease(item, of_run ? evidence_.parts_of_runs() : evidence_.blocks()) /
-         (2 * variance_of_reading());
+  return held_out_decrease(item, runs_to_hold_out(item)) / (2 * variance_of_reading());
 }
 
-bool Finder::predicts_worse(std::size_t alternative, std::size_t item) const {
-  std::vector<std::size_t> with = without(item), accepted = with;
-  with.push_back(alternative);
-  accepted.push_back(item);
-  std::vector<std::vector<int>> divisions = {evidence_.blocks()};
-  for (const std::size_t of : {item, alternative})
-    for (std::vector<int>& places : place_blocks(evidence_, pool_.candidate(of).choice.axis))
-      if (std::find(divisions.begin(), divisions.end(), places) == divisions.end())
-        divisions.push_back(std::move(places));
+double Finder::held_out_square(const std::vector<std::size_t>& items, const std::vector<int>& blocks) const {
+  return leave_blocks_out(evidence_, pool_.columns(items), 0, 0, blocks).chi_square;
+}
+
+void Finder::add_divisions(std::size_t of, std::vector<Division>& divisions) const {
+  for (std::vector<int>& places : place_blocks(evidence_, pool_.candidate(of).choice.axis)) {
+    const bool known = std::any_of(divisions.begin(), divisions.end(),
+                                   [&](const Division& one) { return one.blocks == places; });
+    if (known) continue;
+    const double accepted = held_out_square(chosen_, places);
+    divisions.push_back({std::move(places), accepted});
+  }
+}
+
+bool Finder::predicts_worse(std::size_t alternative, std::size_t item,
+                            const std::vector<Division>& of_item) const {
+  std::vector<Division> divisions = of_item;
+  add_divisions(alternative, divisions);
+  std::vector<std::size_t> set = without(item);
+  set.push_back(alternative);
   const double limit = 2 * evidence_.thresholds().proof.evidence * variance_of_reading();
-  return std::any_of(divisions.begin(), divisions.end(), [&](const std::vector<int>& blocks) {
-    return leave_blocks_out(evidence_, pool_.columns(with), 0, 0, blocks).chi_square -
-               leave_blocks_out(evidence_, pool_.columns(accepted), 0, 0, blocks).chi_square >
-           limit;
+  return std::any_of(divisions.begin(), divisions.end(), [&](const Division& one) {
+    return held_out_square(set, one.blocks) - one.accepted > limit;
   });
 }
 
@@ -681,6 +707,8 @@ std::vector<std::size_t> Alternatives::within(double distance) const {
 Alternatives Finder::alternatives_to(std::size_t item) const {
   Alternatives found;
   const std::vector<std::size_t> others = without(item);
+  std::vector<Division> divisions = {{evidence_.blocks(), held_out_square(chosen_, evidence_.blocks())}};
+  add_divisions(item, divisions);
   for (const std::size_t alternative : entry_item_) {
     if (alternative == item || std::find(others.begin(), others.end(), alternative) != others.end()) continue;
     std::vector<std::size_t> set = others;
@@ -700,7 +728,7 @@ Alternatives Finder::alternatives_to(std::size_t item) const {
       }
     }
     if (pool_.same_cause(item, alternative) || !too_large(alternative).empty()) continue;
-    if (distance < thresholds_.distance_of_fits && predicts_worse(alternative, item)) continue;
+    if (distance < thresholds_.distance_of_fits && predicts_worse(alternative, item, divisions)) continue;
     found.other.push_back({alternative, distance});
   }
   std::sort(found.other.begin(), found.other.end(),

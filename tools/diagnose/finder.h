@@ -164,15 +164,32 @@ class Finder {
   /// Returns the name of the first acceptance test that an accepted effect fails; empty if the effect passes
   /// all tests.
   std::string failed_test(std::size_t item) const;
+  /// Each test returns its failure as text, or an empty text. `gain`: the decrease of chi^2 by the effect.
+  std::string failed_on_runs(std::size_t item, double gain) const;
+  std::string failed_on_levels(std::size_t item, double gain) const;
+  std::string failed_on_positions(std::size_t item, double gain) const;
+  /// Returns the blocks of rows that are held out for an effect: whole runs, or parts of runs for an effect
+  /// that acts in single runs.
+  std::vector<int> runs_to_hold_out(std::size_t item) const;
   /// Returns the variance of a weighted reading after a fit of the accepted effects; at least 1 if u is
   /// given.
   double variance_of_reading() const;
   /// Returns the decrease of chi^2 by an accepted item on held-out blocks: each block is predicted from the
   /// other blocks. blocks: one index per fit observation.
   double held_out_decrease(std::size_t item, const std::vector<int>& blocks) const;
+  /// A division of the fit observations into blocks, and the sum of squares with which the accepted effects
+  /// predict each block from the other blocks.
+  struct Division {
+    std::vector<int> blocks;
+    double accepted = 0;
+  };
+  double held_out_square(const std::vector<std::size_t>& items, const std::vector<int>& blocks) const;
+  /// Adds the divisions by position for an effect, except those that are already in the list.
+  void add_divisions(std::size_t of, std::vector<Division>& divisions) const;
   /// True if the accepted set with `alternative` in place of `item` predicts held-out runs or positions so
-  /// much worse that the likelihood ratio is 20 to 1 against the alternative.
-  bool predicts_worse(std::size_t alternative, std::size_t item) const;
+  /// much worse that the likelihood ratio is 20 to 1 against the alternative. `of_item`: the divisions for
+  /// `item`.
+  bool predicts_worse(std::size_t alternative, std::size_t item, const std::vector<Division>& of_item) const;
   /// has_input: true if the term of a candidate contains an input of the class `wanted`. shows_in_one_block:
   /// true if one run contains nearly all that an accepted effect explains. If an effect acts in only one run,
   /// the other runs cannot confirm the effect.

@@ -116,18 +116,28 @@ std::vector<std::size_t> of_other_axes(const Evidence& evidence, const Pool& poo
   return others;
 }
 
-/// Decrease of the sum of squares by columns beside others, and their number.
-struct Explained {
-  double squares = 0;
-  double rank = 0;
+/// The part of columns that neither the model nor other columns explain, and the residual beside these.
+struct OwnPart {
+  Eigen::MatrixXd basis;  // orthonormal
+  Eigen::VectorXd rest;
+  Index others = 0;  // rank of the other columns
+  double explained() const { return (basis.transpose() * rest).squaredNorm(); }
+  double rank() const { return static_cast<double>(basis.cols()); }
 };
-Explained explained_by(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside) {
+
+OwnPart own_part(const Evidence& evidence, Eigen::MatrixXd columns, const Eigen::MatrixXd& beside) {
+  const double least_own = evidence.thresholds().shape.own;
+  const Eigen::VectorXd before = columns.colwise().norm();
+  const Eigen::MatrixXd& q = evidence.absorbed();
   const Eigen::MatrixXd others = maths::orthonormal(beside, 1e-6, nullptr);
-  Eigen::MatrixXd own = beyond_model(evidence, raw);
-  own -= others * (others.transpose() * own);
-  const Eigen::MatrixXd basis = maths::orthonormal(own, evidence.thresholds().shape.own, nullptr);
-  const Eigen::VectorXd rest = evidence.residual() - others * (others.transpose() * evidence.residual());
-  return {(basis.transpose() * rest).squaredNorm(), static_cast<double>(basis.cols())};
+  for (int pass = 0; pass < 2; ++pass) {
+    columns -= q * (q.transpose() * columns);
+    columns -= others * (others.transpose() * columns);
+  }
+  for (Index j = 0; j < columns.cols(); ++j)
+    if (columns.col(j).norm() < least_own * before[j]) columns.col(j).setZero();
+  return {maths::orthonormal(columns, least_own, nullptr),
+          evidence.residual() - others * (others.transpose() * evidence.residual()), others.cols()};
 }
 
 /// Returns the natural logarithm of a bound of the p-value of the periods along an axis: the probability that
@@ -156,11 +166,11 @@ double log_chance_of_periods(const Evidence& evidence, const Pool& pool,
       log_tries += std::log(std::max(1.0, tries)) - std::log(++periods);
     }
   }
-  const Explained pattern = explained_by(evidence, half_waves(evidence, *choice.place, u, read - 1), beside);
-  const Explained found = explained_by(evidence, pool.columns(along), beside);
-  const double freedom = pattern.rank - found.rank;
-  if (freedom <= 0 || pattern.squares <= 0) return 0;
-  const double open = std::max(1 - found.squares / pattern.squares, 1e-12);
+  const OwnPart pattern = own_part(evidence, half_waves(evidence, *choice.place, u, read - 1), beside);
+  const OwnPart found = own_part(evidence, pool.columns(along), beside);
+  const double freedom = pattern.rank() - found.rank();
+  if (freedom <= 0 || pattern.explained() <= 0) return 0;
+  const double open = std::max(1 - found.explained() / pattern.explained(), 1e-12);
   return log_tries + freedom / 2 * std::log(open);
 }
 
@@ -210,25 +220,12 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
 }  // namespace
 
 Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside) {
-  const double least_own = evidence.thresholds().shape.own;
-  Eigen::MatrixXd own = raw;
-  const Eigen::VectorXd before = own.colwise().norm();
-  const Eigen::MatrixXd& q = evidence.absorbed();
-  const Eigen::MatrixXd others = maths::orthonormal(beside, 1e-6, nullptr);
-  for (int pass = 0; pass < 2; ++pass) {
-    own -= q * (q.transpose() * own);
-    own -= others * (others.transpose() * own);
-  }
-  for (Index j = 0; j < own.cols(); ++j)
-    if (own.col(j).norm() < least_own * before[j]) own.col(j).setZero();
-  const Eigen::MatrixXd basis = maths::orthonormal(own, least_own, nullptr);
-  const Eigen::VectorXd rest = evidence.residual() - others * (others.transpose() * evidence.residual());
-  const double explained = (basis.transpose() * rest).squaredNorm();
-  const double freedom =
-      std::max(1.0, evidence.freedom() - static_cast<double>(others.cols() + basis.cols()));
-  double variance = (rest.squaredNorm() - explained) / freedom;
+  const OwnPart own = own_part(evidence, raw, beside);
+  const double explained = own.explained();
+  const double freedom = std::max(1.0, evidence.freedom() - static_cast<double>(own.others) - own.rank());
+  double variance = (own.rest.squaredNorm() - explained) / freedom;
   if (evidence.noise_known()) variance = std::max(1.0, variance);
-  return {explained / std::max(variance, 1e-300), static_cast<double>(basis.cols())};
+  return {explained / std::max(variance, 1e-300), own.rank()};
 }
 
 AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,

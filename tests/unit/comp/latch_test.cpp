@@ -220,6 +220,16 @@ TEST(Latch, IsExactAtTheFastestTravelAndRefusesMore) {
   EXPECT_EQ(latched_at(-(std::int64_t{1} << 34), latched), LatchFault::kTooFast);
 }
 
+// A share of 2^-28 between the samples is a part of 32 counts at this speed.
+TEST(Latch, UsesTheLastBitOfTheShareBetweenTwoSamples) {
+  constexpr std::int64_t kGap = std::int64_t{1} << 28, kTravel = std::int64_t{1} << 33;
+  LatchRing ring = ring_of({{0, 0}, {kGap, kTravel}, {2 * kGap, 2 * kTravel}, {3 * kGap, 3 * kTravel}});
+  LatchedPosition latched;
+  ASSERT_EQ(ring.seek(InstantNs(kGap + 12345677)), LatchFault::kNone);
+  ASSERT_EQ(ring.position_of(0, false, InstantNs(0), latched), LatchFault::kNone);
+  EXPECT_EQ(latched.position.count, kTravel + 32 * std::int64_t{12345677});
+}
+
 TEST(Latch, GoesThroughARolloverWithoutAJump) {
   LatchRing ring;
   for (int i = 0; i < 10; ++i) {

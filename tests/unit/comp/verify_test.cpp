@@ -184,6 +184,7 @@ TEST(VerifyProgram, RangesOfEachOperationAreThoseOfAllItsOperands) {
   EXPECT_EQ(range_after({-4, 5}, {2, 3}, on_both(OpCode::kLinear, 1, 3, -2)), Range(-9, 6));
   EXPECT_EQ(range_after({-4, 5}, {-2, 3}, on_both(OpCode::kMultiply)), Range(-12, 15));
   EXPECT_EQ(range_after({-4, -2}, {-3, -2}, on_both(OpCode::kMultiply)), Range(4, 12));
+  EXPECT_EQ(range_after({2, 3}, {4, 5}, on_both(OpCode::kMultiply)), Range(8, 15));
   EXPECT_EQ(range_after({2, 4}, {0, 0}, on_both(OpCode::kAbs)), Range(2, 4));
   EXPECT_EQ(range_after({-4, -2}, {0, 0}, on_both(OpCode::kAbs)), Range(2, 4));
   EXPECT_EQ(range_after({-4, 2}, {0, 0}, on_both(OpCode::kAbs)), Range(0, 4));
@@ -409,6 +410,14 @@ TEST(VerifyProgram, TablesAndPeriodsAreSoundAtEachLimit) {
   EXPECT_EQ(after([](Sample& s) { s.linear[0] = INT32_MAX - 255; }), kTable) << "its end is beyond int32";
   EXPECT_EQ(after([](Sample& s) { s.linear[0] = INT32_MAX - 512, s.linear[8] = INT32_MAX - 256; }), kNone);
   EXPECT_EQ(after([](Sample& s) { s.linear[0] = INT32_MAX - 511, s.linear[8] = INT32_MAX - 255; }), kTable);
+  const auto with_end = [](std::int32_t length, std::uint32_t reciprocal) {
+    return after([=](Sample& s) {
+      s.cubic[0] = INT32_MAX - 511, s.cubic[8] = INT32_MAX - 255;
+      s.cubic[9] = length, s.cubic[10] = static_cast<std::int32_t>(reciprocal);
+    });
+  };
+  EXPECT_EQ(with_end(255, 2155905153U), kNone) << "its end is the last count";
+  EXPECT_EQ(with_end(256, std::uint32_t{1} << 31), kTable) << "its end is beyond the last count";
   EXPECT_EQ(after([](Sample& s) { s.linear[2] = 0; }), kTable) << "the far end is never reached";
   EXPECT_EQ(after([](Sample& s) {
               // A length of 3: reach - one must be below the length and below 2^shift.

@@ -143,8 +143,9 @@ TEST(LeaveRunsOut, IsTheRefitWithoutEachRun) {
     refitted_with += s.refitted(with, run, false);
     refitted_without += s.refitted(s.machine, run, false);
   }
-  const HeldOut held_with = leave_runs_out(s.evidence, s.columns, 0, 1);
-  const HeldOut held_without = leave_runs_out(s.evidence, Eigen::MatrixXd(s.columns.rows(), 0), 0, 0);
+  const HeldOut held_with = leave_blocks_out(s.evidence, s.columns, 0, 1, s.evidence.blocks());
+  const HeldOut held_without =
+      leave_blocks_out(s.evidence, Eigen::MatrixXd(s.columns.rows(), 0), 0, 0, s.evidence.blocks());
   EXPECT_NEAR(held_with.chi_square, refitted_with, 1e-6 * refitted_with);
   EXPECT_NEAR(held_without.chi_square, refitted_without, 1e-6 * refitted_without);
   EXPECT_LT(held_with.chi_square, 0.6 * held_without.chi_square) << "the effect is there";
@@ -163,7 +164,7 @@ TEST(LeaveRunsOut, FitsToARunWhatOnlyItDetermines) {
   // r0 has the hidden shift; without it the offset a and the shifts of the others cannot be told apart, and
   // its own mean is free as well.
   refitted += s.refitted(with, 0, true);
-  const HeldOut held = leave_runs_out(s.evidence, s.columns, 0, 1);
+  const HeldOut held = leave_blocks_out(s.evidence, s.columns, 0, 1, s.evidence.blocks());
   EXPECT_NEAR(held.chi_square, refitted, 1e-5 * refitted);
 }
 
@@ -223,8 +224,8 @@ TEST(PlaceBlocks, ContradictATermThatEveryRunRepeats) {
                    static_cast<double>(k + 2));
   powers -= s.evidence.absorbed() * (s.evidence.absorbed().transpose() * powers);
   const Eigen::MatrixXd nothing(powers.rows(), 0);
-  EXPECT_LT(leave_runs_out(s.evidence, powers, 0, 0).chi_square,
-            0.8 * leave_runs_out(s.evidence, nothing, 0, 0).chi_square);
+  EXPECT_LT(leave_blocks_out(s.evidence, powers, 0, 0, s.evidence.blocks()).chi_square,
+            0.8 * leave_blocks_out(s.evidence, nothing, 0, 0, s.evidence.blocks()).chi_square);
   const std::vector<int> stretches = place_blocks(s.evidence, 0).front();
   EXPECT_GT(leave_blocks_out(s.evidence, powers, 0, 0, stretches).chi_square,
             leave_blocks_out(s.evidence, nothing, 0, 0, stretches).chi_square);

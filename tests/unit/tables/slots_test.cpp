@@ -106,6 +106,21 @@ TEST(Slots, RecordIsValidOnlyWithSlotsThatExist) {
   EXPECT_TRUE(with([](SlotRecord& r) { r.confirmed = r.trial = kNoSlot; }));
 }
 
+// A trial that a damage ended leaves no issue number.
+TEST(Slots, TrialThatADamageEndedIsNoLongerInTheRecord) {
+  Places places;
+  Slots slots = places.load();
+  for (int i = 0; i < 3; ++i) {
+    const SlotChange change = i % 2 == 0 ? slots.start_trial(5, 0) : slots.confirm();
+    places.put(change), slots.stored(change);
+  }
+  ASSERT_EQ(places.load().trial_issued(), 5U);
+  places.place[places.load().revert().place].written = false;
+  const Slots found = places.load();
+  EXPECT_EQ(found.trial(), kNoSlot);
+  EXPECT_EQ(found.trial_issued(), 0U);
+}
+
 TEST(Slots, NextChangeOverwritesTheOlderRecord) {
   Places places;
   Slots slots = places.load();

@@ -128,6 +128,13 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
   return y.transpose();
 }
 
+std::string step_in_words(const NoiseStep& step, const NoiseUnit& unit) {
+  const bool rotation = model::is_rotation(static_cast<model::ObservationKind>(step.kind));
+  return fmt::format("{:.3g} +- {:.2g} {} in {}", step.height * unit.of(rotation),
+                     step.std * unit.of(rotation), unit_name(rotation),
+                     format::name_of(static_cast<format::ReadingKind>(step.kind)));
+}
+
 std::string in_words(const NoiseModel& model, const NoiseUnit& unit) {
   const double size = unit.of_all();
   const char* const name = unit_name(unit.angles_only);
@@ -151,12 +158,8 @@ std::string in_words(const NoiseModel& model, const NoiseUnit& unit) {
     text += fmt::format(", the touched object shifts by {:.3g} um rms from set-up to set-up",
                         std::sqrt(set_ups / count) * unit.um);
   for (const NoiseStep& step : model.steps) {
-    if (step.of_set_up()) continue;
-    const auto kind = static_cast<model::ObservationKind>(step.kind);
-    const bool rotation = model::is_rotation(kind);
-    text += fmt::format(", a step of {:.3g} +- {:.2g} {} in {} from row {} on",
-                        step.height * unit.of(rotation), step.std * unit.of(rotation), unit_name(rotation),
-                        format::name_of(static_cast<format::ReadingKind>(step.kind)), step.row + 1);
+    if (!step.of_set_up())
+      text += fmt::format(", a step of {} from row {} on", step_in_words(step, unit), step.row + 1);
   }
   return text;
 }

@@ -88,6 +88,10 @@ constexpr const char* unit_name(bool rotation) { return rotation ? "arcsec" : "u
 /// Returns the names of the kinds of reading that drift; empty if all kinds drift or no kind drifts.
 std::vector<std::string> drifting_kinds(const NoiseModel& model);
 
+/// Describes a step that is not a set-up, for example "22.8 +- 0.12 um in x": its height with the standard
+/// deviation, and the kind of reading.
+std::string step_in_words(const NoiseStep& step, const NoiseUnit& unit);
+
 /// Describes a noise model in one sentence for people.
 std::string in_words(const NoiseModel& model, const NoiseUnit& unit);
 
