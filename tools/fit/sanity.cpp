@@ -408,8 +408,30 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
   return {sentence, false};
 }
 
+namespace {
+
+/// A sentence if the rows of each file agree with the machine alone, but not together.
+std::string moved_between_files(const model::Machine& machine, const model::Measurement& rows,
+                                double misfit_mm) {
+  if (rows.files.size() < 2) return {};
+  for (std::size_t file = 0; file < rows.files.size(); ++file) {
+    std::vector<std::size_t> of_file;
+    for (std::size_t row = 0; row < rows.rows(); ++row)
+      if (rows.file[row] == file) of_file.push_back(row);
+    const double alone =
+        convention_of(machine, model::select_rows(rows, of_file), model::ParameterSet()).misfit_mm;
+    if (!(alone < kFivefold * misfit_mm)) return {};
+  }
+  return fmt::format(
+      "each file agrees with the machine alone, so the instrument had different positions; the "
+      "rows of {} and {} share one BaseShift: give them different words in a column \"setup\"",
+      rows.files[0], rows.files[1]);
+}
+
+}  // namespace
+
 std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows, double misfit_mm) {
-  if (!machine.base_shifts.empty()) return {};
+  if (!machine.base_shifts.empty()) return moved_between_files(machine, rows, misfit_mm);
   model::Machine placed = machine;
   placed.base_shifts.emplace_back();
   if (!(convention_of(placed, rows, model::ParameterSet()).misfit_mm < kFivefold * misfit_mm)) return {};
