@@ -359,7 +359,7 @@ int run_board(const Arguments& arguments) {
   duties = nullptr;
   devices.say_held();
   if (service->runner().lost_syncs() > 0)
-    std::fprintf(stderr, "vernierd: the sync was lost %llu times\n",
+    std::fprintf(stderr, "vernierd: the sync signal was lost %llu times\n",
                  static_cast<unsigned long long>(service->runner().lost_syncs()));
   return finish(arguments, service->runner(), service->cycle(), grant);
 }

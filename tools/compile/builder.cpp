@@ -240,8 +240,8 @@ ProgramBuilder::Id ProgramBuilder::linear(double k, Id a, double l, Id b, const 
     const Id id = append(step, {meta}, overflow);
     if (!overflow) return id;
   }
-  throw text::InputError("cannot be compiled: " + name +
-                         " is too large for 32 bits over the declared ranges");
+  throw text::InputError("cannot be compiled: over the declared ranges a value is too large for 32 bits: " +
+                         name);
 }
 
 ProgramBuilder::Id ProgramBuilder::product(Id a, Id b, const Interval& exact, const std::string& name) {
@@ -267,8 +267,8 @@ ProgramBuilder::Id ProgramBuilder::product(Id a, Id b, const Interval& exact, co
     const Id id = append(step, {meta}, overflow);
     if (!overflow) return id;
   }
-  throw text::InputError("cannot be compiled: the product " + name +
-                         " does not fit 32 bits over the declared ranges");
+  throw text::InputError("cannot be compiled: over the declared ranges a product is too large for 32 bits: " +
+                         name);
 }
 
 double ProgramBuilder::largest_value(const Product& p) const {
@@ -344,8 +344,8 @@ ProgramBuilder::Id ProgramBuilder::dot(double constant_part, std::vector<Product
     if (!overflow) return id;
     p_.terms.resize(first_term);
   }
-  throw text::InputError("cannot be compiled: " + name +
-                         " is too large for 32 bits over the declared ranges");
+  throw text::InputError("cannot be compiled: over the declared ranges a value is too large for 32 bits: " +
+                         name);
 }
 
 ProgramBuilder::Id ProgramBuilder::plain(Instruction step, int fraction_bits, const Interval& exact,
@@ -369,8 +369,8 @@ ProgramBuilder::Id ProgramBuilder::reformat(Id a, int fraction_bits) {
   if (at(a).fraction_bits == fraction_bits) return a;
   const Factors f = factors_for(std::ldexp(1.0, fraction_bits - at(a).fraction_bits), 0);
   if (f.shift < 0 || f.first == 0)
-    throw text::InputError("cannot be compiled: " + at(a).name +
-                           " is compared with a value of another order of magnitude");
+    throw text::InputError(
+        "cannot be compiled: a value is compared with a value of another order of magnitude: " + at(a).name);
   const Instruction step{OpCode::kLinear,
                          static_cast<std::uint8_t>(f.shift),
                          static_cast<std::uint16_t>(a),
@@ -399,7 +399,9 @@ ProgramBuilder::Id ProgramBuilder::look_up(Id position, LoweredTable table, std:
   const std::string name = results[0].name;
   bool overflow = false;
   const Id id = append(step, std::move(results), overflow);
-  if (overflow) throw text::InputError("cannot be compiled: " + name + " rises too steeply for 32 bits");
+  if (overflow)
+    throw text::InputError("cannot be compiled: the slope of a table or function is too large for 32 bits: " +
+                           name);
   return id;
 }
 

@@ -67,7 +67,7 @@ class Maker {
     settle_reference();
     result_.choice = choice_;
     const std::vector<TermAt> terms = terms_to_fill();
-    if (terms.empty()) missing("a degree of freedom at which it acts");
+    if (terms.empty()) missing("a degree of freedom at which the effect acts");
     name_unknowns(terms);
     for (const TermAt& term : terms) {
       const model::ExprPtr filled = fill(term);

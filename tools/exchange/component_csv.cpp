@@ -82,7 +82,7 @@ std::vector<Block> blocks_of(const std::string& text, const std::string& file) {
       if (words.size() != block.header.size())
         throw text::InputError(
             {file, number}, words[0],
-            fmt::format("{} fields where the header has {}", words.size(), block.header.size()));
+            fmt::format("this row has {} fields, but the header has {}", words.size(), block.header.size()));
       block.rows.push_back(std::move(words));
       block.line.push_back(number);
     }
@@ -183,7 +183,7 @@ model::Table parse_axis_csv(const std::string& text, const std::string& file, co
       ++k;
     if (k == 6)
       throw text::InputError(place, csv.columns[c].name,
-                             "this column is not an error of axis  " + name + "; known are " +
+                             "this column is not an error of axis " + name + "; known are " +
                                  own_name(machine, *axis, 0) + " … or " + iso_name(0, name) + " …");
     const std::vector<double> values =
         numbers(c, k < 3 ? format::Dimension::kLength : format::Dimension::kAngle);

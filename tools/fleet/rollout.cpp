@@ -72,7 +72,7 @@ class RolloutCall {
     }
     // A machine that stopped elsewhere must not be reported as kept because of an earlier look.
     if (!end_.stood.empty() && !stop_) return look_again();
-    if (away > 0) stand(fmt::format("{} boards did not answer: call the rollout again", away));
+    if (away > 0) stand(fmt::format("{} boards did not answer: call `vernier fleet rollout` again", away));
   }
 
   bool next_stage(std::size_t away) {

@@ -263,7 +263,8 @@ class Oddities {
     if (m_.base_shifts.empty())
       findings_.remark(0, "BaseShift",
                        "BaseShift is missing: the measuring frame is then the frame of the machine",
-                       "a tracker or CMM has another frame; <BaseShift X=\"0\" …/> lets a fit find where");
+                       "a tracker or CMM has another frame; with <BaseShift X=\"0\" …/> a fit estimates the "
+                       "position of the instrument");
     std::set<std::string> runs;
     for (const model::BaseShift& shift : m_.base_shifts)
       if (shift.run && m_.base_shifts.size() == 1)

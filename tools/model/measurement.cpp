@@ -649,7 +649,7 @@ void append_candidates(Measurement& all, const Measurement& next) {
       if (other.name == candidate.name) {
         if (other.unit != candidate.unit)
           throw text::InputError({next.files[0], 0}, other.name,
-                                 "another file gives this column in [" + candidate.unit + "]");
+                                 "another file gives this column in another unit: [" + candidate.unit + "]");
         tail = other.value;
       }
     candidate.value = join(candidate.value, tail);
@@ -926,8 +926,8 @@ Measurement read_measurement(const std::vector<std::string>& paths, const Machin
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const std::string text = text::read_file(paths[i]);
     if (const auto [known, is_new] = file_of_text.try_emplace(text, paths[i]); !is_new)
-      throw text::InputError(paths[i] + ": these are the readings of " + known->second +
-                             " once more; give each measurement once");
+      throw text::InputError(paths[i] + ": this file has the same readings as " + known->second +
+                             "; give each measurement only once");
     Measurement next = parse_measurement(text, paths[i], machine, images);
     if (i == 0)
       all = std::move(next);

@@ -232,7 +232,7 @@ std::string plan_csv(const Plan& plan) {
   sheet.add_readings();
   std::string text = "# " + plan.sentence + "\n";
   if (!plan.rows.correction.empty())
-    text += "# with the correction off (or give what it adds in columns " +
+    text += "# Measure with the correction off (or give the active correction in columns " +
             format::axis_column(format::AxisQuantity::kCorrection, plan.machine.axes.front().name) +
             " and so on)\n";
   for (std::size_t i = 0; i < sheet.columns.size(); ++i) text += (i ? "," : "") + sheet.columns[i].header;

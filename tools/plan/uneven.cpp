@@ -81,7 +81,7 @@ std::string uneven_sentence(const model::Machine& machine, const model::Measurem
   for (const double q : uneven_positions(*low, *high, taken, kPositions))
     text += (text.empty() ? "" : ", ") + text::number_text(q);
   const model::Axis& item = machine.axes[axis];
-  return "Measure " + item.name + " in uneven steps as well, to distinguish the " +
+  return "Measure also at these uneven positions of the axis " + item.name + ", to distinguish the " +
          std::to_string(finding.aliases.size() + 1) + " periods: " + text +
          (item.rotary ? " deg, both directions." : " mm, both directions.");
 }

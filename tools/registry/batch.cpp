@@ -57,7 +57,7 @@ Found find(const std::string& folder, const Batch& batch, const std::string& mac
   const auto is_text = [](const Json& value) { return value.is_string(); };
   if (!is("batch", is_text) || !is("machine", is_text) || !is("message", is_text) ||
       !json->contains("result") || !is("status", [](const Json& value) { return value.is_number_integer(); }))
-    return no("incomplete", file + " has not all of batch, machine, status, message, result");
+    return no("incomplete", file + " lacks one of the keys batch, machine, status, message, result");
   if ((*json)["batch"] != batch.id) return no("refused", file + " is an answer of another batch");
   if ((*json)["machine"] != machine)
     return no("refused", file + " is the answer of " + (*json)["machine"].get<std::string>());

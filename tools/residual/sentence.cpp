@@ -80,7 +80,8 @@ std::string statement(const Finding& f, const SentenceFacts& facts) {
                            f.column == format::columns::kRun ? f.second_column : f.column,
                            f.high_um - f.low_um, unit_of(f));
       return fmt::format(
-          "{} depends on {} times {}: how it depends on one changes with the other ({:.3g} {} in all)",
+          "{} depends on {} times {}: the dependence on one of the two changes with the other ({:.3g} {} in "
+          "all)",
           subject(f), f.column, f.second_column, f.high_um - f.low_um, unit_of(f));
     case Shape::kWanders:
       return fmt::format(

@@ -145,8 +145,9 @@ void make_even(Sheet& sheet) {
   const std::size_t width = sheet.rows[widest].size();
   if (width > (kMostEmpty + (1 + kMostEmptyForOne) * cells) / sheet.rows.size())
     throw text::InputError({sheet.file, sheet.line[widest]}, "",
-                           std::to_string(width) + " cells here, where the rows have " +
-                               std::to_string(cells / sheet.rows.size()) + ": no table");
+                           "this row has " + std::to_string(width) +
+                               " cells, but a row of this sheet has on average " +
+                               std::to_string(cells / sheet.rows.size()) + ": this is no table");
   for (auto& row : sheet.rows) row.resize(width);
 }
 

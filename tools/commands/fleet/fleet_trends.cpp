@@ -79,7 +79,7 @@ void run_alike(const TrendArguments& arguments) {
       fmt::print(out, "{}: {} drifts by itself, {:.3g} \u00b1 {:.2g} {} a day\n", drift.quantity, one.machine,
                  one.per_day, one.std, drift.unit);
     if (!drift.common && drift.own.empty())
-      fmt::print(out, "{}: no drift ({} machines, {} times, scatter {:.2g} of the stated uncertainty)\n",
+      fmt::print(out, "{}: no drift ({} machines, {} times, scatter {:.2g} times the stated uncertainty)\n",
                  drift.quantity, drift.machines, drift.times, drift.scatter);
     if (drift.wander > 0)
       fmt::print(

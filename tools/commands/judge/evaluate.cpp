@@ -121,9 +121,9 @@ void run_positioning(const PositioningArguments& arguments) {
   print_result(human_stream(arguments.json), json);
   for (const auto& one : json["characteristics"])
     if (one.contains("conformity") && one["conformity"].is_null())
-      throw text::LimitNotMet(
-          one["name"].get<std::string>() +
-          " cannot be tested: it needs readings in both approach directions, two runs each");
+      throw text::LimitNotMet(one["name"].get<std::string>() +
+                              " cannot be compared with its tolerance, because the file lacks readings in "
+                              "both approach directions, two runs each");
   for (const auto& one : json["characteristics"])
     if (one.contains("conformity") && one["conformity"] == "not met")
       throw text::LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");

@@ -128,7 +128,7 @@ void run_diagonals(const DiagonalArguments& arguments) {
       along.axis = one.name;
       if (one.name.size() == kBody && !body.emplace(one.name, result).second)
         throw text::InputError(path + ": the diagonal " + one.name +
-                               " is in two files: put the rows into one file");
+                               " is in two files: put all rows of a diagonal into one file");
       Json each = {{"diagonal", one.name}, {"length_mm", one.length}};
       const Json evaluated = evaluate::positioning_json(result, one.positions, along);
       pages.push_back(evaluate::positioning_page(evaluated, along));

@@ -335,7 +335,10 @@ void add_s_shape(CLI::App& part) {
       ->add_option("--uncertainty", a->u95_mm,
                    "expanded uncertainty (k = 2) of the machine that measured the part, mm")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("-o,--output", a->output, "directory for paths (CSV, G-code), defect, machine, report")
+  command
+      ->add_option(
+          "-o,--output", a->output,
+          "output directory for the paths (CSV, G-code), the defect, the machine file and the report")
       ->type_name(kWritesFolder)
       ->required();
   add_report_header(*command, a->header);
@@ -349,7 +352,7 @@ void add_gauge_block(CLI::App& part) {
       "gauge-block",
       "compute EA0B and EX0B from readings of a gauge block along Y at C = 0, 90, 180, 270 deg");
   command->add_option("FILE", a->file, "CSV with C[deg] and y[mm]")->type_name(kReads)->required();
-  command->add_option("--pivot-length", a->pivot_mm, "B axis to tool tip, mm")
+  command->add_option("--pivot-length", a->pivot_mm, "distance from the B axis to the tool tip, mm")
       ->required()
       ->check(CLI::PositiveNumber);
   command->add_option("--json", a->json, "result for programs; - for standard output");

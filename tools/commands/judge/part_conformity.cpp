@@ -94,7 +94,8 @@ text::Assurance assurance_of(const model::Machine& machine, const tolerance::Par
                "The number of trials is sufficient: the limits of the intervals have converged.");
   for (const std::string& range : result.outside)
     word.not_covered("The part is outside the measured range: " + range + ".");
-  for (const std::string& name : result.stale) word.not_covered(name + " was set by hand since the fit.");
+  for (const std::string& name : result.stale)
+    word.not_covered("A parameter was set by hand since the fit: " + name + ".");
   if (arguments.process_um <= 0)
     word.not_covered(
         "The result does not include repeatability, tool and cutting, because --process was not given.");

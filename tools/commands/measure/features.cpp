@@ -60,16 +60,17 @@ vibration::DisplacementChoice displacement_choice_of(const FeaturesArguments& ar
   const bool asked = by_corner || !arguments.cutoff.empty() || !arguments.against.empty();
   if (asked && !wants_displacement(arguments))
     throw text::InputError(
-        fmt::format("--corner, --cutoff and --against go with --features {}", vibration::kDisplacementName));
+        fmt::format("--corner, --cutoff and --against require --features {}", vibration::kDisplacementName));
   vibration::DisplacementChoice choice;
   choice.cut = by_corner ? vibration::Cut::kCorner : vibration::Cut::kPower;
   choice.resolution = arguments.resolution;
   if ((word == kBestAgreement) == arguments.against.empty())
-    throw text::InputError(fmt::format("\"{}\" and --against SIGNAL=COLUMN go together", kBestAgreement));
+    throw text::InputError(
+        fmt::format("\"{}\" and --against SIGNAL=COLUMN must be given together", kBestAgreement));
   if (word == kBestAgreement || word.empty() || (!by_corner && word == "noise")) return choice;
   choice.value = text::parse_number(word);
   if (!choice.value || !(*choice.value > 0))
-    throw text::InputError(fmt::format("{} {}: no number above 0, nor {}",
+    throw text::InputError(fmt::format("{} {}: the value must be a number above 0, or {}",
                                        by_corner ? "--corner" : "--cutoff", word,
                                        by_corner ? "fit" : "fit or noise"));
   return choice;

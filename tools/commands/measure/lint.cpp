@@ -43,7 +43,7 @@ void run_lint(const LintArguments& arguments) {
     for (const lint::LintFinding& finding : file.findings)
       fmt::print(out, "{}\n", lint::in_one_line(finding));
     if (file.findings.empty())
-      fmt::print(out, "{}: nothing odd about this {} file\n", text::printable(file.file),
+      fmt::print(out, "{}: no error and no unusual entry in this {} file\n", text::printable(file.file),
                  lint::linted_kind_name(file.kind));
     useless += file.usable ? 0 : 1;
   }

@@ -251,7 +251,8 @@ class Improver {
       const safety::SafetySheet sheet =
           safety::safety_sheet(model::parse_machine(model_steps_.back().text, model_steps_.back().file));
       json["safe_to_run"] = results::safe_to_run_json(sheet);
-      fmt::print(out_, "{}\n", sheet.ok() ? "safe to run: every rule of the sheet holds" : sheet.refusal());
+      fmt::print(out_, "{}\n",
+                 sheet.ok() ? "safe to run: every rule of the safety sheet is met" : sheet.refusal());
     } catch (const text::InputError& error) {
       fmt::print(out_, "safe to run: not judged: {}\n", error.what());
     }

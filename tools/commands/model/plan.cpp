@@ -209,9 +209,9 @@ void run_plan(const PlanArguments& arguments) {
   }
   const bool aimed = !arguments.part.path.empty() || !arguments.region.empty() || !arguments.tool.empty();
   if (aimed && !arguments.separate.empty())
-    throw text::InputError(
-        {}, "--separate",
-        "distinguishes two effects; --part, --region and --tool define where accuracy matters");
+    throw text::InputError({}, "--separate",
+                           "this option distinguishes two effects, and --part, --region and --tool state "
+                           "where the accuracy matters: give only one of the two kinds");
   if (arguments.measurements.empty() && !aimed) return run_first_plan(arguments);
   if (arguments.separate.empty()) return run_accuracy_plan(arguments);
   const std::string text = text::read_file(arguments.machine);

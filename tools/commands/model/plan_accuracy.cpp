@@ -131,7 +131,7 @@ void run_accuracy_plan(const PlanArguments& arguments) {
         {}, "--accuracy",
         "U95 that the plan must reach (or --points), or --separate A,B: two effects to distinguish");
   if (!arguments.part.path.empty() && !arguments.region.empty())
-    throw text::InputError({}, "--region", "either a part or a region");
+    throw text::InputError({}, "--region", "give either --part or --region, not both");
   const model::Machine machine = read_model(arguments.machine);
   plan::AccuracyAim aim;
   aim.words = machine.volume.empty() ? "the axes' ranges" : "the volume";

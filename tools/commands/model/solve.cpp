@@ -65,8 +65,9 @@ text::Assurance assurance_of(const model::Machine& machine, const kinematics::In
     if (axis.max)
       assurance.at_most("max-" + axis.name, value, *axis.max + kRangeSlack, "Upper end of its range.");
     if (!axis.min || !axis.max)
-      assurance.not_covered("The machine file has no min and max of " + axis.name +
-                            ": its range is not known.");
+      assurance.not_covered(
+          "The range of an axis is not known, because the machine file has no min and max: " + axis.name +
+          ".");
   }
   assurance.not_covered("Collisions are not tested.");
   return assurance;
@@ -99,7 +100,7 @@ std::string failure_text(const model::Machine& machine, const kinematics::Invers
     return "no solution: the pose is singular, so the axes cannot move the tool in every direction (" +
            residual + ")";
   if (proof.fault == kinematics::InverseFault::kBeyondRange)
-    return "no solution: axis " + machine.axes[proof.axis].name + " would have to leave its range (" +
+    return "no solution: an axis would have to leave its range: " + machine.axes[proof.axis].name + " (" +
            residual + ")";
   return "no solution: the target is out of reach of these axes (" + residual + ")";
 }

@@ -132,8 +132,8 @@ text::Assurance vouch(const Arguments& arguments, upload::Client& client, const 
   if (tick.mode != Mode::kActive || tick.fault != Fault::kNone || tick.holding || state.weight < 1 ||
       !all_axes)
     assurance.not_covered(
-        fmt::format("that the image is in effect: the board is in mode {}, fault {}{}, with {:.0f} "
-                    "% of the correction in",
+        fmt::format("whether the image is in effect: the board is in mode {}, fault {}{}, with {:.0f} % of "
+                    "the correction active",
                     name_of(tick.mode), name_of(tick.fault),
                     tick.holding ? ", on hold"
                     : all_axes   ? ""

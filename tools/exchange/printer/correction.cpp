@@ -161,7 +161,7 @@ std::optional<Bed> bed_of(const model::Machine& machine, const ThreeAxes& axes, 
   if (name.empty() && planes.size() > 1)
     throw text::InputError({machine.file, 0}, "planes",
                            "the last fit has several planes (" + text::joined(names, ", ") +
-                               "): name the bed with --bed, or none");
+                               "): state the name of the bed with --bed, or none");
   Bed bed{found->name,
           {found->place_mm[0], found->place_mm[1], found->place_mm[2]},
           {found->normal[0], found->normal[1], found->normal[2]},

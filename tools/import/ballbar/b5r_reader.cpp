@@ -141,7 +141,8 @@ class B5rReader {
            "the angle must be 0 to 360 deg beyond START_ANGLE");
     if (arc_deg < 360)
       file.notes.push_back(
-          "partial arc: the import assumes that the samples START..END are the arc START_ANGLE..END_ANGLE");
+          "partial arc: the import assumes that the samples from START to END cover the arc from START_ANGLE "
+          "to END_ANGLE");
   }
 
   BallbarRun read_run(const pugi::xml_node& bar, const pugi::xml_node& node) const {

@@ -38,7 +38,7 @@ std::size_t count_in(const text::Place& place, std::string_view word) {
   constexpr std::size_t kMost = 1000;  // of a row or column of a mesh
   const auto value = text::parse_count(text::trimmed(word));
   if (!value || *value < 1 || *value > kMost)
-    throw text::InputError(place, std::string(word), "not a number of points from 1 to 1000");
+    throw text::InputError(place, std::string(word), "the number of points must be from 1 to 1000");
   return *value;
 }
 

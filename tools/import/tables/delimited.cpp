@@ -80,9 +80,10 @@ DelimitedFile parse_delimited(const std::string& text, const std::string& file,
                                : result.rows.empty() ? fields.size()
                                                      : result.rows.front().size();
     if (fields.size() != wanted)
-      throw text::InputError(
-          place, bare.substr(0, 40),
-          std::to_string(fields.size()) + " fields where the lines above have " + std::to_string(wanted));
+      throw text::InputError(place, bare.substr(0, 40),
+                             std::to_string(fields.size()) +
+                                 " fields in this row; the number of fields in the rows above is " +
+                                 std::to_string(wanted));
     result.rows.push_back(std::move(fields));
     result.line.push_back(place.line);
   }

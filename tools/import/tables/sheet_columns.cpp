@@ -255,7 +255,7 @@ void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& 
     SheetColumn& one = plain ? column : columns[first->second];
     if (!plain) first->second = k;
     leave(one, "column " + std::to_string(first->second + 1) + " (\"" + table.headings[first->second].text +
-                   "\") is " + column.name + " already; to read this one: --leave " +
+                   "\") is already read as " + column.name + "; to read this column instead: --leave " +
                    std::to_string(first->second + 1) + ", or another name: --column \"NAME[unit]=" +
                    std::to_string((&one - columns.data()) + 1) + "\"");
   }

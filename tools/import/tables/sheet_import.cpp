@@ -159,7 +159,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
 
 std::string how_read(const sheet::Sheet& sheet) {
   const std::string doubt =
-      sheet.decimal_doubtful ? " (it could separate thousands as well: give --decimal)" : "";
+      sheet.decimal_doubtful ? " (the sign could also separate thousands: give --decimal)" : "";
   if (sheet.workbook)
     return "workbook, sheet \"" + sheet.sheet + "\"" +
            (sheet.sheets.size() > 1 ? " of " + text::joined(sheet.sheets, ", ") : "") +

@@ -287,9 +287,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   }
   const auto twice = [&](std::size_t k, const std::string& name) {
     throw text::InputError(heading, table.headings[k].text,
-                           "this would be " + name +
-                               " a second time; leave one of the two columns out, such as "
-                               "--leave " +
+                           "this column and another column both have the meaning " + name +
+                               "; leave out one of the two columns, for example --leave " +
                                std::to_string(k + 1));
   };
   std::set<std::string> names;
@@ -345,9 +344,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                                      : constant_cell(*still, sheet.decimal_comma);
         if (at.empty())
           throw text::InputError({sheet.file, sheet.line[row]}, column.name,
-                                 "a deviation without its position: the cell of \"" +
-                                     table.headings[base].text +
-                                     "\" is empty; if the value above it applies, give --fill \"" +
+                                 "the cell of the position is empty in a row with a deviation; if the value "
+                                 "above it applies, give --fill \"" +
                                      table.headings[base].text + "\"");
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
         text = text::fixed_text(mm(at, position_unit) + sign * mm(text, column.unit), 9);

@@ -258,7 +258,8 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   const std::size_t width = others.size() + 3, data = sheet.rows.size() - table.first_data;
   if (data > kMostCells / width / runs.size())
     throw text::InputError({sheet.file, sheet.line[table.heading_row]}, "",
-                           "too many rows, a row for each of " + std::to_string(runs.size()) + " runs");
+                           "the table has too many cells, because each row becomes one row for each of " +
+                               std::to_string(runs.size()) + " runs");
   // Runs of a survey without approach directions have none, and no column of directions.
   const bool directed =
       std::any_of(runs.begin(), runs.end(), [](const RunColumn& one) { return one.sense != 0; });
