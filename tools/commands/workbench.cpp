@@ -148,7 +148,8 @@ void register_image_diff(CLI::App& vernier) {
                    "secret key of `vernier keys` (or VERNIER_KEY): a board with keys sends its correction "
                    "image only to the owner of a trusted key")
       ->type_name(kReads);
-  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Exit status 0 done, 1 bad input or no board, 2 the board's store contains no confirmed image.");
   command->callback([arguments] { run_diff(*arguments); });

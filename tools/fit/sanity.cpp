@@ -293,7 +293,7 @@ std::string collapse_of(const model::Machine& fitted, const model::ParameterSet&
     if (least_motion_over(changed, here, ranges).share < kLeast) alone = parameters[i].name;
   }
   return fmt::format(
-      "{} the fitted machine moves the tool by {:.3g} of what the nominal machine does{}: touches of unknown "
+      "{} the fitted machine moves the tool by only {:.3g} of the nominal distance{}: touches of unknown "
       "points agree best if the machine does not move; perhaps two labels are exchanged, or each point was "
       "touched from positions that do not vary enough{}",
       direction_text(least.along), least.share, alone.empty() ? "" : ", by " + alone + " alone",

@@ -346,7 +346,7 @@ class Oddities {
       const double travel = *axis.max - *axis.min;
       if (travel < 5)
         findings_.warn(axis.line, axis.name, fmt::format("a travel of {} mm", text::number_text(travel)),
-                       "metres or inches? Axes are in mm");
+                       "is the travel in metres or inches? Axis positions are in mm");
       if (travel > 1e5)
         findings_.warn(axis.line, axis.name, fmt::format("a travel of {} mm", text::number_text(travel)),
                        "µm? Axes are in mm");
@@ -358,7 +358,7 @@ class Oddities {
       findings_.warn(axis.line, axis.name,
                      fmt::format("maxcorrection of {} {}", text::number_text(*axis.max_correction),
                                  axis.rotary ? "deg" : "mm"),
-                     "µm? It is in the axis' unit");
+                     "is the value in µm? Its unit is that of the axis");
     if (!axis.max_correction)
       findings_.add_of_kind(
           "maxcorrection", LintWeight::kRemark, axis.line, axis.name,

@@ -314,7 +314,8 @@ void add_machine_kinds(CLI::App& fleet) {
   command = fleet.add_subcommand("list", "machines, and the calibration that was last recorded for each");
   command->add_option("MACHINE", list->machine, "only this one");
   add_registry(*command, list->registry);
-  command->add_option("--json", list->json, "result for programs; - for standard output");
+  command->add_option("--json", list->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([list] { run_list(*list); });
 
   const auto status = std::make_shared<ListArguments>();
@@ -328,7 +329,8 @@ void add_machine_kinds(CLI::App& fleet) {
                    "online; a multiple of the gateway's period_s")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str();
-  command->add_option("--json", status->json, "result for programs; - for standard output");
+  command->add_option("--json", status->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([status] { run_status(*status); });
 }
 

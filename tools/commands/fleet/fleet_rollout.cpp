@@ -241,7 +241,7 @@ void add_rollout(CLI::App& fleet) {
       "--take-over-trial", arguments->options.take_over_trial,
       "revert a trial that another caller began on a board; without this option the board is refused");
   command->add_option("--json", arguments->json,
-                      "state of each machine, for programs; - for standard output");
+                      "file for the state of each machine as JSON, for programs; - for standard output");
   command->footer(
       "The judge command must answer within the trial time of the board, e.g. measure and `vernier compare "
       "--limit`.\n"

@@ -160,7 +160,8 @@ void register_evaluate(CLI::App& vernier) {
       ->allow_extra_args(false);
   add_report_header(*kind, arguments->header);
   kind->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
-  kind->add_option("--json", arguments->json, "result for programs; - for standard output");
+  kind->add_option("--json", arguments->json,
+                   "file for the result as JSON, for programs; - for standard output");
   kind->footer(
       "The deviation is the reading minus the commanded position. The command computes A, R, E, B, M by ISO "
       "230-2:2014, with the approach directions from dirX or from the order of the rows. Exit status 0 done, "

@@ -170,7 +170,8 @@ void add_diagonals_kind(CLI::App& evaluate) {
       ->allow_extra_args(false);
   add_report_header(*kind, arguments->header);
   kind->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
-  kind->add_option("--json", arguments->json, "result for programs; - for standard output");
+  kind->add_option("--json", arguments->json,
+                   "file for the result as JSON, for programs; - for standard output");
   kind->footer(
       "Each diagonal is evaluated like an axis by ISO 230-2; the position is the distance along the "
       "diagonal. The result for the machine is the largest value of its body diagonals (E_d, B_d …). Exit "

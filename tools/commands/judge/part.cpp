@@ -342,7 +342,7 @@ void add_s_shape(CLI::App& part) {
       ->type_name(kWritesFolder)
       ->required();
   add_report_header(*command, a->header);
-  command->add_option("--json", a->json, "result for programs; - for standard output");
+  command->add_option("--json", a->json, "file for the result as JSON, for programs; - for standard output");
   command->callback([a] { run_s_shape(*a); });
 }
 
@@ -355,7 +355,7 @@ void add_gauge_block(CLI::App& part) {
   command->add_option("--pivot-length", a->pivot_mm, "distance from the B axis to the tool tip, mm")
       ->required()
       ->check(CLI::PositiveNumber);
-  command->add_option("--json", a->json, "result for programs; - for standard output");
+  command->add_option("--json", a->json, "file for the result as JSON, for programs; - for standard output");
   command->callback([a] { run_gauge_block(*a); });
 }
 

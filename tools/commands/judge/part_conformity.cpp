@@ -351,7 +351,7 @@ void add_conformity(CLI::App& part) {
   command->add_option("--images", a->images, simulate::kImagesHelp)->type_name(kReadsFolder);
   command->add_option("-o,--output", a->output, "the result as a page (HTML)")->type_name(kWrites);
   add_report_header(*command, a->header);
-  command->add_option("--json", a->json, "result for programs; - for standard output");
+  command->add_option("--json", a->json, "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Monte Carlo simulation over the covariance of the last fit (JCGM 101). The verdict is \"conforms\" or "
       "\"does not\n"

@@ -349,7 +349,8 @@ void register_features(CLI::App& vernier) {
                    "with --by-position: length of the path, mm, on which the position of the next row is "
                    "searched; the search starts at the position of the row before (20)")
       ->check(CLI::PositiveNumber);
-  command->add_option("--json", arguments->json, "result for programs, - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([arguments] { run_features(*arguments); });
 }
 

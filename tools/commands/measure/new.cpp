@@ -224,7 +224,8 @@ void register_new(CLI::App& vernier) {
   command->add_option(
       "--tip", arguments->tip,
       "last link of the arm in the URDF (default: the only last link); --tool is in the frame of this link");
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "The type of the machine determines the order of the axes and whether each axis carries the tool or "
       "the workpiece;\n"

@@ -286,7 +286,8 @@ void register_compare(CLI::App& vernier) {
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
       ->type_name(kWrites);
   add_report_header(*command, arguments->header);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
   command->footer(
       "The report has the ISO 230-4 values and the polar plot (for ball-bar data), the residual against "

@@ -43,7 +43,8 @@ void register_derive(CLI::App& vernier) {
   command->add_flag("--latex", arguments->latex, "LaTeX (amsmath) in place of text");
   command->add_option("-o,--output", arguments->output, "file for the equation (default: standard output)")
       ->type_name(kWrites);
-  command->add_option("--json", arguments->json, "result for programs (- is standard output)");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command
       ->add_option("--length", arguments->sizes.length_mm,
                    "size of a length error for the bound, mm, if the machine file does not state the scale")

@@ -124,7 +124,8 @@ void register_diagnose(CLI::App& vernier) {
   add_survey(*command, arguments->survey);
   command->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
   add_report_header(*command, arguments->header);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
   command
       ->add_option("--machine-out", arguments->write,

@@ -212,7 +212,8 @@ void register_fit(CLI::App& vernier) {
       ->required();
   command->add_option("-o,--output", arguments->output, "the fitted machine file")->type_name(kWrites);
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
   command->add_option("--loss", arguments->loss, "squared, huber or cauchy")
       ->check(CLI::IsMember({"squared", "huber", "cauchy"}))

@@ -284,7 +284,8 @@ void register_improve(CLI::App& vernier) {
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated")
       ->type_name(kReads);
   add_report_header(*command, arguments->header);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_flag("--yes", arguments->yes,
                     "add every effect that diagnose names, without a question to the user");
   command->footer(

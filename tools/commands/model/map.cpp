@@ -244,7 +244,8 @@ void register_map(CLI::App& vernier) {
   command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
       ->type_name(kWrites);
   add_report_header(*command, arguments->header);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option("--grid", arguments->grid, "nodes along each axis")
       ->check(CLI::Range(2, 40))
       ->capture_default_str();

@@ -361,7 +361,8 @@ void register_plan(CLI::App& vernier) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "With MEAS and --accuracy the command fits the model, then chooses the next poses one by one: each "
       "pose gives the largest\n"

@@ -155,7 +155,8 @@ void register_solve(CLI::App& vernier) {
                    "number of additional start positions, distributed over the axis ranges")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "The command verifies every solution: it compares the forward kinematics of the computed axis "
       "positions with the target. Exit status\n"

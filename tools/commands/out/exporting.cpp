@@ -120,7 +120,8 @@ CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const
   command->add_option("--accept", arguments->accept,
                       "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
                       "override; may be repeated");
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   return command;
 }
 

@@ -210,7 +210,8 @@ void register_compile(CLI::App& vernier) {
                    "directory for machine.xml, machine.vimg, equation.h/.cpp, bound.json")
       ->type_name(kWritesFolder)
       ->required();
-  command->add_option("--json", arguments->json, "result for programs (- is standard output)");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option(
       "--budget", arguments->budget,
       "largest permitted error bound of an axis (nm, um, mm; a number without a unit is in um); if a proved "

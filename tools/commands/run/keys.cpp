@@ -58,7 +58,8 @@ void register_keys(CLI::App& vernier) {
       ->add_option("-o,--output", arguments->directory, "directory for vernier.key (secret) and vernier.pub")
       ->type_name(kWritesFolder)
       ->capture_default_str();
-  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -35,7 +35,8 @@ void add_table(CLI::App& command, TableArguments& arguments) {
                   "is excluded")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
-  command.add_option("--json", arguments.json, "result for programs; - is standard output");
+  command.add_option("--json", arguments.json,
+                     "file for the result as JSON, for programs; - for standard output");
 }
 
 void add_conditions(CLI::App& command, probe::TouchConditions& conditions) {

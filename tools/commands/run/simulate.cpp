@@ -70,7 +70,8 @@ void register_simulate(CLI::App& vernier) {
                    "bits of the analogue output of the correction, 8 or 16; default: a digital output with a "
                    "resolution of one unit of the image")
       ->check(CLI::IsMember({8u, 16u}));
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option("-o,--output", arguments->output, "every tick: corrections and errors (CSV)")
       ->type_name(kWrites);
   command

@@ -224,7 +224,8 @@ void register_upload(CLI::App& vernier) {
                    "new value of the board's security counter: the board never again accepts a correction "
                    "image with a lower value")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{UINT32_MAX}));
-  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Exit status: 0 done, 1 bad input or no board, 2 the board refused the request (the message has the "
       "reason), another board answered (nothing was sent), or the board did not execute the request.");

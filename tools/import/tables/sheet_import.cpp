@@ -175,9 +175,9 @@ std::string becomes(const SheetColumn& column) {
       return column.name + unit + (column.words ? " (words)" : "");
     case SheetColumn::Use::kDeviation:
       if (column.to_target)
-        return fmt::format("target of {}: position {} this, {}", column.name, column.turned ? "+" : "-",
-                           unit);
-      return fmt::format("position of {} {} this, {}", column.name, column.turned ? "-" : "+", unit);
+        return fmt::format("target of {}: position {} this column, {}", column.name,
+                           column.turned ? "+" : "-", unit);
+      return fmt::format("position of {} {} this column, {}", column.name, column.turned ? "-" : "+", unit);
     case SheetColumn::Use::kLeft:
       return "left out";
   }
