@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/compile/derive.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -174,15 +176,14 @@ Solution solved(const model::Machine& machine, Attempt& attempt) {
   const Span span = span_of(d, d.columns);
   if (d.least_squares && d.least_squares->nearest)
     d.notes.push_back(
-        "the directions in which the axes move the tool point depend on the pose, and a deviation "
-        "perpendicular "
-        "to these directions is not corrected; axes: " +
-        names_of(machine, d));
+        fmt::format("the directions in which the axes move the tool point depend on the pose, and a "
+                    "deviation perpendicular to these directions is not corrected; axes: {}",
+                    names_of(machine, d)));
   else if (span.rank < 3 && !holds(d.graph, span, d.deviation))
     d.notes.push_back(
-        "the axes do not move the tool point in every direction, and a deviation perpendicular to their "
-        "directions is not corrected; axes: " +
-        names_of(machine, d));
+        fmt::format("the axes do not move the tool point in every direction, and a deviation perpendicular "
+                    "to their directions is not corrected; axes: {}",
+                    names_of(machine, d)));
   return result;
 }
 

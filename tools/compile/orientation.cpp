@@ -198,7 +198,8 @@ std::string list_of(const model::Machine& machine, const std::vector<std::size_t
 }
 
 void add_notes(const model::Machine& machine, Derivation& d, const Orientation& o) {
-  d.notes.push_back("rotary axes that correct the direction of the tool: " + list_of(machine, o.axes));
+  d.notes.push_back(
+      fmt::format("rotary axes that correct the direction of the tool: {}", list_of(machine, o.axes)));
   if (o.axes.size() == 1)
     d.notes.push_back(
         "only one rotary axis tilts the tool, so the image corrects only the tilt about the direction of "
@@ -215,9 +216,9 @@ void add_notes(const model::Machine& machine, Derivation& d, const Orientation& 
           "axis {} has no maxcorrection: its correction of the tool direction may reach {:.3g} deg",
           axis.name, o.limit_deg[k]));
     if (!axis.max_slew)
-      d.notes.push_back(
-          "a corrected rotary axis has no maxslew, so the speed of its correction is not limited: " +
-          axis.name);
+      d.notes.push_back(fmt::format(
+          "a corrected rotary axis has no maxslew, so the speed of its correction is not limited: {}",
+          axis.name));
   }
 }
 

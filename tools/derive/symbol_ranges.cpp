@@ -3,6 +3,8 @@
 #include "tools/derive/symbol_book.h"
 #include "tools/derive/tidy.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -44,7 +46,7 @@ compile::Interval power_range(const ex& e, const Ranges& ranges) {
     return n >= 0 ? integer_power(base, n) : reciprocal(integer_power(base, -n), e.op(0));
   }
   if (base.low < 0)
-    throw NoRange("the operand of a root or a real power may be negative: " + text_of(e.op(0)));
+    throw NoRange(fmt::format("the operand of a root or a real power may be negative: {}", text_of(e.op(0))));
   const compile::Interval exponent = range_of(e.op(1), ranges);
   if (base.low == 0 && exponent.low < 0) throw NoRange("a divisor may be zero: " + text_of(e.op(0)));
   // Monotonic in each of the two separately, so the extremes are at corners.

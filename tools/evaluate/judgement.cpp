@@ -65,8 +65,8 @@ text::Assurance assurance_of(const std::vector<JudgedValue>& all, const std::str
     assurance.at_most(rule, met ? std::min(reach, one.tolerance) : reach, one.tolerance,
                       fmt::format("The value of {} plus its expanded uncertainty, {}.", one.name, unit));
     if (!one.expanded)
-      assurance.not_covered(
-          "No uncertainty is given, so only the value is compared with the tolerance: " + one.name + ".");
+      assurance.not_covered(fmt::format(
+          "No uncertainty is given, so only the value is compared with the tolerance: {}.", one.name));
   }
   return assurance;
 }

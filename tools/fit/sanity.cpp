@@ -378,7 +378,7 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
   constexpr double kMostOfAll = 0.5, kAsGood = 1.5;
   if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return {cell, false};
   if (worst.share > kMostOfAll)
-    return {worst.reading + " is an outlier: no other reading has such a large residual", true};
+    return {fmt::format("{} is an outlier: no other reading has such a large residual", worst.reading), true};
   const model::ParameterSet none;
   const double misfit_mm = convention_of(machine, rows, none).misfit_mm;
   struct Found {

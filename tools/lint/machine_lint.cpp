@@ -295,12 +295,13 @@ class Oddities {
     const bool base = known->factor == 1 && known->offset == 0;
     if (scales || base || unit == "rad" || unit == "um/m" || unit == "%") return;
     if (known->dimension == format::Dimension::kLength || known->dimension == format::Dimension::kAngle)
-      findings_.warn(line, unit,
-                     "the unit does not convert the value of " + name +
-                         ": the equations of the machine use the value in " +
-                         format::base_unit(known->dimension),
-                     std::string("write the value in ") + format::base_unit(known->dimension) +
-                         ", or the factor in the term");
+      findings_.warn(
+          line, unit,
+          fmt::format(
+              "the unit does not convert the value of {}: the equations of the machine use the value in {}",
+              name, format::base_unit(known->dimension)),
+          fmt::format("write the value in {}, or the factor in the term",
+                      format::base_unit(known->dimension)));
   }
 
   void look_at(const model::Static& item, std::size_t index) {
@@ -333,7 +334,7 @@ class Oddities {
       findings_.warn(axis.line, axis.name,
                      by_table ? "no transform moves with this axis, but the chain uses the table of this axis"
                               : "no transform uses this axis",
-                     "X=\"" + axis.name + "\" is missing in some sixdof, or the name differs");
+                     fmt::format("X=\"{}\" is missing in some sixdof, or the name differs", axis.name));
     if (!axis.min || !axis.max)
       findings_.add_of_kind(
           "travel", LintWeight::kRemark, axis.line, axis.name,

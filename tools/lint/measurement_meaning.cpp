@@ -328,8 +328,10 @@ class Meaning {
     if (near(25.4)) meaning = "the positions are in inch?";
     if (near(1 / 25.4)) meaning = "the readings are in inch?";
     if (meaning.empty() && ratio < 0.02)
-      meaning = "deviations instead of positions? vernier import table " + quoted_for_shell(file_) +
-                " --deviation \"X=x\" … adds them to the positions";
+      meaning = fmt::format(
+          "deviations instead of positions? vernier import table {} --deviation \"X=x\" … adds them to the "
+          "positions",
+          quoted_for_shell(file_));
     if (!meaning.empty())
       findings_.warn(
           table_.header_line, columns::kPoint.front(),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/model/machine_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <pugixml.hpp>
@@ -84,9 +86,10 @@ class Reader {
     const auto [bad, other] = std::mismatch(text_.begin(), text_.end(), valid.begin(), valid.end());
     if (bad == text_.end()) return;
     const auto at = static_cast<std::size_t>(bad - text_.begin());
-    throw text::InputError({machine_.file, line_at(at)}, word_at(at),
-                           "this letter is not UTF-8: save the file as UTF-8, or convert it: iconv -f " +
-                               declared_encoding() + " -t UTF-8");
+    throw text::InputError(
+        {machine_.file, line_at(at)}, word_at(at),
+        fmt::format("this letter is not UTF-8: save the file as UTF-8, or convert it: iconv -f {} -t UTF-8",
+                    declared_encoding()));
   }
   /// The encoding that the first line states; without one that of Western computers.
   std::string declared_encoding() const {
@@ -300,7 +303,8 @@ class Reader {
     if (!word) return std::nullopt;
     const auto value = length_in_mm(*word);
     if (!value)
-      fail_attribute(node, name, *word, std::string(name) + " is a length, for example 12.5mm or 0.5um");
+      fail_attribute(node, name, *word,
+                     fmt::format("{} is a length, for example 12.5mm or 0.5um", std::string(name)));
     return value;
   }
 

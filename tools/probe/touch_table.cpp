@@ -154,7 +154,8 @@ Eigen::VectorXd TouchTable::need(const std::vector<std::string>& names, const st
 
 std::optional<Eigen::VectorXd> TouchTable::uncertainty() {
   auto u = find({"u"});
-  if (u && u->minCoeff() <= 0) throw text::InputError(csv_.file + ": u is not above 0 in every row");
+  if (u && u->minCoeff() <= 0)
+    throw text::InputError(fmt::format("{}: u is not above 0 in every row", csv_.file));
   return u;
 }
 

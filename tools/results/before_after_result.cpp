@@ -81,7 +81,8 @@ std::string sentence(const residual::BeforeAfter& result) {
     case residual::Helped::kCannotBeTold:
       break;
   }
-  return "The readings do not show whether the correction reduced the error: " + how + ", which contains 0.";
+  return fmt::format(
+      "The readings do not show whether the correction reduced the error: {}, which contains 0.", how);
 }
 
 /// Method of the comparison, and remarks for the reader.

@@ -100,7 +100,8 @@ text::Assurance assurance_of(const fit::FitResult& result) {
   for (const fit::ParameterEstimate& item : result.estimates)
     if (item.from == fit::Origin::kPrior) open += (open.empty() ? "" : ", ") + item.name;
   if (!open.empty())
-    word.not_covered("These parameters are not measured and stay at nominal +- scale: " + open + ".");
+    word.not_covered(
+        fmt::format("These parameters are not measured and stay at nominal +- scale: {}.", open));
   return word;
 }
 
@@ -119,7 +120,7 @@ text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Mach
                                culprit, one.reason));
   }
   for (const std::string& name : sheet.stale)
-    word.not_covered("A parameter was added or set by hand since the fit: " + name + ".");
+    word.not_covered(fmt::format("A parameter was added or set by hand since the fit: {}.", name));
   return word;
 }
 

@@ -74,8 +74,8 @@ std::vector<std::string> values_of(const model::Machine& machine, const model::M
     return values;
   }
   throw text::InputError({}, column,
-                         "the measurement has no such column for groups; its columns are " +
-                             text::joined(known_columns(machine, m), ", "));
+                         fmt::format("the measurement has no such column for groups; its columns are {}",
+                                     text::joined(known_columns(machine, m), ", ")));
 }
 
 /// log of the probability that means of groups with the same standard deviation differ so much; 0 without

@@ -124,12 +124,13 @@ class Reader {
     }
     if (wanted.empty() && !hidden.empty())
       throw text::InputError({file_, 0}, "",
-                             "no visible sheet of this workbook contains a cell; hidden sheets are " +
-                                 text::joined(hidden, ", ") + ": to read one, give --sheet");
+                             fmt::format("no visible sheet of this workbook contains a cell; hidden sheets "
+                                         "are {}: to read one, give --sheet",
+                                         text::joined(hidden, ", ")));
     if (wanted.empty()) throw text::InputError({file_, 0}, "", "no sheet of this workbook contains a cell");
     throw text::InputError(
         {file_, 0}, wanted,
-        "the workbook has no sheet of this name; its sheets are " + text::joined(names, ", "));
+        fmt::format("the workbook has no sheet of this name; its sheets are {}", text::joined(names, ", ")));
   }
 
  private:

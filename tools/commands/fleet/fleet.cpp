@@ -48,9 +48,9 @@ void trust_board(registry::FleetMachine& machine) {
         "--trust reads name and key from the board: give the address of the board with --url");
   upload::Client board(upload::open_transport(upload::parse_url(machine.url)));
   if (board.info().board.empty())
-    throw text::LimitNotMet(
-        machine.url +
-        ": this board has no name, and the registry was not changed; set name in the board file");
+    throw text::LimitNotMet(fmt::format(
+        "{}: this board has no name, and the registry was not changed; set name in the board file",
+        machine.url));
   machine.board = board.info().board;
   const auto key = board.proved_key();
   machine.board_key = key ? upload::board_key_text(*key) : "";
@@ -79,8 +79,10 @@ void enter_board(const AddArguments& arguments, registry::FleetMachine& machine)
 void refuse_known_key(const registry::FleetMachine& machine, const std::vector<registry::FleetMachine>& all) {
   for (const registry::FleetMachine& other : all)
     if (!machine.board_key.empty() && other.name != machine.name && other.board_key == machine.board_key)
-      throw text::LimitNotMet("this board has the key of the machine " + other.name +
-                              ": one board cannot belong to two machines, and the registry was not changed");
+      throw text::LimitNotMet(
+          fmt::format("this board has the key of the machine {}: one board cannot belong to two machines, "
+                      "and the registry was not changed",
+                      other.name));
 }
 
 void run_add(const AddArguments& arguments) {
@@ -187,7 +189,8 @@ std::string live_line(const registry::LiveState& one, const registry::LiveAge& a
   std::string line =
       fmt::format("{:<20} {:<8} {:<32} {:<17} {} samples", one.machine, word, said, one.image, one.samples);
   if (one.received_us != 0) line += fmt::format(", the last {:.0f} s ago", age.age_s);
-  if (one.historical) line += ", which had waited in the gateway's store since " + text::utc_text(one.at_us);
+  if (one.historical)
+    line += fmt::format(", which had waited in the gateway's store since {}", text::utc_text(one.at_us));
   if (age.clock_off)
     line += fmt::format("; the clock of gateway {} has an error of {:+.0f} s", one.gateway, age.clock_s);
   return line;

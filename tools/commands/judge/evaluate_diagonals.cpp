@@ -127,8 +127,8 @@ void run_diagonals(const DiagonalArguments& arguments) {
       evaluate::PositioningWords along;
       along.axis = one.name;
       if (one.name.size() == kBody && !body.emplace(one.name, result).second)
-        throw text::InputError(path + ": the diagonal " + one.name +
-                               " is in two files: put all rows of a diagonal into one file");
+        throw text::InputError(fmt::format(
+            "{}: the diagonal {} is in two files: put all rows of a diagonal into one file", path, one.name));
       Json each = {{"diagonal", one.name}, {"length_mm", one.length}};
       const Json evaluated = evaluate::positioning_json(result, one.positions, along);
       pages.push_back(evaluate::positioning_page(evaluated, along));

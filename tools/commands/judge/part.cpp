@@ -51,7 +51,8 @@ void free_only(model::Machine& machine, const std::string& names) {
   std::set<std::size_t> wanted;
   for (const std::string& name : text::words_in(names, ", ")) {
     const auto index = machine.find_static(name);
-    if (!index) throw text::InputError({"--free", 0}, name, "no static has this name in " + machine.name);
+    if (!index)
+      throw text::InputError({"--free", 0}, name, fmt::format("no static has this name in {}", machine.name));
     wanted.insert(*index);
   }
   for (std::size_t i = 0; i < machine.statics.size(); ++i) {

@@ -93,9 +93,9 @@ text::Assurance assurance_of(const model::Machine& machine, const tolerance::Par
   word.require("settled", result.settled,
                "The number of trials is sufficient: the limits of the intervals have converged.");
   for (const std::string& range : result.outside)
-    word.not_covered("The part is outside the measured range: " + range + ".");
+    word.not_covered(fmt::format("The part is outside the measured range: {}.", range));
   for (const std::string& name : result.stale)
-    word.not_covered("A parameter was set by hand since the fit: " + name + ".");
+    word.not_covered(fmt::format("A parameter was set by hand since the fit: {}.", name));
   if (arguments.process_um <= 0)
     word.not_covered(
         "The result does not include repeatability, tool and cutting, because --process was not given.");
@@ -222,8 +222,10 @@ std::string conformity_page(const model::Machine& machine, const ConformityArgum
          fmt::format("{:.0f} %", 100 * one.open)});
   Json notes = Json::array();
   for (const std::string& range : result.outside)
-    notes.push_back("The part is outside the measured range: " + range +
-                    ". Characteristics outside the measured range have no verdict.");
+    notes.push_back(
+        fmt::format("The part is outside the measured range: {}. Characteristics outside the measured range "
+                    "have no verdict.",
+                    range));
   if (machine.fitted)
     for (const model::FitRecord::Finding& one : machine.fitted->findings)
       notes.push_back("Found by the fit: " + one.text);

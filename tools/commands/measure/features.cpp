@@ -83,7 +83,7 @@ std::vector<vibration::KnownDisplacement> known_displacements(const FeaturesArgu
   for (const std::string& pair : arguments.against) {
     const auto equals = pair.find('=');
     if (equals == std::string::npos)
-      throw text::InputError("--against: not of the form SIGNAL=COLUMN: " + pair);
+      throw text::InputError(fmt::format("--against: not of the form SIGNAL=COLUMN: {}", pair));
     known.push_back({pair.substr(0, equals), vibration::measured_lengths_um(rows, pair.substr(equals + 1))});
   }
   return known;

@@ -170,7 +170,7 @@ void judge(std::FILE* out, const nlohmann::ordered_json& limit) {
       worst["limit"].get<double>(), limit["unit"].get<std::string>(), worst["file"].get<std::string>(),
       worst["line"].get<std::size_t>());
   if (!limit["pass"].get<bool>())
-    throw text::LimitNotMet(words + ": not accepted, the machine is to be qualified again");
+    throw text::LimitNotMet(fmt::format("{}: not accepted, the machine is to be qualified again", words));
   fmt::print(out, "{}: accepted\n", words);
 }
 
@@ -181,7 +181,8 @@ void add_field(nlohmann::ordered_json& json, const model::Machine& machine) {
   if (auto field = results::volume_json(machine, kNodes, why_not))
     json["field"] = std::move(*field);
   else
-    json["field_note"] = "The report has no diagram of the error over the working volume: " + why_not;
+    json["field_note"] =
+        fmt::format("The report has no diagram of the error over the working volume: {}", why_not);
 }
 
 /// Did it help?
@@ -189,8 +190,8 @@ void run_before_after(const CompareArguments& arguments) {
   if (arguments.before.empty() || arguments.after.empty())
     throw text::InputError("--before and --after must be given together");
   if (!arguments.measurements.empty())
-    throw text::InputError("\"" + arguments.measurements.front() +
-                           "\": with --before and --after give no other measurement files");
+    throw text::InputError(fmt::format("\"{}\": with --before and --after give no other measurement files",
+                                       arguments.measurements.front()));
   if (arguments.datum)
     throw text::InputError(
         "--datum is for the files MEAS; with --before and --after the command always fits the set-up of both "

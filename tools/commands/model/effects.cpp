@@ -62,7 +62,8 @@ void run_effects(const EffectsArguments& arguments) {
       print_effect(out, effect);
   }
   if (!found)
-    throw text::InputError("\"" + arguments.id + "\": unknown effect (`vernier effects` lists them)");
+    throw text::InputError(
+        fmt::format("\"{}\": unknown effect (`vernier effects` lists them)", arguments.id));
   write_json(arguments.json, json);
 }
 

@@ -23,7 +23,9 @@ std::vector<model::WorkRange> region_of(const model::Machine& machine, const std
   for (const std::string& word : text::words_in(words, ", ")) {
     const auto equals = word.find('='), colon = word.find(':');
     const auto axis = machine.find_axis(word.substr(0, equals));
-    if (!axis) throw text::InputError({"--region", 0}, word, "this name is not an axis of " + machine.name);
+    if (!axis)
+      throw text::InputError({"--region", 0}, word,
+                             fmt::format("this name is not an axis of {}", machine.name));
     const auto low = colon == std::string::npos || equals == std::string::npos
                          ? std::nullopt
                          : text::parse_number(word.substr(equals + 1, colon - equals - 1));

@@ -65,9 +65,8 @@ text::Assurance assurance_of(const model::Machine& machine, const kinematics::In
     if (axis.max)
       assurance.at_most("max-" + axis.name, value, *axis.max + kRangeSlack, "Upper end of its range.");
     if (!axis.min || !axis.max)
-      assurance.not_covered(
-          "The range of an axis is not known, because the machine file has no min and max: " + axis.name +
-          ".");
+      assurance.not_covered(fmt::format(
+          "The range of an axis is not known, because the machine file has no min and max: {}.", axis.name));
   }
   assurance.not_covered("Collisions are not tested.");
   return assurance;
@@ -97,12 +96,13 @@ std::string failure_text(const model::Machine& machine, const kinematics::Invers
       fmt::format("residual {:.3g} mm, {:.3g} deg after {} iterations, condition {:.3g}", proof.residual_mm,
                   proof.residual_deg, proof.iterations, proof.condition);
   if (proof.fault == kinematics::InverseFault::kSingular)
-    return "no solution: the pose is singular, so the axes cannot move the tool in every direction (" +
-           residual + ")";
+    return fmt::format(
+        "no solution: the pose is singular, so the axes cannot move the tool in every direction ({})",
+        residual);
   if (proof.fault == kinematics::InverseFault::kBeyondRange)
-    return "no solution: an axis would have to leave its range: " + machine.axes[proof.axis].name + " (" +
-           residual + ")";
-  return "no solution: the target is out of reach of these axes (" + residual + ")";
+    return fmt::format("no solution: an axis would have to leave its range: {} ({})",
+                       machine.axes[proof.axis].name, residual);
+  return fmt::format("no solution: the target is out of reach of these axes ({})", residual);
 }
 
 void run_solve(const SolveArguments& arguments) {

@@ -35,7 +35,7 @@ text::Assurance assurance_of(const model::Machine& machine, const ExchangeArgume
         "between-lines-" + one.axis, one.worst_um, arguments.tolerance_um,
         fmt::format("Largest error between the lines of {}, um, at {} positions.", one.axis, one.probed));
   for (const std::string& rule : arguments.accept)
-    assurance.not_covered("The user accepted a rule of the safety sheet (--accept): " + rule + ".");
+    assurance.not_covered(fmt::format("The user accepted a rule of the safety sheet (--accept): {}.", rule));
   return assurance;
 }
 

@@ -37,7 +37,7 @@ void set_weight(const Arguments& arguments, upload::Client& client) {
   const auto found = std::find_if(
       axes.begin(), axes.end(), [&](const upload::BoardSignal& axis) { return axis.name == arguments.axis; });
   if (found == axes.end())
-    throw text::InputError("--axis \"" + arguments.axis + "\": the board has no such axis");
+    throw text::InputError(fmt::format("--axis \"{}\": the board has no such axis", arguments.axis));
   client.weight(static_cast<std::uint8_t>(found - axes.begin()), arguments.weight);
 }
 

@@ -35,11 +35,12 @@ double parse_length_um(const std::string& text) {
     throw text::InputError("--budget \"" + text + "\": not a length");
   }
   const std::string unit = text.substr(used);
-  if (!(value > 0)) throw text::InputError("--budget \"" + text + "\": the value must be greater than zero");
+  if (!(value > 0))
+    throw text::InputError(fmt::format("--budget \"{}\": the value must be greater than zero", text));
   if (unit.empty() || unit == "um") return value;
   if (unit == "nm") return value / 1000;
   if (unit == "mm") return value * 1000;
-  throw text::InputError("--budget \"" + text + "\": unit must be nm, um or mm");
+  throw text::InputError(fmt::format("--budget \"{}\": unit must be nm, um or mm", text));
 }
 
 nlohmann::ordered_json to_json(const compile::OutputBound& b) {

@@ -35,7 +35,8 @@ void run(const Arguments& arguments) {
   const std::string secret = arguments.directory + "/vernier.key",
                     open = arguments.directory + "/vernier.pub";
   if (std::filesystem::exists(open))
-    throw text::InputError(open + ": the file exists; a key is never overwritten, give another directory");
+    throw text::InputError(
+        fmt::format("{}: the file exists; a key is never overwritten, give another directory", open));
   const upload::SigningKey key = upload::new_key();
   write_secret(secret, upload::secret_key_text(key));
   text::write_file(open, upload::public_key_text(key));

@@ -133,8 +133,8 @@ void run_cal(CalArguments& arguments) {
     groups = probe::compare_groups(table, arguments.setup, arguments.group, result);
   if (!arguments.output.empty()) {
     if (!result.delay_found)
-      throw text::LimitNotMet("the touches do not determine the delay; no file is written: " +
-                              result.findings.front());
+      throw text::LimitNotMet(fmt::format("the touches do not determine the delay; no file is written: {}",
+                                          result.findings.front()));
     text::write_file(arguments.output, board_lines(result));
   }
   Json json = {{"artefact", arguments.artefact},           {"n_touches", table.rows()},

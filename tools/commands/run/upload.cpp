@@ -163,7 +163,8 @@ void tell(const Arguments& arguments, upload::Client& client, const Done& done) 
   json["assurance"] = assurance.json();
   write_json(arguments.json, json);
   for (const text::AssuranceRule& rule : assurance.because())
-    if (!rule.ok) throw text::LimitNotMet("the board did not execute the request: " + rule.text);
+    if (!rule.ok)
+      throw text::LimitNotMet(fmt::format("the board did not execute the request: {}", rule.text));
 }
 
 void run(const Arguments& arguments) {

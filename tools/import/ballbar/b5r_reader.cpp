@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/ballbar/b5r_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -86,7 +88,8 @@ class B5rReader {
     const double value = number(node);
     if (value < 0 || value != std::floor(value) || value >= static_cast<double>(count)) {
       fail(node, text::trimmed(node.text().get()),
-           std::string(node.name()) + " is not an index of the " + std::to_string(count) + " readings");
+           fmt::format("{} is not an index of the {} readings", std::string(node.name()),
+                       std::to_string(count)));
     }
     return static_cast<std::size_t>(value);
   }

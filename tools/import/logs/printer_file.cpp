@@ -455,11 +455,14 @@ class ProbeLog {
     if (!options_.series)
       throw text::InputError(
           {file_, touches_[series_[0]].line}, "touches",
-          "the log has several surveys of the bed, which may differ: " + list + "; choose one with --series");
+          fmt::format(
+              "the log has several surveys of the bed, which may differ: {}; choose one with --series",
+              list));
     if (*options_.series < 1 || *options_.series > series_.size())
-      throw text::InputError({file_, 0}, std::to_string(*options_.series),
-                             "the log has no survey of this number: the surveys of the bed are " +
-                                 (list.empty() ? "none" : list));
+      throw text::InputError(
+          {file_, 0}, std::to_string(*options_.series),
+          fmt::format("the log has no survey of this number: the surveys of the bed are {}",
+                      list.empty() ? "none" : list));
     const std::size_t k = *options_.series - 1, first = begin_of(k);
     return {touches_.begin() + static_cast<std::ptrdiff_t>(first),
             touches_.begin() + static_cast<std::ptrdiff_t>(series_[k])};

@@ -21,7 +21,7 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   if (!words.separator.empty()) wishes.format.separator = separator_of(words.separator);
   if (!words.decimal.empty()) {
     if (words.decimal != "comma" && words.decimal != "point")
-      throw text::InputError("\"" + words.decimal + "\": a decimal sign is comma or point");
+      throw text::InputError(fmt::format("\"{}\": a decimal sign is comma or point", words.decimal));
     wishes.format.decimal_comma = words.decimal == "comma";
   }
   if (!words.comment.empty()) wishes.format.comment = words.comment == "none" ? "" : words.comment;
@@ -163,7 +163,7 @@ std::string how_read(const sheet::Sheet& sheet) {
   if (sheet.workbook)
     return "workbook, sheet \"" + sheet.sheet + "\"" +
            (sheet.sheets.size() > 1 ? " of " + text::joined(sheet.sheets, ", ") : "") +
-           (sheet.decimal_comma ? ", numbers stored as text have a decimal comma" + doubt : "");
+           (sheet.decimal_comma ? fmt::format(", numbers stored as text have a decimal comma{}", doubt) : "");
   return fmt::format("{}, columns separated by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
                      sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point", doubt);
 }
