@@ -150,7 +150,7 @@ class RolloutCall {
     write(machine, name_of(end.kind), end.why);
     if (end.kind == TrialEnd::Kind::kKept) kept_(machine);
     if (end.kind == TrialEnd::Kind::kTakenBack)
-      stand(fmt::format("{}: {}: reverted, and the rollout stops", machine.name, end.why));
+      stand(fmt::format("{}: {}: the image was reverted, and the rollout stops", machine.name, end.why));
     else if (end.kind != TrialEnd::Kind::kKept && end.kind != TrialEnd::Kind::kAway)
       stand(machine.name + ": " + end.why + ": the rollout stops");
     return end.kind != TrialEnd::Kind::kAway;

@@ -385,12 +385,13 @@ class Oddities {
       if (!used && table.free[c])
         findings_.warn(
             table.line, axis.name,
-            fmt::format("fit frees column {}, which no transform uses", model::kSixDofNames[c]),
+            fmt::format("the attribute fit frees the column {}, which no transform uses",
+                        model::kSixDofNames[c]),
             fmt::format("{}{}{} is missing in some transform", c < 3 ? "l" : "r", axis.name, "xyz"[c % 3]));
     }
     if (!any)
       findings_.warn(table.line, axis.name, "no transform uses this table",
-                     fmt::format("l{0}x … r{0}z are its values", axis.name));
+                     fmt::format("the values of this table are l{0}x … r{0}z", axis.name));
     if (table.stations.empty() || !axis.min || !axis.max) return;
     const double slack = 1e-6 * (*axis.max - *axis.min);
     if (table.stations.front().loc > *axis.min + slack || table.stations.back().loc < *axis.max - slack)

@@ -69,10 +69,11 @@ class Look {
                              "read it: " + command(file_, kind->name)),
              false;
     if (sheet::is_workbook(text_))
-      return findings_.error(0, "", "a workbook (.xlsx), no measurement file", "read it: " + command(file_)),
+      return findings_.error(0, "", "this file is a workbook (.xlsx), not a measurement file",
+                             "read it: " + command(file_)),
              false;
     if (text_.starts_with("\xD0\xCF\x11\xE0"))
-      return findings_.error(0, "", "a workbook of the old kind (.xls)",
+      return findings_.error(0, "", "this file is a workbook of the old format (.xls)",
                              "save the workbook as .xlsx or CSV, then use vernier import table"),
              false;
     const sheet::Encoding encoding = sheet::encoding_of(text_);
@@ -81,7 +82,7 @@ class Look {
                              "read it: " + command(file_)),
              false;
     if (encoding == sheet::Encoding::kUtf8Bom) {
-      findings_.remark(1, "", "begins with a byte order mark", "the commands ignore it");
+      findings_.remark(1, "", "the file begins with a byte order mark", "the commands ignore it");
       text_ = text_.substr(3);
     }
     if (encoding == sheet::Encoding::kWindows1252) {

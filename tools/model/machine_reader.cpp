@@ -164,7 +164,7 @@ class Reader {
     one.transform = static_cast<int>(number(node, "transform", 0));
     const std::string dof = attribute(node, "dof").value_or("");
     while (one.dof < 6 && dof != kSixDofNames[one.dof]) ++one.dof;
-    if (one.dof == 6) fail_attribute(node, "dof", dof, "expected X, Y, Z, rX, rY or rZ");
+    if (one.dof == 6) fail_attribute(node, "dof", dof, "the location must be X, Y, Z, rX, rY or rZ");
     one.axis = attribute(node, "axis").value_or("");
     one.period = number(node, "period", 0);
     if (!one.axis.empty() && !(one.period > 0))
@@ -340,7 +340,9 @@ class Reader {
       fail(node, node.name(), "the artefact has no name: give the word of the column on");
     const std::string type = attribute(node, "type").value_or("");
     const auto known = artefact_type_named(type);
-    if (!known) fail_attribute(node, "type", type, "type is point, line, plane, sphere or cylinder");
+    if (!known)
+      fail_attribute(node, "type", type,
+                     "the type of an artefact must be point, line, plane, sphere or cylinder");
     item.type = *known;
     item.setup = attribute(node, columns::kSetup);
     for (const Artefact& other : machine_.artefacts)
@@ -681,7 +683,8 @@ class Reader {
     const std::string branch = attribute(list, "branch").value_or("tool");
     if (branch != "tool" && branch != "workpiece")
       fail_attribute(list, "branch", branch, "branch is tool or workpiece");
-    if (!branches.insert(branch).second) fail(list, branch, "a second <transforms> of this branch");
+    if (!branches.insert(branch).second)
+      fail(list, branch, "the file has a second <transforms> of this branch");
     std::vector<Transform>& transforms = branch == "tool" ? machine_.tool : machine_.workpiece;
     for (const pugi::xml_node node : children(list))
       transforms.push_back(read_transform(node, transforms, branch == "tool"));

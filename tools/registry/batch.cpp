@@ -85,7 +85,7 @@ void list_others(const std::string& folder, const Batch& batch, Collected& colle
   }
   std::sort(others.begin(), others.end());
   for (const std::string& machine : others)
-    collected.not_booked.push_back({machine, "refused", "is not a machine of this batch"});
+    collected.not_booked.push_back({machine, "refused", "this machine is not in the batch"});
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ Batch read_batch(const std::string& folder) {
 
 std::vector<std::string> command_of(const Batch& batch, const std::string& machine) {
   if (!std::binary_search(batch.machines.begin(), batch.machines.end(), machine))
-    throw text::InputError({}, machine, "is not a machine of this batch");
+    throw text::InputError({}, machine, "this machine is not in the batch");
   std::vector<std::string> words;
   for (const std::string& word : batch.command) words.push_back(for_machine(word, machine));
   return words;

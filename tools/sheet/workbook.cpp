@@ -314,7 +314,8 @@ class Reader {
     if (type == "s") {
       const auto index = text::parse_number(value);
       if (!index || *index < 0 || *index >= static_cast<double>(strings_.size()))
-        throw text::InputError({file_, row}, value, "the workbook has no text of this number");
+        throw text::InputError({file_, row}, value,
+                               "a cell refers to a text that the workbook does not contain");
       return strings_[static_cast<std::size_t>(*index)];
     }
     if (type == "b") return value == "0" ? "FALSE" : "TRUE";

@@ -324,7 +324,7 @@ void add_machine_kinds(CLI::App& fleet) {
   const auto status = std::make_shared<ListArguments>();
   command = fleet.add_subcommand(
       "status", "newest state of each machine: online, stale or away; mode, fault, correction image");
-  command->add_option("MACHINE", status->machine, "only this machine, with all values");
+  command->add_option("MACHINE", status->machine, "show only this machine, with all its values");
   add_registry(*command, status->registry);
   command
       ->add_option("--stale", status->stale_s,

@@ -285,7 +285,7 @@ void add_batch(CLI::App& fleet) {
 
   const auto answers = std::make_shared<CollectArguments>();
   command = fleet.add_subcommand("answers", "list the booked answers of batches");
-  command->add_option("NAME", answers->folder, "only of batches with this name");
+  command->add_option("NAME", answers->folder, "list only the answers of batches with this name");
   add_registry(*command, answers->registry);
   command->add_option("--json", answers->json,
                       "file for the result as JSON, for programs; - for standard output");

@@ -236,7 +236,8 @@ std::array<double, 4> read_gauge_block(const std::string& file) {
     if (!(quarter >= 0 && quarter <= 3) || quarter != std::floor(quarter))
       throw text::InputError(place, csv.rows[row][c], "C must be 0, 90, 180 or 270");
     auto& slot = found[static_cast<std::size_t>(quarter)];
-    if (slot) throw text::InputError(place, csv.rows[row][c], "the file has two readings of this position");
+    if (slot)
+      throw text::InputError(place, csv.rows[row][c], "the file has two readings at this position of C");
     slot = *reading;
   }
   std::array<double, 4> y_mm{};
@@ -282,7 +283,9 @@ void add_s_shape(CLI::App& part) {
   command->add_option("--feed", a->feed_mm_min, "mm/min on the top curve")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  command->add_option("--step", a->step_mm, "longest step on the top curve, mm")
+  command
+      ->add_option("--step", a->step_mm,
+                   "largest distance between two positions of the path on the top curve, mm")
       ->capture_default_str()
       ->check(CLI::Range(0.005, 20.0));
   command

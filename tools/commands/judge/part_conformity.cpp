@@ -177,7 +177,8 @@ void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
                           : "the model is linear in the uncertain parameters of the machine");
   fmt::print(out, "{}\n", motion_words(part));
   if (!result.settled) fmt::print(out, "the trials stopped before the ends of the intervals converged\n");
-  for (const std::string& name : result.stale) fmt::print(out, "set by hand since the fit: {}\n", name);
+  for (const std::string& name : result.stale)
+    fmt::print(out, "parameter that was set by hand since the fit: {}\n", name);
   for (const std::string& range : result.outside)
     fmt::print(out, "the part is outside the measured range: {}. Characteristics there have no verdict\n",
                range);
@@ -351,7 +352,7 @@ void add_conformity(CLI::App& part) {
       "--uncorrected", a->uncorrected,
       "predict the part for the machine without its correction; the exit status is for this case");
   command->add_option("--images", a->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("-o,--output", a->output, "the result as a page (HTML)")->type_name(kWrites);
+  command->add_option("-o,--output", a->output, "file for the report (HTML)")->type_name(kWrites);
   add_report_header(*command, a->header);
   command->add_option("--json", a->json, "file for the result as JSON, for programs; - for standard output");
   command->footer(

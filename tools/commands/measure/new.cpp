@@ -106,7 +106,9 @@ create::MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App&
         axis.centre = point_of(words.substr(colon + 1), ':', "--centre");
         found = true;
       }
-    if (!found) throw text::InputError(fmt::format("--centre {}: NAME:X:Y:Z of a rotary axis", words));
+    if (!found)
+      throw text::InputError(
+          fmt::format("--centre {}: the value must be NAME:X:Y:Z, where NAME is a rotary axis", words));
   }
   return plan;
 }
@@ -201,8 +203,10 @@ void register_new(CLI::App& vernier) {
   command->add_option("--tool", arguments->tool,
                       "tool point in the frame of the last axis that carries the tool, mm: 0,0,-120");
   command->add_option("--name", arguments->name, "name of the machine");
-  command->add_option("--tool-side", arguments->tool_side, "axes from the bed to the tool: Y,X,Z");
-  command->add_option("--work-side", arguments->work_side, "axes from the bed to the workpiece: A,C");
+  command->add_option("--tool-side", arguments->tool_side,
+                      "axes that carry the tool, in the order from the bed to the tool: Y,X,Z");
+  command->add_option("--work-side", arguments->work_side,
+                      "axes that carry the workpiece, in the order from the bed to the workpiece: A,C");
   command
       ->add_option("--centre", arguments->centres,
                    "NAME:X:Y:Z: a point on the line of a rotary axis, mm; repeat for each axis")

@@ -284,7 +284,9 @@ void register_compare(CLI::App& vernier) {
                     "fit the set-up of the instrument (free BaseShifts) before the comparison: the residuals "
                     "then contain no offset and rotation of the set-up");
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "file for the report (HTML, one file that opens without a network)")
       ->type_name(kWrites);
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json,

@@ -52,8 +52,9 @@ void print_ladder(std::FILE* out, const diagnose::Diagnosis& d, const model::Mea
 
 void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
   if (d.candidates.empty()) return;
-  fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n", "candidates, each as the only added effect", "score",
-             "fit rows", "check rows", "p");
+  fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n",
+             "candidate effects, each evaluated as the only added effect", "score", "fit rows", "check rows",
+             "p");
   for (const diagnose::CandidateFinding& c : d.candidates) {
     fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.spoken,
                c.score, results::error_or_dash(c.rms_after_um, c.rms_after_urad),

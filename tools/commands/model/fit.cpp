@@ -237,7 +237,7 @@ void register_fit(CLI::App& vernier) {
   command->add_option("--prior", arguments->priors,
                       "NAME=STD: prior for parameters: their nominal value counts as a reading with the "
                       "standard uncertainty STD; may be repeated");
-  command->add_option("--solver", arguments->solver, "normal-equations, or ceres as a cross-check")
+  command->add_option("--solver", arguments->solver, "solver: normal-equations, or ceres as a cross-check")
       ->check(CLI::IsMember({"normal-equations", "ceres"}))
       ->capture_default_str();
   command->footer(

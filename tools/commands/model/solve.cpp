@@ -141,8 +141,10 @@ void register_solve(CLI::App& vernier) {
                    "target in workpiece coordinates: tool point x,y,z (mm); for a pose also the rotation "
                    "vector rx,ry,rz (deg) of the tool")
       ->required();
-  command->add_option("--start", arguments->start, "first guess, motion and inputs: \"X=100,B=20,T=25\"");
-  command->add_option("--axes", arguments->axes, "axes that may move; default: all")->delimiter(',');
+  command->add_option("--start", arguments->start,
+                      "start positions of the axes, motion and inputs: \"X=100,B=20,T=25\"");
+  command->add_option("--axes", arguments->axes, "axes that the solution may move; default: all axes")
+      ->delimiter(',');
   command
       ->add_option("--match", arguments->match,
                    "kind of target; auto: position if no rotation is given, pose otherwise")

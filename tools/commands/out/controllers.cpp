@@ -133,7 +133,9 @@ void add_controller(CLI::App* parent, const char* name, const char* what, Contro
                    "distance between two points of a table, mm; default: the largest distance that "
                    "--tolerance permits")
       ->check(CLI::PositiveNumber);
-  command->add_option("--tolerance", arguments->common.tolerance_um, "largest error between two points, um")
+  command
+      ->add_option("--tolerance", arguments->common.tolerance_um,
+                   "largest permitted interpolation error between two points of a table, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command

@@ -104,7 +104,9 @@ void register_replay(CLI::App& vernier) {
           "simpler machine file: the report compares its correction with the correction of the image")
       ->type_name(kReads);
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "file for the report (HTML, one file that opens without a network)")
       ->type_name(kWrites);
   add_report_header(*command, arguments->header);
   command->add_option("--json", arguments->json,

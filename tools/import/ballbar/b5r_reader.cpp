@@ -125,7 +125,7 @@ class B5rReader {
     const pugi::xml_node plane = need(bar, "PLANE");
     const std::string view = plane.attribute("VIEW").value();
     // Seen from another side, counter-clockwise would not be from +A towards +B; no such file is decoded.
-    if (view != "+A+B") fail(plane, view, "the command can read only the view +A+B");
+    if (view != "+A+B") fail(plane, view, "the command can read only ball-bar files with the view +A+B");
     file.axis_a = text::trimmed(need(plane, "A_AXIS_NAME").text().get());
     file.axis_b = text::trimmed(need(plane, "B_AXIS_NAME").text().get());
     const auto is_linear = [](const std::string& axis) { return axis == "X" || axis == "Y" || axis == "Z"; };

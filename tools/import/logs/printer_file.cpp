@@ -258,7 +258,8 @@ HeightMapGrid grid_of(const text::Place& place, const std::string& labels, const
 void add_height_map(const std::string& text, const std::string& file, const std::array<double, 2>& offset,
                     PrinterFile& result, std::vector<Touch>& touches) {
   const std::vector<std::string> lines = text::parts_of(text, '\n');
-  if (lines.size() < 3) throw text::InputError({file, 1}, "height map", "the file ends after its title");
+  if (lines.size() < 3)
+    throw text::InputError({file, 1}, "height map", "the file ends after the title line of the height map");
   const HeightMapGrid grid = grid_of({file, 3}, lines[1], lines[2]);
   if (lines.size() < 3 + grid.count[1])
     throw text::InputError(

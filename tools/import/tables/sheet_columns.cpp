@@ -229,7 +229,8 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
                                 "parallel to, --deviation \"X={}\"",
                                 column.name, table.headings[k].text));
     else if (deviation && measured.contains(*reading_of(column.name)))
-      leave(column, fmt::format("the measured position is there as {}", *reading_of(column.name)));
+      leave(column, fmt::format("the table already has the measured position, as the column {}",
+                                *reading_of(column.name)));
     else if (column.name == kSensePrefix && moved.size() == 1)
       column.name = format::axis_column(format::AxisQuantity::kSense, *moved.begin());
     else if (column.name == kSensePrefix)

@@ -160,7 +160,7 @@ PlannedCommand CommandTable::plan(const nlohmann::json& request, const Project& 
     if (value != request.end() && !value->is_null())
       add_option(option, *value, project, command);
     else if (option.at("required").get<bool>())
-      refuse(option, fmt::format("is missing in a request for {}", name));
+      refuse(option, fmt::format("the option is missing in a request for the command {}", name));
   }
   if (known != request.size())
     throw text::InputError(fmt::format("the page must not give this option to {}", name));
