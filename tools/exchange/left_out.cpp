@@ -124,10 +124,9 @@ void refuse(const model::Machine& machine, const std::string& format, const std:
   std::string text;
   for (const LeftOut& one : left_out) text += fmt::format("\n  {}: up to {:.4g} um", one.what, one.um);
   throw text::InputError({machine.file, 0}, "",
-                         format +
-                             " cannot express all errors of this machine; with --leave-out the command "
-                             "writes the other errors:" +
-                             text);
+                         fmt::format("{} cannot express all errors of this machine; with --leave-out the "
+                                     "command writes the other errors:{}",
+                                     format, text));
 }
 
 }  // namespace vernier::exchange

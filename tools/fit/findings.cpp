@@ -120,7 +120,7 @@ std::string unvaried_text(const model::FitRecord& record) {
                 : fmt::format("only where {} changed together with {}", one.variable, one.follows);
   }
   if (record.unvaried.size() > kMost) text += fmt::format("; and {} more", record.unvaried.size() - kMost);
-  return text + ". The effect at other values was not measured.";
+  return text + ". The effect was not measured at other values of these variables.";
 }
 
 std::string alternatives_text(const model::FitRecord& record) {

@@ -293,7 +293,7 @@ std::string collapse_of(const model::Machine& fitted, const model::ParameterSet&
     if (least_motion_over(changed, here, ranges).share < kLeast) alone = parameters[i].name;
   }
   return fmt::format(
-      "{} the fitted machine moves the tool by {:.3g} of what the nominal machine does{}: touches of unknown "
+      "{} the fitted machine moves the tool by only {:.3g} of the nominal distance{}: touches of unknown "
       "points agree best if the machine does not move; perhaps two labels are exchanged, or each point was "
       "touched from positions that do not vary enough{}",
       direction_text(least.along), least.share, alone.empty() ? "" : ", by " + alone + " alone",
@@ -378,7 +378,7 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
   constexpr double kMostOfAll = 0.5, kAsGood = 1.5;
   if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return {cell, false};
   if (worst.share > kMostOfAll)
-    return {worst.reading + " is an outlier: no other reading has such a large residual", true};
+    return {fmt::format("{} is an outlier: no other reading has such a large residual", worst.reading), true};
   const model::ParameterSet none;
   const double misfit_mm = convention_of(machine, rows, none).misfit_mm;
   struct Found {

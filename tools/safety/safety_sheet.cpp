@@ -295,8 +295,8 @@ std::vector<SafetyRule> rules_named(const std::vector<std::string>& names) {
       std::string all;
       for (std::size_t i = 0; i < kSafetyRuleCount; ++i)
         all += (i > 0 ? ", " : "") + std::string(rule_name(static_cast<SafetyRule>(i)));
-      throw text::InputError("--accept \"" + name +
-                             "\": the safety sheet has no rule of this name; its rules are " + all);
+      throw text::InputError(fmt::format(
+          "--accept \"{}\": the safety sheet has no rule of this name; its rules are {}", name, all));
     }
     rules.push_back(*rule);
   }

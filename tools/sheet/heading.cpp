@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/sheet/heading.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -149,9 +151,9 @@ bool is_second_line(const Sheet& sheet, std::size_t row) {
     for (const std::string& cell : sheet.rows[row]) {
       if (const auto both = number_and_unit(cell, sheet.decimal_comma))
         throw text::InputError({sheet.file, sheet.line[row]}, cell,
-                               "a number with the unit " + both->second + ", and " + none +
-                                   "; write the unit in the heading ([" + both->second +
-                                   "]), numbers alone in the cells");
+                               fmt::format("a number with the unit {}, and {}; write the unit in the heading "
+                                           "([{}]), numbers alone in the cells",
+                                           both->second, none, both->second));
       const auto at = cell.find(':');
       const bool number = at != std::string::npos && plain_number(cell.substr(0, at), sheet.decimal_comma);
       colons += number && !is_date(cell) ? 1 : 0;
@@ -162,7 +164,7 @@ bool is_second_line(const Sheet& sheet, std::size_t row) {
   throw text::InputError(
       {sheet.file, sheet.line.front()}, "",
       none + (sheet.sheets.size() > 1
-                  ? "; choose the sheet with --sheet: " + text::joined(sheet.sheets, ", ")
+                  ? fmt::format("; choose the sheet with --sheet: {}", text::joined(sheet.sheets, ", "))
                   : "; columns may be separated by comma, semicolon, tab, | or blanks (--separator)"));
 }
 
@@ -171,9 +173,9 @@ void refuse_two_units(const Sheet& sheet, std::size_t row, const std::string& ce
                       std::size_t heading_row, const std::string& heading, const std::string& heading_unit) {
   if (heading_unit.empty() || unit.empty() || unit == heading_unit) return;
   throw text::InputError({sheet.file, sheet.line[row]}, cell,
-                         "the heading \"" + heading + "\" in line " +
-                             std::to_string(sheet.line[heading_row]) + " has the unit " + heading_unit +
-                             ", this cell below it " + unit + ": correct the wrong one of the two cells");
+                         fmt::format("the heading \"{}\" in line {} has the unit {}, this cell below it {}: "
+                                     "correct the wrong one of the two cells",
+                                     heading, std::to_string(sheet.line[heading_row]), heading_unit, unit));
 }
 
 /// The unit of a cell in a line of headings: the cell is the unit, or has the unit; else empty.

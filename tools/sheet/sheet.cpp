@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/sheet/sheet.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -81,8 +83,9 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
     return all;
   }
   for (std::size_t k = 0; notes != nullptr && k < numbered.size() && k < 5; ++k)
-    notes->push_back("line " + std::to_string(numbered[k].number) + " begins with # and is left out: \"" +
-                     text::trimmed(numbered[k].text).substr(0, 30) + "\"; is it a row? (--comment none)");
+    notes->push_back(
+        fmt::format("line {} begins with # and is left out: \"{}\"; is it a row? (--comment none)",
+                    std::to_string(numbered[k].number), text::trimmed(numbered[k].text).substr(0, 30)));
   return lines;
 }
 
@@ -144,9 +147,10 @@ void make_even(Sheet& sheet) {
   if (sheet.rows.empty()) return;
   const std::size_t width = sheet.rows[widest].size();
   if (width > (kMostEmpty + (1 + kMostEmptyForOne) * cells) / sheet.rows.size())
-    throw text::InputError({sheet.file, sheet.line[widest]}, "",
-                           std::to_string(width) + " cells here, where the rows have " +
-                               std::to_string(cells / sheet.rows.size()) + ": no table");
+    throw text::InputError(
+        {sheet.file, sheet.line[widest]}, "",
+        fmt::format("this row has {} cells, but a row of this sheet has on average {}: this is no table",
+                    std::to_string(width), std::to_string(cells / sheet.rows.size())));
   for (auto& row : sheet.rows) row.resize(width);
 }
 
@@ -177,10 +181,12 @@ void split(Sheet& sheet, const std::vector<Line>& lines) {
   for (const Line& line : lines) {
     rows.push_back(text::fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number}));
     if (rows.back().size() > kMostColumns)
-      throw text::InputError({sheet.file, line.number}, "",
-                             std::to_string(rows.back().size()) + " columns separated by " +
-                                 separator_word(sheet.separator) + ": a sheet has at most " +
-                                 std::to_string(kMostColumns) + "; split the file, or give the separator");
+      throw text::InputError(
+          {sheet.file, line.number}, "",
+          fmt::format(
+              "{} columns separated by {}: a sheet has at most {}; split the file, or give the separator",
+              std::to_string(rows.back().size()), separator_word(sheet.separator),
+              std::to_string(kMostColumns)));
   }
   const std::size_t width = usual_width(rows);
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -272,8 +278,9 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
   sheet.sheet = read.name;
   sheet.sheets = std::move(read.all);
   if (read.hidden_rows > 0)
-    sheet.notes.push_back(std::to_string(read.hidden_rows) +
-                          " hidden rows are read as well; delete the rows that do not belong to the table");
+    sheet.notes.push_back(
+        fmt::format("{} hidden rows are read as well; delete the rows that do not belong to the table",
+                    std::to_string(read.hidden_rows)));
   std::vector<std::vector<char>> is_number;
   for (std::size_t i = 0; i < read.rows.size(); ++i) {
     if (read.line[i] <= format.skip) continue;

@@ -160,7 +160,8 @@ CLI::App* add_import(CLI::App* parent, const char* kind, const char* what,
   command->add_option("-o,--output", arguments->output, "machine file to write")
       ->type_name(kWrites)
       ->required();
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([arguments, name = std::string(kind)] { import_tables(*arguments, name); });
   return command;
 }
