@@ -316,6 +316,13 @@ bool SafetySheet::ok() const {
   return std::all_of(findings.begin(), findings.end(), [](const auto& f) { return f.ok || f.accepted; });
 }
 
+std::vector<std::string> SafetySheet::not_known() const {
+  std::vector<std::string> names;
+  for (const SafetyFinding& f : findings)
+    if (!f.value) names.emplace_back(rule_name(f.rule));
+  return names;
+}
+
 std::uint32_t SafetySheet::accepted_mask() const {
   std::uint32_t mask = 0;
   for (const SafetyFinding& finding : findings)
