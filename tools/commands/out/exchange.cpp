@@ -64,6 +64,12 @@ void export_screw(const ExchangeArguments& arguments) {
   for (const std::size_t axis : axes)
     for (exchange::LeftOut& one : exchange::beyond_own_axis(machine, axis, at))
       left_out.push_back(std::move(one));
+  if (arguments.axis.empty() && !left_out.empty() && !arguments.leave_out) {
+    // The component applies the whole machine file.
+    fmt::print(stderr, "note: no screw-compensation file: {}\n",
+               exchange::left_out_in_words("a screw-compensation file", left_out));
+    return export_component(arguments);
+  }
   exchange::refuse(machine, "a screw-compensation file", left_out, arguments.leave_out);
   require_safe(machine, arguments);
   std::vector<std::string> texts;
