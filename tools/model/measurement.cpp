@@ -375,6 +375,13 @@ class Builder {
 
   /// Is a column of labels of things a reading in this file? `on` needs an artefact of the machine file:
   /// older files may have a column of this name.
+  /// Returns the first word of a column that is not empty.
+  std::string first_word(const char* name) const {
+    for (std::size_t row = 0; row < reader_.rows(); ++row)
+      if (!reader_.cell(name, row).empty()) return std::string(reader_.cell(name, row));
+    return {};
+  }
+
   bool names_things(const char* name) const {
     if (!has_word(name)) return false;
     if (std::string_view(name) != columns::kOn || !machine_.artefacts.empty()) return true;
@@ -508,6 +515,11 @@ class Builder {
       any = any || values[k].size() > 0;
     }
     any = any || names_things(columns::kSame) || names_things(columns::kOn);
+    if (!any && has_word(columns::kOn))
+      throw text::InputError(
+          reader_.header(), columns::kOn,
+          "the machine file has no <artefact>; state what the tool point touched, such as <artefact name=\"" +
+              first_word(columns::kOn) + "\" type=\"plane\"/>, before </variables> of the machine file");
     if (!any)
       throw text::InputError(reader_.header(), "",
                              "no measured column (" + format::reading_column_names() + ")");

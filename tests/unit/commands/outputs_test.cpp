@@ -158,6 +158,21 @@ TEST_F(OutputFolder, FileInItsPlaceIsAnError) {
   EXPECT_EQ(read_file(in("file")), "old");
 }
 
+/// A template of `new` with the column on was refused by fit without a remedy.
+TEST_F(OutputFolder, NewMachineForTouchesHasAnArtefactAndItsAbsenceIsNamed) {
+  EXPECT_EQ(run("vernier new gantry -o bed.xml --measurements bed.csv --reading on"), 0) << said();
+  EXPECT_NE(read_file(in("bed.xml")).find("<artefact name=\"bed\" type=\"plane\"/>"), std::string::npos);
+  write_file(in("touched.csv"), "X[mm],on,u[um]\n0,bed,1\n10,bed,1\n");
+  EXPECT_EQ(run("vernier compare m.xml touched.csv"), 1);
+  EXPECT_NE(
+      said().find("the machine file has no <artefact>; state what the tool point touched, such as <artefact "
+                  "name=\"bed\" type=\"plane\"/>"),
+      std::string::npos)
+      << said();
+  EXPECT_EQ(run("vernier new gantry -o plain.xml"), 0) << said();
+  EXPECT_EQ(read_file(in("plain.xml")).find("<artefact"), std::string::npos);
+}
+
 /// The component applies what screw tables cannot express, so that a machine with squareness has files too.
 TEST_F(OutputFolder, LinuxCncHasTheComponentWhereScrewTablesCannotExpressTheMachine) {
   write_file(in("square.xml"), R"xml(<machine name="m"><variables>
