@@ -103,9 +103,11 @@ std::vector<exchange::LeftOut> remaining(const std::array<double, 3>& after_um) 
 }
 
 void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um) {
-  fmt::print(human_stream(arguments.json),
-             "error of the tool point at {} positions, rms: {:.4g} um before, {:.4g} um with the files\n",
-             positions, before_um, after_um);
+  fmt::print(
+      human_stream(arguments.json),
+      "error of the tool point by the model at {} positions, rms: {:.4g} um before, {:.4g} um with the "
+      "files; errors that the model lacks remain in addition\n",
+      positions, before_um, after_um);
 }
 
 CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,
