@@ -15,9 +15,9 @@ struct SineCosine {
 /// Largest magnitude of a result of sine_cosine: 1 plus the error of sine_cosine.
 constexpr std::int32_t kSineLimit = (std::int32_t{1} << 30) + 2;
 
-/// Proved bound of |result - exact| in thousandths of 2^-30. Parts of this bound: 500 for the rounding of the
-/// node (and 500 times 0.0062 for the other node), 63 for omitted terms, 50 for truncations in the series,
-/// 500 for the last rounding.
+/// Proved bound of |result - exact| in thousandths of 2^-30. Parts of the error bound, in thousandths of
+/// 2^-30: 500 for the rounding of the node (and 500 times 0.0062 for the other node), 63 for omitted terms,
+/// 50 for truncations in the series, 500 for the last rounding.
 constexpr std::int32_t kSineErrorMilliLsb = 1120;
 
 /// Returns sine and cosine of the angle `turns`, in 2^-32 turn. Any value is permitted, and the result is

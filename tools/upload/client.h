@@ -24,7 +24,7 @@ struct BoardSignal {
   bool rotary = false, rollover = false;
 };
 
-/// Properties that a board reports about itself.
+/// Properties of a board (name, axes, inputs) that the board itself reports.
 struct BoardInfo {
   HelloReply hello;
   std::string board;  // name of the board; empty: the board has no name
@@ -68,7 +68,7 @@ struct BoardState {
   std::uint8_t settings = 0;  // flags of the type SettingFlag
 };
 /// Returns messages for the user about the operator's settings that the board has not stored, one line for
-/// each flag. The text is empty if all settings are stored.
+/// each flag. The text is empty if the board has stored all settings of the operator.
 std::string settings_text(std::uint8_t settings);
 /// Returns the state of a correction image as a word: "confirmed", "on trial", "lost" or "none". limits_text
 /// returns the active limits of an axis, "at the image's limit, on its way", or an empty text.
