@@ -159,8 +159,8 @@ class Client {
   /// `refused_commands` of the board show whether the board accepted the command.
   void command(Command command);
   void weight(std::uint8_t axis, double share);
-  /// Returns the touches from number `first` on, as many as one reply of the board can contain. The list is
-  /// empty if the board has had no touch since.
+  /// Returns the touches from number `first` on, as many as one reply of the board can contain. The list of
+  /// touches is empty if the board has had no touch with the number `first` or a later number.
   BoardTouches touches(std::uint64_t first);
   /// Sets the location of the workpiece: origin in machine coordinates in mm, angle about Z in deg. The
   /// location of the workpiece applies to later touches.
