@@ -194,9 +194,9 @@ struct FitResult {
   WorstReading worst, worst_check;                     // worst: of the fit rows; worst_check: of the check
                                                        // rows
   /// Ratio of two rms residuals on the check rows: fitted machine divided by nominal machine. For the first
-  /// ratio, both machines use the set-up of the fit rows. If there are enough check rows, a second ratio uses
-  /// a set-up of each machine that is fitted to the check rows. The result check_ratio is the larger of both
-  /// ratios; nullopt if there are too few check rows.
+  /// ratio of rms residuals, the fitted and the nominal machine use the set-up of the fit rows. If there are
+  /// enough check rows, a second ratio uses a set-up of each machine that is fitted to the check rows. The
+  /// result check_ratio is the larger of both ratios; nullopt if there are too few check rows.
   std::optional<double> check_ratio;
   /// Reason why the readings do not belong to this machine; empty if there is no such reason.
   std::string absurd;
