@@ -5,9 +5,10 @@
 
 namespace vernier {
 
-/// An integer with a unit. The unit is part of the type. Conversion from or to an integer is always explicit.
-/// Sums and differences have the same unit. The operators of Quantity do not saturate and do not check for
-/// overflow: the caller must respect the ranges. Real-time safe.
+/// An integer with a unit. The unit of a quantity is part of its C++ type. The conversion of a quantity from
+/// or to an integer is always explicit. The sum or difference of two quantities has the unit of the
+/// quantities. The operators of Quantity do not saturate and do not check for overflow: the caller must
+/// respect the ranges. Real-time safe.
 template <class Unit, class Integer>
 struct Quantity {
   using Count = Integer;

@@ -37,10 +37,11 @@ struct ShareProgram {
 ProgramFault verify_shares(const ShareProgram& shares, const Program& program, ValueRange* ranges) noexcept;
 
 /// Computes the share of each effect in the correction of one tick, before limits and ramps. The function
-/// computes one value for each element of `shares`, in the same order. The function run_shares executes the
-/// equation of the tick again from the start values of the tick. For the display of shares, the tick itself
-/// does no work. The share program must be VERIFIED. `state`: state of the same program; `registers`: memory
-/// for kMaxRegisters registers. Returns false if the state belongs to another program. Not real-time safe.
+/// run_shares computes one value for each element of `shares`, in the same order. The function run_shares
+/// executes the equation of the tick again from the start values of the tick. For the display of shares, the
+/// tick itself does no work. The share program must be VERIFIED. `state`: state of the same program;
+/// `registers`: memory for kMaxRegisters registers. Returns false if the state belongs to another program.
+/// Not real-time safe.
 bool run_shares(const ShareProgram& shares, const Program& program, const EquationState& state,
                 std::int32_t* registers, Correction* corrections) noexcept;
 

@@ -15,15 +15,15 @@ struct SineCosine {
 /// Largest magnitude of a result of sine_cosine: 1 plus the error of sine_cosine.
 constexpr std::int32_t kSineLimit = (std::int32_t{1} << 30) + 2;
 
-/// Proved bound of |result - exact| in thousandths of 2^-30. Parts of this bound: 500 for the rounding of the
-/// node (and 500 times 0.0062 for the other node), 63 for omitted terms, 50 for truncations in the series,
-/// 500 for the last rounding.
+/// Proved bound of |result - exact| in thousandths of 2^-30. Parts of the error bound, in thousandths of
+/// 2^-30: 500 for the rounding of the node (and 500 times 0.0062 for the other node), 63 for omitted terms,
+/// 50 for truncations in the series, 500 for the last rounding.
 constexpr std::int32_t kSineErrorMilliLsb = 1120;
 
-/// Returns sine and cosine of the angle `turns`, in 2^-32 turn. Any value is permitted, and the result is
-/// continuous over the whole circle. Method: take the nearest of 512 nodes, then add the angle d from the
-/// node (|d| <= pi/512) by the addition theorem, in 37 fraction bits. sin d = d - d^3/6 (remainder below
-/// 8e-14), cos d = 1
+/// Returns sine and cosine of the angle `turns`, in 2^-32 turn. Any angle `turns` is permitted, and the
+/// results are continuous over the whole circle. Method: take the nearest of 512 nodes, then add the angle d
+/// from the node (|d| <= pi/512) by the addition theorem, in 37 fraction bits. sin d = d - d^3/6 (remainder
+/// below 8e-14), cos d = 1
 /// - d^2/2 (remainder d^4/24 < 6e-11). sine_cosine has no branch and no division; the work does not depend on
 /// the angle. Real-time safe.
 constexpr SineCosine sine_cosine(std::uint32_t turns) noexcept {

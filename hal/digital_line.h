@@ -17,7 +17,7 @@ class DigitalInput {
 class DigitalOutput {
  public:
   virtual ~DigitalOutput() = default;
-  /// If the result is kRefused, the line may have its old state. Real-time safe.
+  /// If writing an output line gives kRefused, the line may still have its old state. Real-time safe.
   virtual HalFault write_line(bool on) noexcept = 0;
 };
 

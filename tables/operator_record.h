@@ -65,15 +65,15 @@ class OperatorRecords {
  public:
   /// Loads the newer of the two valid records. Not real-time safe.
   static OperatorRecords load(const OperatorPlace& first, const OperatorPlace& second) noexcept;
-  /// Returns the state of the places after load() and the changes that were stored since. A damaged pair of
-  /// records is intact again after at most two changes.
+  /// Returns the state of the two record places in the store, after load() and all later changes. A damaged
+  /// pair of records is intact again after at most two changes.
   StoredPair places() const noexcept { return places_; }
   /// True if a record is stored. If no record is stored, state() returns the default state (no setting of an
   /// operator).
   bool known() const noexcept { return now_.sequence != 0; }
   const OperatorState& state() const noexcept { return now_.state; }
-  /// True if load() found the state in only one of the two records. If only one record has the
-  /// state, the second write was not done, or the first write is not yet on the medium.
+  /// True if load() found the newest state in only one of the two records in the store. If only one record
+  /// has the state, the second write was not done, or the first write is not yet on the medium.
   bool once() const noexcept { return once_; }
   /// Returns the record that must be written to store another state of the operator's settings. Not
   /// real-time safe.

@@ -83,10 +83,10 @@ class Slots {
   /// Loads the newer of the two valid records. If there is no valid record, there is no confirmed image. A
   /// damaged pair of records has no trial, because a reset of the board ends the trial. Not real-time safe.
   static Slots load(const SlotPlace& first, const SlotPlace& second) noexcept;
-  /// Returns the state of the places after load() and the changes that were stored since. A damaged pair of
-  /// records is intact again after at most two changes.
+  /// Returns the state of the two record places in the store, after load() and all later changes. A damaged
+  /// pair of records is intact again after at most two changes.
   StoredPair places() const noexcept { return places_; }
-  /// True if load() found the state in only one of the two records.
+  /// True if load() found the newest state in only one of the two records in the store.
   bool once() const noexcept { return once_; }
 
   std::uint8_t confirmed() const noexcept { return now_.confirmed; }
@@ -95,8 +95,8 @@ class Slots {
   std::uint64_t issued() const noexcept { return now_.issued; }
   std::uint64_t trial_issued() const noexcept { return now_.trial_issued; }
   /// Limits for a new upload: its signing time must be later than newest_issued(), and its security number
-  /// must be at least security(). Both limits are the highest values of all images that the board has run on
-  /// trial.
+  /// must be at least security(). newest_issued() and security() are the highest values of all images that
+  /// the board has run on trial.
   std::uint64_t newest_issued() const noexcept { return now_.newest_issued; }
   std::uint32_t security() const noexcept { return now_.security; }
   /// Returns the slot that may be overwritten, which is neither confirmed nor on trial; kNoSlot while an

@@ -43,7 +43,7 @@ struct WorkpieceFrame {
     return round_shift(high + (low >> 20), 10);
   }
 };
-// The link transmits this struct without conversion (LinkOp::kWorkpiece).
+// The link of the board transmits this struct (workpiece frame) without conversion (LinkOp::kWorkpiece).
 static_assert(sizeof(WorkpieceFrame) == 32);
 static_assert(offsetof(WorkpieceFrame, origin) == 0 && offsetof(WorkpieceFrame, cosine) == 24 &&
               offsetof(WorkpieceFrame, sine) == 28);

@@ -25,12 +25,12 @@ struct Factor {
 /// (s^2 + sqrt(2) w s + w^2) in series, with w = 2 pi corner. The two sections integrate twice above the
 /// corner frequency, and remove constant and linear parts below it.
 ///
-/// Form. Each section has two states, v and p = e (sum of v), with e = w / rate. Each sample changes them by
-/// v += u - sqrt(2) e v - e p and p += e v. Far above the corner the two sections are z^2 / (z - 1)^2. A
-/// symmetric filter k, 1 - 2k, k before the sections makes the integral free of delay and phase. The integral
-/// is exact at the angle t per sample that corresponds to `exact_mHz`, where k = 1 / (4 sin^2(t/2)) - 1 /
-/// t^2. At a rate of 1 kHz and an exact frequency of 180 Hz, the gain is within 0.3 % up to 200 Hz (with the
-/// bilinear form: 25 %).
+/// Form. Each section has two states, v and p = e (sum of v), with e = w / rate. Each sample changes the two
+/// states of a section by v += u - sqrt(2) e v - e p and p += e v. Far above the corner the two sections are
+/// z^2 / (z - 1)^2. A symmetric filter k, 1 - 2k, k before the sections makes the integral free of delay and
+/// phase. The integral is exact at the angle t per sample that corresponds to `exact_mHz`, where k = 1 / (4
+/// sin^2(t/2)) - 1 / t^2. At a rate of 1 kHz and an exact frequency of 180 Hz, the gain is within 0.3 % up
+/// to 200 Hz (with the bilinear form: 25 %).
 ///
 /// Drift. The sums of |impulse response| for every e <= 1/8 are (test
 /// Displacement.GainsStayBelowTheirBounds): a sample to v 0.97/e, to x 0.71/e^2; a step to x 0.21/e^2. From
@@ -49,8 +49,8 @@ class Displacement {
   bool start(const DisplacementScale& scale) noexcept;
 
   /// Takes one sample in LSB. Returns the displacement at the time of this sample. A sample beyond +-kLimit
-  /// is limited to +-kLimit, and a displacement beyond int32 is limited to int32. Both kinds of limited
-  /// values are counted. Real-time safe.
+  /// is limited to +-kLimit, and a displacement beyond int32 is limited to int32. Limited samples and
+  /// limited displacements are counted. Real-time safe.
   LengthNm step(std::int32_t sample) noexcept;
 
   std::uint32_t held() const noexcept { return held_; }

@@ -42,21 +42,21 @@ struct FeatureValues {
   std::uint32_t undefined = 0;
 };
 
-/// Stores the last n samples of one axis and computes their features. The computing time is the same for each
-/// sample. For each sample, four power sums and sum |x| add the new sample and subtract the oldest sample
-/// exactly. A tree of groups updates the extremes, and n/4 products update the first moment of the spectrum
-/// (spectral_weights.h). All values of the window are integers. Because all values of the window are
-/// integers, they do not drift, for any running time. Ranges for n <= 2^11, |x| < 2^19: sum x^2 < 2^49, sum
-/// x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below 2^121, spectral sum below 2^82. With these
-/// ranges, 128-bit sums are exact. The error of a value of features() is at most 0.501 of 1e-6 plus 2^-54 of
-/// the value. For FREQUENCY, the rounding of the weights adds an error of rate n 2^-36 (36 uHz at 1651 Hz and
-/// n = 1500). A feature beyond the range of int64 is limited to the range of int64.
+/// Stores the last n samples of one axis and computes their features. The computing time of a FeatureWindow
+/// is the same for each sample. For each sample, four power sums and sum |x| add the new sample and subtract
+/// the oldest sample exactly. A tree of groups updates the extremes, and n/4 products update the first
+/// moment of the spectrum (spectral_weights.h). All values of the window are integers. Because all values of
+/// the window are integers, they do not drift, for any running time. Ranges for n <= 2^11, |x| < 2^19: sum
+/// x^2 < 2^49, sum x^3 < 2^68, sum x^4 < 2^87, moments times powers of n below 2^121, spectral sum below
+/// 2^82. With these ranges, 128-bit sums are exact. The error of a value of features() is at most 0.501 of
+/// 1e-6 plus 2^-54 of the value. For FREQUENCY, the rounding of the weights adds an error of rate n 2^-36
+/// (36 uHz at 1651 Hz and n = 1500). A feature beyond the range of int64 is limited to the range of int64.
 class FeatureWindow {
  public:
   static constexpr std::int32_t kLimit = (std::int32_t{1} << 19) - 1;
 
-  /// Starts an empty window. `weights` must exist longer than the window. Several axes may use the same
-  /// weights. Returns false if scale or weights are out of range. Not real-time safe.
+  /// Starts an empty window. `weights` must exist longer than the window. The windows of several axes may
+  /// use the same weights. Returns false if scale or weights are out of range. Not real-time safe.
   bool start(const FeatureScale& scale, const SpectralWeights& weights) noexcept;
 
   /// Takes one sample in LSB. A sample beyond +-kLimit is limited to +-kLimit and counted. Real-time safe.

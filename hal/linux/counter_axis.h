@@ -14,11 +14,11 @@ namespace vernier {
 inline constexpr const char* kCounterRoot = "/sys/bus/counter/devices";
 
 /// Reads the position of an axis from an encoder at a counter of the Linux kernel (Documentation/ABI/testing/
-/// sysfs-bus-counter). The position at the count zero is a setting. The board does not know whether the
-/// encoder has passed its reference mark. A counter gives only the position. The firmware computes the motion
-/// from the positions. A CounterAxis has only one axis, with index 0. In a long time without a reading, the
-/// axis can move by more than half the range of the counter. After such a long time, the position is unknown,
-/// and the axis has no reference any more.
+/// sysfs-bus-counter). The position of the axis at the count zero is a setting. The board does not know
+/// whether the encoder has passed its reference mark. A counter gives only the position. The firmware
+/// computes the motion from the positions. A CounterAxis has only one axis, with index 0. In a long time
+/// without a reading, the axis can move by more than half the range of the counter. After such a long time,
+/// the position is unknown, and the axis has no reference any more.
 class CounterAxis : public PositionReader {
  public:
   /// Largest speed of the axis, in counts of the axis per tick.

@@ -18,7 +18,7 @@ class FileSlotStore : public SlotStore {
   bool reads_ones_where_erased() const noexcept override { return false; }
   HalFault read_record(std::uint32_t place, std::uint8_t* bytes, std::uint32_t size) noexcept override;
   /// If a record has no file, creates a file of `size` bytes with all bits one (never written). The first
-  /// write then needs no additional space on the medium. Not real-time safe.
+  /// write of such a record needs no additional space on the medium. Not real-time safe.
   HalFault reserve_record(std::uint32_t place, std::uint32_t size) noexcept;
   HalFault write_record(std::uint32_t place, const std::uint8_t* bytes, std::uint32_t size) noexcept override;
   HalFault read_image(std::uint32_t slot, std::uint32_t offset, std::uint8_t* bytes,

@@ -52,7 +52,7 @@ class SimPlant : public AxisReader, public InputReader, public CorrectionWriter 
 
   /// Begins the next tick of the simulated machine. Call advance() once before each tick of the firmware.
   void advance() noexcept;
-  /// Starts the motion with the next tick.
+  /// Starts the motion of the simulated machine with the next tick.
   void release() noexcept { released_ = true; }
   /// Returns the number of ticks since the construction. Tick 0 is the tick after the first call of
   /// advance().

@@ -32,7 +32,8 @@ struct AnalogueScale {
            high <= INT32_MAX && zero >= low && zero <= high;
   }
   /// wanted_code returns the code of a correction without limits. code_for returns the code that is written,
-  /// within the limits. In the tick, AnalogueConverter does the same conversions. Not real-time safe.
+  /// within the limits. In the tick of the firmware, AnalogueConverter converts corrections to codes in the
+  /// same way as AnalogueScale. Not real-time safe.
   std::int64_t wanted_code(AxisTravel correction) const noexcept;
   std::int64_t code_for(AxisTravel correction) const noexcept;
   /// Returns the correction that corresponds to a code, to the nearest count. `code`: 0 to 2^31. Not

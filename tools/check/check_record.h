@@ -35,11 +35,12 @@ struct CheckRecord {
 /// change of a parameter that no reading determined from its unknown value.
 bool is_unmeasured(const model::Machine& machine, const CheckedQuantity& quantity);
 
-/// Compares a measurement with a fitted machine. Fit rows and check rows are used in the same way. The set-up
-/// of the instrument is fitted again, with any rotation. The sensitivities are computed at the new set-up.
-/// All free parameters of the machine are tested. The check also tests reversal and scale of every axis, a
-/// tilt and an offset of every transform, and a drift of the instrument along each direction that it reads,
-/// if the chain has no free parameters for them. Throws InputError if the machine was never fitted.
+/// Compares a measurement with a fitted machine. The comparison uses fit rows and check rows of the
+/// measurement in the same way. The set-up of the instrument is fitted again, with any rotation. The
+/// sensitivities of the readings are computed at the set-up that is fitted again. All free parameters of the
+/// machine are tested. The check also tests reversal and scale of every axis, a tilt and an offset of every
+/// transform, and a drift of the instrument along each direction that it reads, if the chain has no free
+/// parameters for them. Throws InputError if the machine was never fitted.
 CheckRecord record_of(const model::Machine& machine, const model::Measurement& measurement,
                       std::string label);
 

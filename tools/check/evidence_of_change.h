@@ -41,15 +41,15 @@ struct CheckAnswer {
 /// Tests the complete history of checks of a machine as one sequential test. The statistic is a mixture of
 /// likelihood ratios of a change against no change (Robbins 1970; Grünwald, de Heide and Koolen 2024). The
 /// mixture is over two unknowns: the check at which the change occurred, and the parameter that changed. The
-/// uncertainty of the parameters after the fit is included by integration. If nothing changes, the
-/// probability that the statistic ever exceeds `alarm` during the lifetime of a machine is at most 1 /
-/// `alarm`, for any number of checks (Ville 1939). The limit 1 / `alarm` is valid under one condition: the
-/// readings are normal, with the stated uncertainty and the correlation of the fit (the noise in <fitted>;
-/// independent if <fitted> has no noise). If a check did not test a parameter, the likelihood ratio of this
-/// parameter is 1 in that check. The weight of a parameter is fixed before its first reading. A check is
-/// excluded from the evidence if its readings scatter more than the stated uncertainty. `checks`: at least
-/// one check of one machine, in time order. Throws std::logic_error if a number that the decision needs is
-/// not finite.
+/// likelihood ratios include the uncertainty of the parameters after the fit, by integration. If nothing
+/// changes, the probability that the statistic ever exceeds `alarm` during the lifetime of a machine is at
+/// most 1 / `alarm`, for any number of checks (Ville 1939). The limit 1 / `alarm` is valid under one
+/// condition: the readings are normal, with the stated uncertainty and the correlation of the fit (the noise
+/// in <fitted>; independent if <fitted> has no noise). If a check did not test a parameter, the likelihood
+/// ratio of this parameter is 1 in that check. The weight of a parameter is fixed before its first reading.
+/// A check is excluded from the evidence if its readings scatter more than the stated uncertainty. `checks`:
+/// at least one check of one machine, in time order. Throws std::logic_error if a number that the decision
+/// needs is not finite.
 CheckAnswer judge(const model::Machine& machine, const std::vector<CheckRecord>& checks, double false_alarms);
 
 }  // namespace vernier::check

@@ -30,7 +30,8 @@ class ProgramBuilder {
   /// Makes the register `source` of another program a channel of this program.
   Id imported(const LoweredProgram& other, std::uint32_t source);
 
-  /// Adds the linear combination k*a + l*b. `exact`: interval of the exact result.
+  /// Adds an instruction for the linear combination k*a + l*b of two registers. `exact`: interval of the
+  /// exact result.
   Id linear(double k, Id a, double l, Id b, const Interval& exact, const std::string& name);
   Id product(Id a, Id b, const Interval& exact, const std::string& name);
   /// A product of two registers, or of a register and a factor, which is added to a sum or subtracted from
@@ -55,11 +56,11 @@ class ProgramBuilder {
   /// Adds the sine and the cosine of an angle in deg, and returns the register of the sine. The cosine is in
   /// the register after the register of the sine.
   Id sine_cosine(Id angle, const Interval& sine, const Interval& cosine);
-  /// Returns a register with the value of `a` in the given format. If `a` already has this format, reformat()
-  /// adds no instruction.
+  /// Returns a register with the value of `a` in the given format. If the register `a` already has the given
+  /// format, reformat() adds no instruction.
   Id reformat(Id a, int fraction_bits);
 
-  /// Declares that the value of a register counts as exact from this call on (Register::given).
+  /// From this call on, the value of a register counts as exact, without an error (Register::given).
   void give(Id id) { registers_[id].given = true; }
 
   std::uint16_t add_wrap(const Wrap& wrap);
@@ -77,7 +78,7 @@ class ProgramBuilder {
 
  private:
   Id append(const Instruction& step, std::vector<Register> results, bool& overflow);
-  /// Returns the error of a register that its users must include.
+  /// Returns the error of a register that every instruction that reads the register must include.
   double error_of(Id id) const { return registers_[id].given ? 0 : registers_[id].error; }
   double largest_count(Id id) const;
   double largest_value(const Product& p) const;

@@ -13,8 +13,8 @@ namespace vernier::compile {
 
 /// Compiles a machine to a correction image (FORMATS section 1). If the machine cannot be compiled, throws
 /// InputError with a message of one line. If the error bound exceeds the budget, throws LimitNotMet. The
-/// message names the dominant term. `machine_text`: the bytes of the machine file, from which its hash is
-/// computed.
+/// message of LimitNotMet names the term with the largest error. `machine_text`: the bytes of the machine
+/// file, from which its hash is computed.
 CompiledMachine compile_machine(const model::Machine& machine, const std::string& machine_text,
                                 const CompileOptions& options);
 

@@ -24,9 +24,9 @@ struct Tilting {
 /// nearer to the tool is selected. For the selected axes, solve_direction solves the deviation of the tool's
 /// direction and stores derivation.orientation. The method is damped least squares (Nakamura and Hanafusa,
 /// ASME J. Dyn. Sys. 108 (1986) 163). Near a pose in which both axes tilt the tool in the same direction, the
-/// component of the correction that the axes cannot reach decreases to 0. The other component of the
-/// correction remains. Returns nullopt if no rotary axis of the machine tilts the tool. `neglect`: limit for
-/// omitted terms, rad.
+/// component of the correction that the axes cannot reach decreases to 0. The component of the correction
+/// that the axes can reach remains. Returns nullopt if no rotary axis of the machine tilts the tool.
+/// `neglect`: limit for omitted terms, rad.
 std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation& derivation, double neglect);
 
 /// Returns a node with the value of `value`, limited to +-limit. A correction that is computed from the
@@ -34,7 +34,8 @@ std::optional<Tilting> solve_direction(const model::Machine& machine, Derivation
 NodeId held_within(Graph& graph, NodeId value, double limit);
 
 /// Returns one flag for each state: true if two axes tilt the tool in nearly the same direction, so that the
-/// correction of the tool direction is damped. All flags are false if no direction is corrected.
+/// correction of the tool direction is damped. All flags are false if the machine does not correct the
+/// direction of the tool.
 std::vector<bool> damped_poses(const model::Machine& machine, const model::States& states);
 
 }  // namespace vernier::compile

@@ -40,9 +40,9 @@ using Solver = std::function<Solved(Graph&, const NodeVector& v)>;
 /// computes the solution with numbers. If a 3 x 3 J(q) is proved regular over the declared ranges, solve_axes
 /// uses its inverse. If J(q) is not proved regular, solve_axes minimises the sum of squares of the motions,
 /// J' (J J')^-1. If there are fewer axes than directions that the axes reach at some pose, solve_axes
-/// minimises the sum of squares of the residual, (J'J)^-1 J'. The determinant has a lower limit. Where the
-/// axes no longer reach every direction, the correction therefore decreases to 0. The returned Solver is also
-/// used for a second evaluation of the deviation.
+/// minimises the sum of squares of the residual, (J'J)^-1 J'. The determinant in the solution for the axis
+/// motions has a lower limit. Where the axes no longer reach every direction, the correction therefore
+/// decreases to 0. The returned Solver is also used for a second evaluation of the deviation.
 Solver solve_axes(Derivation& derivation);
 
 }  // namespace vernier::compile

@@ -39,10 +39,10 @@ struct AxisDeviation {
 /// directions of the tool point. The columns of J are axes, each divided by its lever.
 struct LeastSquares {
   /// True if there are fewer axes than directions in which they move the tool point, and these directions
-  /// change with the pose (for example a telescope). If `nearest` is true, K is J'. With `nearest`, x =
-  /// (J'J)^-1 J' deviation brings the tool point nearest to its target, and the component that the axes
-  /// cannot reach remains. If `nearest` is false, K is J. Without `nearest`, x = J' (J J')^-1 deviation is
-  /// the smallest motion of the axes.
+  /// change with the pose (for example a telescope). If `nearest` is true, the matrix K is J'. With
+  /// `nearest`, x = (J'J)^-1 J' deviation brings the tool point nearest to its target, and the component
+  /// that the axes cannot reach remains. If `nearest` is false, the matrix K is J. Without `nearest`, x = J'
+  /// (J J')^-1 deviation is the smallest motion of the axes that removes the deviation.
   bool nearest = false;
   std::vector<std::vector<NodeId>> jacobian, square, adjugate;  // the matrices K, K K', adj(K K')
   std::vector<NodeId> deviation, weights;                       // right side and result of (K K')^-1
@@ -217,8 +217,8 @@ struct OutputBound {
   double linearisation_um = 0, table_um = 0, function_um = 0, rounding_um = 0, input_um = 0, lag_um = 0;
   /// Remaining error of the correction after one or two steps of Newton's iteration. The error remains
   /// because the deviation at the corrected position is different, and because the nominal motion is not a
-  /// straight line. If second_order_um has a value, total_um includes it. The member has no value if there is
-  /// no useful bound (least squares near singular poses).
+  /// straight line. If second_order_um has a value, total_um includes it. The member second_order_um has no
+  /// value if there is no useful bound (least squares near singular poses).
   std::optional<double> second_order_um;
   double deviation_um = 0;                  // upper limit of |deviation| over the declared ranges, by
                                             // interval arithmetic

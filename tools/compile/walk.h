@@ -10,7 +10,7 @@
 namespace vernier::compile {
 
 /// One elementary step along the chain: a rotation about a coordinate axis, or a shift along a coordinate
-/// axis. The steps are in the order in which they act on the tool point.
+/// axis. The elementary steps are in the order in which they act on the tool point.
 struct Step {
   bool turn;
   int axis;  // 0..2: X Y Z
@@ -38,7 +38,8 @@ class Walk {
   /// `neglect_mm`: a higher-order term that is smaller than this limit is omitted and listed in `neglected`.
   Walk(Derivation& derivation, double neglect_mm, std::vector<Neglected>& neglected);
   /// Returns a Walk for the direction of the tool (the z axis of its last frame) instead of a point. Shifts
-  /// do not change a direction. All lengths of this Walk are those of a vector of length 1.
+  /// do not change a direction. All lengths of a Walk for a direction are without unit, because a direction
+  /// vector has the length 1.
   static Walk of_direction(Derivation& derivation, double neglect, std::vector<Neglected>& neglected);
 
   void take(const Step& step);

@@ -7,7 +7,7 @@ namespace vernier::create {
 
 /// One joint of a robot arm as a row of Denavit and Hartenberg: Tz(d)·Rz(theta)·Tx(a)·Rx(alpha). If the next
 /// joint axis is nearly parallel, a rotation Ry(beta) is added (Hayati 1983). The position of the joint is
-/// added to theta. For a prismatic joint it is added to d.
+/// added to theta. The position of a prismatic joint is added to d.
 struct DhRow {
   double theta = 0, d = 0, a = 0, alpha = 0;  // deg, mm, mm, deg
   bool prismatic = false;

@@ -34,8 +34,8 @@ struct MachinePlan {
                            // machines
   /// BaseShift: base of the chain in the measuring frame, mm and deg
   std::array<double, 6> base{};
-  /// True if only errors are free in a fit that an instrument along each axis can measure. Squareness,
-  /// straightness and angles then stay 0.
+  /// True if only errors are free in a fit that an instrument along each axis can measure. If only such
+  /// errors are free, squareness, straightness and angles stay 0.
   bool positioning_only = false;
 };
 

@@ -15,8 +15,8 @@ const model::Transform& transform_of(const model::Machine& machine, const Elemen
 /// symbols in the equation. If a static that remains a symbol rotates a frame, its nominal angle is inserted
 /// as a number. The BaseShift is not part of the error equation. Throws InputError with one line if an
 /// expression has no first order (an error inside a comparison, min, max, abs, sign or lag; a pole). The
-/// message contains this expression. The definition of the chain is in tools/docs/formats.md. Each error
-/// moves the tool by a small screw motion.
+/// message contains this expression. The definition of the chain is in tools/docs/formats.md. In the
+/// derivation, each error of the machine moves the tool by a small screw motion.
 ErrorEquation derive(const model::Machine& machine, const ErrorSizes& sizes = {});
 
 /// Returns the first-order deviation of the direction of the tool's z axis by one parameter: rotation vector

@@ -16,13 +16,13 @@ struct SecondOrder {
   double axis_rad = 0;     // norm of the remainder of the tool direction's change
 };
 
-/// A proved bound of the remainder, or the reason why no bound exists. The bound is computed with interval
-/// arithmetic and not from samples. Every error is multiplied by a factor s from 0 to 1, and p(s) is the tool
-/// point of the chain with these errors. In the chain, D1_j and D2_j are bounds of the first and the second
-/// derivative of the shift or turn j with respect to s. From this follows |p''| <= sum_j D2_j L_j + sum_turns
-/// D1_j^2 L_j + 2 sum_{i<j, i turns} D1_i D1_j L_j. In this formula, L_j is the largest distance of the tool
-/// point from the rotary axis j; L_j is 1 for a shift. The remainder of the first order is at most half of
-/// |p''|.
+/// A proved bound of the remainder, or the reason why no bound exists. The bound of the remainder is
+/// computed with interval arithmetic and not from samples. Every error is multiplied by a factor s from 0 to
+/// 1, and p(s) is the tool point of the chain with these errors. In the chain, D1_j and D2_j are bounds of
+/// the first and the second derivative of the shift or turn j with respect to s. From this follows |p''| <=
+/// sum_j D2_j L_j + sum_turns D1_j^2 L_j + 2 sum_{i<j, i turns} D1_i D1_j L_j. In this formula, L_j is the
+/// largest distance of the tool point from the rotary axis j; L_j is 1 for a shift. The remainder of the
+/// first order is at most half of |p''|.
 struct SecondOrderBound {
   std::optional<SecondOrder> bound;
   std::string reason;  // reason why no bound exists

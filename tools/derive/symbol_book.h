@@ -10,9 +10,9 @@
 
 namespace vernier::derive {
 
-/// The symbols of one derivation. The class converts the expressions of the machine to these symbols. The
-/// values are in the units of the machine file (mm, deg). If the machine file uses degrees, the symbol is in
-/// rad.
+/// The symbols of one derivation. The class converts the expressions of the machine to symbols of the
+/// computer algebra. The values of the expressions are in the units of the machine file (mm, deg). The
+/// symbol of an angle is in rad, and to_deg converts it in the expression.
 class SymbolBook {
  public:
   explicit SymbolBook(const model::Machine& machine);

@@ -63,9 +63,10 @@ struct UnknownRule {
 /// accelerometer feature; {V}: any other logged quantity; {ref}: the reference of {T}; {mid} {from} {to}
 /// {span}: of the range of {q}; {hats N}: a piecewise linear basis of N functions over that range; {runs}: a
 /// sum of one step per run; {sum}: the sum of parallel joints up to {q} and beyond; {n}: nx, ny or nz. Four
-/// placeholders are computed from the chain (gravity.h), with magnitude at most 1. {across}: the moment of
-/// gravity about the angle of a bar that points along a local axis; {across1} {across2}: of both such axes;
-/// {along}: gravity along the length; {moment}: the moment of a mass farther out.
+/// placeholders of a term stand for moments and components of gravity, computed from the chain (gravity.h),
+/// with magnitude at most 1. {across}: the moment of gravity about the angle of a bar that points along a
+/// local axis; {across1} {across2}: of both such axes; {along}: gravity along the length; {moment}: the
+/// moment of a mass farther out.
 struct EffectForm {
   std::string label;
   PlaceRule place = PlaceRule::kOwn;
@@ -91,7 +92,7 @@ void read_term(EffectForm& form);
 /// Returns the placeholders in a name: q for dir{q}, "hats 5" for {hats 5}.
 std::vector<std::string> marks_in(const std::string& name);
 
-/// The number that states the size of an effect to a person. The size is the factor times one unknown, or
+/// The number that a report states as the size of an effect. The size is the factor times one unknown, or
 /// times the root of the sum of the squares of several unknowns (the amplitude of a sine and a cosine).
 struct EffectSize {
   double factor = 1;
@@ -114,7 +115,8 @@ struct Effect {
   std::vector<UnknownRule> unknowns;
 
   const UnknownRule* find_unknown(std::string_view name) const;
-  /// True if a search finds the terms of this effect. Each choice then has its own term (Choice::term).
+  /// True if a search finds the terms of this effect. If a search finds the terms, each choice of the effect
+  /// has its own term (Choice::term).
   bool has_found_terms() const { return !forms.empty() && forms.front().place == PlaceRule::kSeveral; }
 };
 

@@ -12,8 +12,8 @@
 namespace vernier::effects {
 
 /// A machine and the text of its machine file. Effects are added to both. The machine has a transform for
-/// rigid motions of the whole machine (with_base_row). The text contains this transform only after a term
-/// uses it.
+/// rigid motions of the whole machine (with_base_row). The text of the machine file contains the transform
+/// for rigid motions only after a term uses the transform.
 struct MachineText {
   std::string text;
   model::Machine machine;

@@ -47,8 +47,8 @@ class Wave {
 /// Gravity along the nominal chain: the direction of gravity in every frame, and the moment of a mass about a
 /// joint. The nominal chain is a product of rotations about fixed directions (Brockett's product of
 /// exponentials). Successive rotations about one direction are combined into one rotation by the sum of their
-/// angles. Both branches of the chain start at the same base. If the degrees of freedom of a transform are
-/// not sums of axis positions, gravity is unknown in all later frames.
+/// angles. The tool branch and the workpiece branch of the chain start at the same base. If the degrees of
+/// freedom of a transform are not sums of axis positions, gravity is unknown in all later frames.
 class GravityChain {
  public:
   explicit GravityChain(const model::Machine& machine);
@@ -67,9 +67,9 @@ class GravityChain {
   bool is_rigid(const DofPlace& transform) const;
   /// Returns the component of gravity along the direction of a length.
   std::optional<Wave> along(const DofPlace& length) const;
-  /// Returns the moment of a mass about a joint. The mass is at the end of a later transform in the same
-  /// branch. The value 1 is the moment of this mass if the links between joint and mass are horizontal and
-  /// fully extended.
+  /// Returns the moment of a mass about a joint. The mass that loads the joint is at the end of a later
+  /// transform in the same branch of the chain. The value 1 is the moment of this mass if the links between
+  /// joint and mass are horizontal and fully extended.
   std::optional<Wave> moment(const DofPlace& joint, std::size_t transform) const;
 
  private:

@@ -33,7 +33,8 @@ class AxisPlaces {
   /// is 0 for an axis that moves no degree of freedom.
   double sense(std::size_t axis) const { return sense_.at(axis); }
   bool is_own(std::size_t axis, const DofPlace& place) const { return own(axis) == place; }
-  /// Returns the axis that moves a transform. If several axes move the transform, returns the first of them.
+  /// Returns the axis that moves a transform. If several axes move the transform, returns the first of these
+  /// axes.
   std::optional<std::size_t> axis_of(const DofPlace& place) const;
 
  private:

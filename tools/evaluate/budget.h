@@ -8,8 +8,8 @@
 namespace vernier::evaluate {
 
 /// Components of the uncertainty of a positioning test by ISO 230-2. A component given as a range has a
-/// rectangular distribution: u = range / (2 sqrt 3), and U = 2 u, which is 0.58 of the range (GUM 4.3.7). A
-/// component that is not given is 0.
+/// rectangular distribution: u = range / (2 sqrt 3), and U = 2 u, which is 0.58 of the range (GUM 4.3.7). An
+/// uncertainty component that the user does not give is 0.
 struct PositioningBudget {
   double device_um_m = 0;         // expanded uncertainty of the calibrated measuring instrument, um/m, k = 2
   double misalignment_mm_m = 0;   // largest misalignment between the measuring line and the axis, mm/m

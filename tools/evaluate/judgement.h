@@ -33,8 +33,9 @@ inline constexpr int kPrintedDigits = 3;
 struct JudgedText {
   std::string value, uncertainty, tolerance;
 };
-/// Returns the numbers of a decision as text, with at least `least` digits after the decimal point. If the
-/// printed numbers would contradict the decision, more digits are printed. A missing value is printed as "–".
+/// Returns the numbers of a decision as text, with at least `least` digits after the decimal point. If
+/// rounding would make the printed numbers contradict the decision, more digits are printed. A missing value
+/// is printed as "–".
 JudgedText judged_text(const JudgedValue& one, int least);
 
 /// Returns an assurance, which holds if every given tolerance is met. `unit`: unit of the numbers in the

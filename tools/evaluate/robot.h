@@ -58,10 +58,10 @@ std::pair<double, double> spread_interval(double spread, double freedom);
 /// of ISO 9283:1998, 7.2.1 and 7.2.2. The interval is computed by the delta method.
 std::vector<PoseResult> evaluate_poses(const std::vector<PoseReading>& readings);
 
-/// Rotates and shifts all measured poses together. The sum of the squared distances between measured and
-/// commanded positions then has its minimum (Kabsch 1976). The function is used if the frame of the
-/// instrument is not that of the robot. Throws InputError if the poses do not determine a frame (fewer than
-/// three poses, or all on one line).
+/// Rotates and shifts all measured poses together. The rotation and shift minimise the sum of the squared
+/// distances between measured and commanded positions (Kabsch 1976). The function is used if the frame of
+/// the instrument is not that of the robot. Throws InputError if the poses do not determine a frame (fewer
+/// than three poses, or all on one line).
 void align_to_commanded(std::vector<PoseReading>& readings);
 
 }  // namespace vernier::evaluate

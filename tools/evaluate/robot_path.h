@@ -17,9 +17,9 @@ struct PathResult {
 /// Evaluates a path that a robot followed in several cycles (runs). The samples are in time order. The
 /// samples need not be at the same positions in each cycle. The stations have equal distances along the
 /// commanded path of the first cycle. At a station, a cycle is evaluated where its measured path crosses the
-/// plane perpendicular to the commanded path. Between samples, the path is interpolated linearly. The ends of
-/// the path are not evaluated, because there are no samples beyond them. Throws InputError if there are fewer
-/// than two cycles, if the path has no length, or if a cycle does not cross a station.
+/// plane perpendicular to the commanded path. Between samples, the path is interpolated linearly. The ends
+/// of the path are not evaluated, because there are no samples beyond the ends. Throws InputError if there
+/// are fewer than two cycles, if the path has no length, or if a cycle does not cross a station.
 PathResult evaluate_path(const std::vector<PoseReading>& readings, std::size_t stations);
 
 /// Reads pose readings from a measurement file. The columns of the file are px py pz (commanded) and x y z

@@ -20,8 +20,8 @@ inline constexpr double kNothing_um = 0.01;
 
 /// Finds the variables, other than the position and direction of `axis`, on which the first-order offset of
 /// `axis` depends. The result of beyond_own_axis() has one entry for each significant variable (other axes,
-/// inputs, speed, travel since reversal …). The size is the largest change at random states (fixed seed)
-/// within the axis ranges. `at`: the fixed state (one state).
+/// inputs, speed, travel since reversal …). The size of an entry is the largest change of the offset at
+/// random states (fixed seed) within the axis ranges. `at`: the fixed state (one state).
 std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t axis,
                                      const model::States& at);
 

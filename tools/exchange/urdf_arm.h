@@ -17,11 +17,12 @@ struct UrdfFile {
 };
 
 /// Returns the URDF model of an arm with one joint for each axis. Origin and axis of each joint are those
-/// about which (or along which) the fitted chain really moves. The other joints are at zero, or in the middle
-/// of their range if it does not contain zero. The links are base_link, one link for each axis, and tool. In
-/// this position of the joints, each frame is parallel to the base. URDF has ideal joints. Errors that depend
-/// on joints, inputs or direction therefore remain in a URDF model. The member worst_um states their size at
-/// 1000 poses within the ranges (fixed seed). `at` (one state): values of inputs and motion. Throws
+/// about which (or along which) the fitted chain really moves. The origin and axis of one joint are computed
+/// with the other joints at zero, or in the middle of a range that does not contain zero. The links are
+/// base_link, one link for each axis, and tool. With the joints at these positions, each frame of the URDF
+/// model is parallel to the base. URDF has ideal joints. Errors that depend on joints, inputs or direction
+/// therefore remain in a URDF model. The member worst_um states the largest remaining error of the URDF
+/// model at 1000 poses within the ranges (fixed seed). `at` (one state): values of inputs and motion. Throws
 /// InputError if an axis moves the workpiece, or if an axis moves no transform.
 UrdfFile urdf_arm(const model::Machine& machine, const model::States& at);
 

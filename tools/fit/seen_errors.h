@@ -10,7 +10,8 @@ namespace vernier::fit {
 
 /// Typical size of the errors of a machine, as far as the readings show them. Each kind of error (lengths or
 /// angles, of linear or rotary axes) has its own typical size. Each table has a ratio: the size of its errors
-/// divided by the size of the errors in the other tables. All sizes are in units of the convention's scales.
+/// divided by the size of the errors in the other tables. All sizes of errors are in units of the
+/// convention's scales.
 ///
 /// If the length errors of a table (including squareness) are larger than those of the other tables, its
 /// angle errors may be larger by the same factor. The reason is that a survey with one tool shows only the

@@ -9,7 +9,7 @@
 
 namespace vernier::fit {
 
-/// True if `name` matches `pattern` (* any letters, ? one letter).
+/// True if the parameter name `name` matches `pattern` (* stands for any letters, ? for one letter).
 bool matches_pattern(std::string_view pattern, std::string_view name);
 
 /// Returns the names of the set-ups that have at least one observation in a fit row.

@@ -25,8 +25,8 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
 /// be fitted, use set_up(). A rotated set-up could hide swapped columns of a flat survey.
 model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& measured);
 
-/// A measurement file whose set-up is not in the machine file. The members are the rms residuals of its rows
-/// with the set-up of the machine file, and with a separate set-up, um.
+/// A measurement file whose set-up is not in the machine file. The members are the rms residuals of the
+/// file's rows with the set-up of the machine file, and with a separate set-up, um.
 struct OtherSetUp {
   std::string file;
   double before_um = 0, own_um = 0;

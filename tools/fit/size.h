@@ -30,8 +30,9 @@ std::optional<SizeDirection> size_direction(const model::Machine& machine, const
 
 /// Finds the lengths that determine the size of the machine. The inputs are the readings at `point`, the
 /// scales of all other parameters, and their stated priors. If the readings give no more information about
-/// the size than the convention does, the size is fixed. The cost of `problem` then does not depend on the
-/// size. Returns nullopt if there are no rows with `same` or `on` and no readings of a board.
+/// the size than the convention does, the size is fixed. If the size of the machine is fixed, the cost of
+/// `problem` does not depend on the size. Returns nullopt if there are no rows with `same` or `on` and no
+/// readings of a board.
 std::optional<SizeOfMachine> decide_size(FitProblem& problem, const model::Machine& machine,
                                          const model::ParameterSet& parameters, const Convention& convention,
                                          const StatedPriors& stated, const Eigen::VectorXd& point);

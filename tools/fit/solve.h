@@ -9,10 +9,11 @@
 namespace vernier::fit {
 
 /// Minimises the cost of a fit with the solver that `options` name, and returns the parameters at the
-/// minimum. The start is the machine file, or nominal if nominal has the lower cost. The fit goes through the
-/// stages and ends with all parameters. The scales of the convention are used from the start of the fit. Sets
-/// the members iterations, converged and stages of `result`. Uses the parameters of `result` and its number
-/// of observations as input. Throws InputError if a stage does not match any parameter.
+/// minimum. The start is the machine file, or nominal if nominal has the lower cost. The fit frees the
+/// parameters of one stage after another, and at the end all parameters. The scales of the convention are
+/// used from the start of the fit. Sets the members iterations, converged and stages of `result`. Uses the
+/// parameters of `result` and its number of observations as input. Throws InputError if the patterns of a
+/// stage match no parameter.
 Eigen::VectorXd solve(FitProblem& problem, const model::Machine& machine, const Convention& convention,
                       const StatedPriors& stated, const FitOptions& options, FitResult& result);
 

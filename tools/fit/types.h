@@ -23,8 +23,9 @@ namespace vernier::fit {
 enum class Loss : std::uint8_t { kSquared, kHuber, kCauchy };
 enum class Solver : std::uint8_t { kNormalEquations, kCeres };
 
-/// A prior at the nominal value of a parameter. If the file has no nominal value, the prior is at the start
-/// value. A Prior acts like a measurement of the nominal value with the standard uncertainty `std`.
+/// A prior at the nominal value of a parameter. If the machine file has no nominal value for a parameter,
+/// the prior is at the start value. A Prior acts like a measurement of the nominal value with the standard
+/// uncertainty `std`.
 struct Prior {
   std::string pattern;  // name of the parameters, with * and ? as in file names
   double std = 0;       // standard uncertainty, in the unit of the parameter
@@ -93,7 +94,8 @@ struct StageFigures {
 /// difference from this value. The convention makes the result of a fit unique. Among all machines that the
 /// data cannot distinguish, the fit selects the machine that is nearest to nominal in units of the scales.
 struct Convention {
-  /// Number of the first kind of statics. Kinds with smaller numbers are kinds of table entries.
+  /// Number of the first parameter kind that consists of statics. Parameter kinds with smaller numbers are
+  /// kinds of table entries.
   static constexpr int kFirstOfStatics = 5;
   /// Residual of the nominal machine with the best set-up: rms, mm. If the errors of a machine exceed
   /// misfit_mm in total, the machine is not plausible.
@@ -192,9 +194,9 @@ struct FitResult {
   WorstReading worst, worst_check;                     // worst: of the fit rows; worst_check: of the check
                                                        // rows
   /// Ratio of two rms residuals on the check rows: fitted machine divided by nominal machine. For the first
-  /// ratio, both machines use the set-up of the fit rows. If there are enough check rows, a second ratio uses
-  /// a set-up of each machine that is fitted to the check rows. The result check_ratio is the larger of both
-  /// ratios; nullopt if there are too few check rows.
+  /// ratio of rms residuals, the fitted and the nominal machine use the set-up of the fit rows. If there are
+  /// enough check rows, a second ratio uses a set-up of each machine that is fitted to the check rows. The
+  /// result check_ratio is the larger of both ratios; nullopt if there are too few check rows.
   std::optional<double> check_ratio;
   /// Reason why the readings do not belong to this machine; empty if there is no such reason.
   std::string absurd;

@@ -20,8 +20,8 @@ class EdgeNode {
            std::uint64_t death_number);
 
   MqttConnection& connection() { return connection_; }
-  /// Publishes the birth of the node with its metrics, bdSeq and Rebirth. After that, the births of all
-  /// devices are invalid.
+  /// Publishes the birth of the node with its metrics, bdSeq and Rebirth. After a birth of the node, the
+  /// earlier births of all its devices are invalid.
   bool birth(const std::vector<Metric>& metrics);
   bool born() const { return born_; }
   /// Publishes data of a device. If names or types are new, the birth of the device is published first.

@@ -24,7 +24,7 @@ struct RolloutOptions {
   bool take_over_trial = false;  // true: a trial that another caller started is reverted
 };
 
-/// Result of the rollout for one machine.
+/// Result of the rollout (distribution of an image in stages) for one machine.
 struct TrialEnd {
   enum class Kind : std::uint8_t { kKept, kTakenBack, kRefused, kNotInEffect, kAway, kInterrupted } kind;
   std::string why;
@@ -34,8 +34,8 @@ const char* name_of(TrialEnd::Kind kind);
 
 /// Steps of a rollout for one machine: start the trial of the image, check that the board uses the image,
 /// evaluate the machine, and then confirm or revert the image. Before data are signed or sent, the board must
-/// prove that it is the board of the machine. The board repeats this proof before each check, and before the
-/// image is confirmed or reverted.
+/// prove that it is the board of the machine. The board proves its identity again before each check, and
+/// before the image is confirmed or reverted.
 class ImageTrial {
  public:
   /// Opens the connection to the board. Throws InputError if the board does not answer, and LimitNotMet if it
@@ -44,7 +44,7 @@ class ImageTrial {
              registry::MachineLocks& locks, const std::atomic<bool>& stop);
   /// Executes the trial of an image. `own_issued`: RolloutState::issued. The time own_issued distinguishes a
   /// trial of this rollout from a trial of another caller. Throws LockLost if the lock of the machine was
-  /// lost. After that, the board is not changed.
+  /// lost. After the lock is lost, ImageTrial does not change the board.
   TrialEnd run(std::uint64_t own_issued);
 
  private:

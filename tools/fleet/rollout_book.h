@@ -52,8 +52,8 @@ class RolloutBook {
   const registry::MachineLocks& locks_;
 };
 
-/// Returns the states of the machines in the order of the rollout. The list is empty if no rollout has this
-/// name.
+/// Returns the states of the machines in the order of the rollout. The list of machine states is empty if no
+/// rollout has the given name.
 std::vector<RolloutState> rollout_states(registry::Registry& registry, const std::string& name);
 
 }  // namespace vernier::fleet

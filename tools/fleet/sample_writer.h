@@ -26,18 +26,18 @@ struct Receipt {
 };
 
 /// Writes samples to the registry, each sample once. The records of a spool are stored in the order of their
-/// numbers. The last number is updated in the same transaction as the records. Records with an earlier number
-/// are ignored. Two writers may run at the same time. Only samples of machines that are in the registry are
-/// stored. The samples of an unknown machine are counted (Registry::not_entered), and the gateway may delete
-/// them.
+/// numbers. The last number is updated in the same transaction as the records. A record whose number is not
+/// above the last stored number is ignored. Two SampleWriter objects may write to one registry at the same
+/// time. Only samples of machines that are in the registry are stored. The samples of an unknown machine are
+/// counted (Registry::not_entered), and the gateway may delete them.
 class SampleWriter {
  public:
   explicit SampleWriter(registry::Registry& registry) : registry_(registry) {}
   /// Writes data and returns the receipts by gateway, for all data that were written or must be sent again.
   /// If the function throws DatabaseError, no data were written.
   std::map<std::string, Receipt> write(const std::vector<DeviceData>& data);
-  /// Records whether a machine is connected. If `machine` is empty, this applies to all machines of the
-  /// gateway.
+  /// Records whether a machine is connected. If `machine` is empty, the function records the connection
+  /// state of all machines of the gateway.
   void online(const std::string& gateway, const std::string& machine, bool online);
   /// Returns the number of samples that were written.
   std::uint64_t written() const { return written_; }

@@ -60,8 +60,8 @@ std::string state_text(bool online, std::uint64_t time_ms);
 /// any other text.
 std::optional<bool> online_of(std::string_view state);
 
-/// True if a topic can contain this name. The name must not be empty, must not contain + / #, and must be
-/// printable.
+/// True if a Sparkplug topic can contain this name. The name must not be empty, must not contain + / #, and
+/// must be printable.
 bool fits_a_topic(std::string_view name);
 
 /// Names of the metrics with which a gateway and the registry exchange the numbers of stored records

@@ -38,8 +38,8 @@ class Spool {
   /// file (set_aside()).
   std::vector<SpoolRecord> after(std::uint64_t number, std::size_t most);
   /// Moves records that cannot be read to the file aside(), so that they do not stop later records. Throws
-  /// InputError if the file aside() cannot be written. The records then stay in the spool. Throws
-  /// DatabaseError if the spool itself cannot be written.
+  /// InputError if the file aside() cannot be written. If the file aside() cannot be written, the damaged
+  /// records stay in the spool. Throws DatabaseError if the spool itself cannot be written.
   void set_aside(const std::vector<std::uint64_t>& numbers);
   /// count_aside() returns the number of records that were moved since the spool was opened. aside() returns
   /// their file (one JSON object per line, with the original cells).
@@ -55,8 +55,8 @@ class Spool {
   /// Returns the number of the last record that the spool no longer contains.
   std::uint64_t gone() const { return gone_; }
   /// Call begin_anew() if the registry has numbers that this spool never gave. If the registry has numbers
-  /// that this spool never gave, the spool file is an older, restored file. After that, the records get new
-  /// numbers under a new id.
+  /// that this spool never gave, the spool file is an older, restored file. After begin_anew(), the records
+  /// get new numbers under a new spool id.
   void begin_anew();
   /// Returns the number of the next birth. The number of the birth message increases by one at each call
   /// (bdSeq of Sparkplug, 0..255).

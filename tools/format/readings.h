@@ -62,8 +62,8 @@ struct ReadingFormEntry {
   ReadingForm form;
   bool rotation;        // true: the reading is an angle, deg; false: a length, mm
   bool free_of_set_up;  // true: the set-up of the instrument (BaseShift) does not affect the reading
-  /// True if a reading requires all columns of the form. A row without one of these columns then has no
-  /// reading of this form.
+  /// True if a reading requires all columns of the form. If all columns of a form are required, a row in
+  /// which one of the columns is empty has no reading of this form.
   bool together;
   /// True if the reading is a distance, which is never negative.
   bool never_negative;

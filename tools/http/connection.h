@@ -22,8 +22,8 @@ struct Connection {
   /// True if the header has arrived completely. After the header has arrived completely, header_bytes and
   /// body_bytes are the sizes of the header and the body of the request.
   bool has_header();
-  /// True if the header and the body have arrived completely. The function does not wait for a body larger
-  /// than `most_body`, or for a body whose length the header does not state.
+  /// True if the header and the body have arrived completely. The test for a complete request does not wait
+  /// for a body larger than `most_body`, or for a body whose length the header does not state.
   bool has_request(std::size_t most_body);
 
   int fd;

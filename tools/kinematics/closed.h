@@ -17,13 +17,13 @@ struct ClosedSolution {
   double condition = 0;           // condition number of the Jacobian
 };
 
-/// Returns the closed-form solution, or nullopt if the chain has no such solution. The function decides this
-/// from the expressions of the chain, not from samples. First condition for a closed-form solution: every
-/// rotation is independent of the linear axes. Second condition for a closed-form solution: every length is
-/// at most of first degree in the linear axes. Third condition for a closed-form solution: the tables of the
-/// linear axes are zero. Fourth condition for a closed-form solution: there are one to three linear axes, and
-/// their directions are independent. `at`: one state with the positions of the other axes, the motion and the
-/// inputs.
+/// Returns the closed-form solution, or nullopt if the chain has no such solution. Whether a closed-form
+/// solution exists is decided from the expressions of the chain, not from samples. First condition for a
+/// closed-form solution: every rotation is independent of the linear axes. Second condition for a
+/// closed-form solution: every length is at most of first degree in the linear axes. Third condition for a
+/// closed-form solution: the tables of the linear axes are zero. Fourth condition for a closed-form
+/// solution: there are one to three linear axes, and their directions are independent. `at`: one state with
+/// the positions of the rotary and fixed axes, the motion and the inputs.
 std::optional<ClosedSolution> closed_solution(const model::Machine& machine, const model::States& at);
 
 /// Returns the positions of the linear axes for tool points (3 x N, mm), one column for each point. With

@@ -14,11 +14,11 @@ const char* name_of(InverseFault fault);
 
 /// Solves the inverse kinematics of all states together by Newton iteration with damping
 /// (Levenberg-Marquardt, Marquardt 1963) on the forward kinematics. The position of a rotary axis is changed
-/// by whole turns into its range. The returned positions themselves are verified. `target`: one pose for each
-/// state, in workpiece coordinates (for kPosition the rotation is not used). `start`: start values of the
-/// axes, and the motion, inputs, runs and time, which are not changed. The Jacobian is computed by central
-/// differences. The Jacobian therefore includes every expression of the chain. Throws InputError if the value
-/// of the chain is not finite.
+/// by whole turns into its range. The returned axis positions themselves are verified by the forward
+/// kinematics. `target`: one pose for each state, in workpiece coordinates (for kPosition the rotation is
+/// not used). `start`: start values of the axes, and the motion, inputs, runs and time, which are not
+/// changed. The Jacobian is computed by central differences. The Jacobian therefore includes every
+/// expression of the chain. Throws InputError if the value of the chain is not finite.
 InverseResult solve(const model::Machine& machine, const model::Poses& target, const model::States& start,
                     const InverseOptions& options);
 

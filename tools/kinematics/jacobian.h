@@ -16,8 +16,8 @@ Eigen::VectorXd pose_error(const model::Poses& poses, const model::Poses& target
                            double lever_mm);
 
 /// Returns the decrease of pose_error per mm or deg of each axis, one matrix for each state. The Jacobian is
-/// computed by central differences of the forward kinematics. For these differences, an axis is moved in all
-/// states together.
+/// computed by central differences of the forward kinematics. For the central differences, one axis at a
+/// time is moved in all states together.
 std::vector<Eigen::MatrixXd> axis_jacobian(const model::Machine& machine, const model::States& states,
                                            const std::vector<std::size_t>& axes, Match match,
                                            double lever_mm);

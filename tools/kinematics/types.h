@@ -33,8 +33,8 @@ struct InverseOptions {
   /// Condition number of the Jacobian above which a pose counts as singular.
   double most_condition = 1e6;
   bool keep_ranges = true;
-  /// True: least squares in the directions in which the axes can move the tool. The components in other
-  /// directions then remain as residual.
+  /// True: least squares in the directions in which the axes can move the tool. With least squares, the
+  /// components in other directions remain as residual.
   bool only_reachable = false;
 };
 

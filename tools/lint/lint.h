@@ -20,9 +20,9 @@ struct LintedFile {
   std::vector<LintFinding> findings;
 };
 
-/// Tests machine files and measurement files, given in any order. The machine files are tested first. Each
-/// measurement file is then tested with the first machine that could be read. Throws InputError if a file
-/// cannot be opened.
+/// Tests machine files and measurement files, given in any order. Of the given files, the machine files are
+/// tested before the measurement files. Each measurement file is then tested with the first machine that
+/// could be read. Throws InputError if a file cannot be opened.
 std::vector<LintedFile> lint_files(const std::vector<std::string>& paths);
 
 }  // namespace vernier::lint

@@ -43,8 +43,8 @@ class Bench {
   const std::vector<std::size_t>& axes() const { return axes_; }
   /// Returns the nominal tool point (mm) with the linear axes at the given fractions (0..1) of their ranges.
   Eigen::Vector3d point_at(const Eigen::VectorXd& fraction) const;
-  /// True if the linear axes can bring the nominal tool point to all given points (3 x N, mm). The ranges of
-  /// the axes are ignored.
+  /// True if the linear axes can bring the nominal tool point to all given points (3 x N, mm). This test
+  /// ignores the ranges of the axes.
   bool meets(const Eigen::Matrix3Xd& points) const;
   /// True if the linear axes can bring the nominal tool point to all given points within their ranges.
   bool reaches(const Eigen::Matrix3Xd& points) const;

@@ -6,7 +6,8 @@ namespace vernier::maths {
 /// Returns the natural logarithm of the upper tail probability of an F distribution: log P(F >= f). f >= 0,
 /// d1 > 0, d2 > 0; d1 and d2 need not be integers. The logarithm is returned because the p-values of an
 /// accurate survey are far below the smallest double. If d2 <= 0, the variance is unknown, and the result is
-/// 0 (p = 1). The relative accuracy of p is about 1e-10. The formula is that of NIST DLMF 8.17.
+/// 0 (p = 1). The relative accuracy of the tail probability p is about 1e-10. The formula is that of NIST
+/// DLMF 8.17.
 double log_f_tail(double f, double d1, double d2);
 
 /// Returns the natural logarithm of the upper tail probability of a chi-square distribution: log P(X >= x),
@@ -18,7 +19,7 @@ double log_chi_square_tail(double x, double k);
 double chi_square_tail(double x, double k);
 
 /// Returns the value x that a chi-square variable with k > 0 degrees of freedom exceeds with the probability
-/// p, 0 < p < 1. The accuracy is 1e-15 of 10 k + 100.
+/// p, 0 < p < 1. The absolute error of the returned x is at most about 1e-15 (10 k + 100).
 double chi_square_point(double p, double k);
 
 /// Returns log P(R >= r) for the correlation coefficient R of `pairs` independent pairs of normal random

@@ -8,8 +8,8 @@ struct Peak {
 };
 
 /// Returns the position and the value of the maximum of a function between two points, by golden section
-/// search. The result is the better of the last two points. If the function has several peaks, golden_peak
-/// finds one of them.
+/// search. The returned maximum is the better of the last two points of the search. If the function has
+/// several peaks, golden_peak finds one of them.
 template <typename Function>
 Peak golden_peak(const Function& value, double low, double high, int sections) {
   constexpr double kGolden = 0.381966011250105;  // 2 - (1 + sqrt 5)/2

@@ -4,8 +4,8 @@
 
 namespace vernier::maths {
 
-/// Returns the median of `values`. For an even number of values it is the upper of the two middle values; for
-/// an empty list it is 0.
+/// Returns the median of `values`. The median of an even number of values is the upper of the two middle
+/// values; the median of an empty list is 0.
 double median(std::vector<double> values);
 
 /// Returns the standard deviation of a normal distribution whose median absolute value is `median_size`:
@@ -13,7 +13,8 @@ double median(std::vector<double> values);
 double spread_of_median(double median_size);
 
 /// Returns the standard deviation of deviations from 0, computed from their median absolute value. Because
-/// the function uses the median, outliers hardly change the result. For an empty list the result is 0.
+/// the function uses the median, outliers hardly change the result. The standard deviation of an empty list
+/// is 0.
 double robust_spread(std::vector<double> deviations);
 
 }  // namespace vernier::maths

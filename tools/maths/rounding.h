@@ -6,7 +6,7 @@ namespace vernier::maths {
 
 /// Returns the multiple of `digit` (a power of ten) that is nearest to a value. The function rounded_to()
 /// returns the double number with the shortest decimal text: 242.1, not 242.10000000000002. A multiplication
-/// by 0.1 does not give this result.
+/// by 0.1 does not give the number with the shortest text.
 inline double rounded_to(double value, double digit) {
   const double inverse = std::round(1 / digit);
   return inverse >= 1 ? std::round(value * inverse) / inverse : std::round(value / digit) * digit;

@@ -140,10 +140,10 @@ using ImageCorrection =
     std::function<void(Measurement& rows, const Machine& machine, const std::string& text)>;
 
 /// Reads one or several measurement files for a machine. The columns of a measurement file may be in any
-/// order. Values are converted to the base units. An input is converted to the unit that the machine
-/// declares. `images`: function for files that name an image but have no correction column. If `images` is
-/// empty, a file that names an image is an error. For an invalid file, throws InputError with file, line and
-/// word.
+/// order. Values are converted to the base units. The values of an input are converted to the unit that the
+/// machine declares for the input. `images`: function for files that name an image but have no correction
+/// column. If `images` is empty, a file that names an image is an error. For an invalid file, throws
+/// InputError with file, line and word.
 Measurement read_measurement(const std::vector<std::string>& paths, const Machine& machine,
                              const ImageCorrection& images = {});
 

@@ -8,7 +8,7 @@
 namespace vernier::model {
 
 /// True if `name` is not permitted as the name of an axis, because a column of the measurement format has
-/// this name. `machine`: the machine whose axes have the columns "correctionX" and so on.
+/// this name. `machine`: its axes determine the reserved column names "correctionX" and so on.
 bool is_no_axis_name(const Machine& machine, std::string_view name);
 /// True if `name` is not permitted as the name of an input, because a column of the measurement format has
 /// this name. The names of columns of a later version of the format are permitted for inputs.

@@ -50,8 +50,8 @@ class Freedom {
   bool& flag_;
 };
 
-/// Returns all groups of parameters that a fit could free, in the order of ParameterSet. No other code has a
-/// list of these groups. The returned objects contain references to the machine.
+/// Returns all groups of parameters that a fit could free, in the order of ParameterSet. This function
+/// contains the only list of the parameter groups. The returned objects contain references to the machine.
 std::vector<Freedom> freedoms_of(Machine& machine);
 
 /// The free parameters of a machine, in a fixed order: statics, scale factors, stations, BaseShifts,
@@ -78,7 +78,7 @@ class ParameterSet {
 };
 
 /// Returns the index of the BaseShift of a run: its own BaseShift, otherwise the BaseShift without `run` and
-/// `setup`. If there is neither, the result is nullopt (identity).
+/// `setup`. If neither BaseShift exists, the result is nullopt (identity).
 std::optional<std::size_t> base_shift_of(const Machine& machine, const std::string& run);
 /// Returns the index of the ToolShift of a set-up, by the same rule as base_shift_of().
 std::optional<std::size_t> tool_shift_of(const Machine& machine, const std::string& run);

@@ -55,15 +55,16 @@ inline constexpr std::array<Labels States::*, 3> kStateLabels = {&States::setup,
 
 /// Assigns all moments to one run with the name `name`, one set-up, one clock and one block.
 void make_one_run(States& states, const std::string& name);
-/// Begins a new run with the name `name` at a moment. At this moment a new set-up, clock and block begin too.
+/// Begins a new run with the name `name` at a moment. At the moment at which a new run begins, a new set-up,
+/// clock and block begin too.
 void begin_run(States& states, std::size_t moment, const std::string& name);
 /// Appends the runs, set-ups, clocks and blocks of `next`. Labels with the same name are merged. `apart`:
 /// true keeps the labels of `next` separate from the labels of `all`, also if they have the same name.
 /// append_labels() does not change the columns.
 void append_labels(States& all, const States& next, bool apart = false);
 
-/// Value of `since` if the travel since the last reversal is not recorded. The value is larger than any decay
-/// length.
+/// Value of `since` if the travel since the last reversal is not recorded. The value of `since` for an
+/// unknown travel is larger than any decay length.
 inline constexpr double kLongWay = 1e9;
 
 /// Returns `count` states for a machine with `axes` axes and these inputs. All columns are zero, `since` is

@@ -12,8 +12,8 @@ namespace vernier::offline {
 struct CorrectorOptions {
   bool with_rotary = false;  // true: all axes correct the tool point and the tool direction; false: the
                              // linear axes correct the tool point
-  /// If true, the input contains positions of the machine with its errors. The output is then the commands of
-  /// an ideal machine with the same tool point.
+  /// If `back` is true, the input contains positions of the machine with its errors. The output of a
+  /// conversion back contains the commands of an ideal machine with the same tool point.
   bool back = false;
 };
 

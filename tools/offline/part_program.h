@@ -42,11 +42,12 @@ struct PartProgram {
 /// G1 G2 G3, planes G17 to G19, G20/G21, G90/G91, G90.1/G91.1, G93/G94. A block is split if the correction
 /// along the block is not linear. An arc or helix is written as arcs in its plane, with relative I J K, or as
 /// chords if the chords are long enough. Under G93, the parts of a block share the time of the block. The
-/// speed and the direction of each axis are those of the move and of its F word. Words that cause no motion
-/// are written without change. `at`: positions of the axes before the first block, and values of the inputs.
-/// Throws InputError with file, line and word for words that would be wrong in the output. Examples of
-/// forbidden words are cycles, cutter compensation, other zero points and rotations, parameters, loops, and
-/// an axis whose position is unknown because it was never commanded and `at` does not contain it.
+/// speed and the direction of each axis are those of the move and of its F word. Words of the part program
+/// that cause no motion are written without change. `at`: positions of the axes before the first block, and
+/// values of the inputs. Throws InputError with file, line and word for words that would be wrong in the
+/// output. Examples of forbidden words are cycles, cutter compensation, other zero points and rotations,
+/// parameters, loops, and an axis whose position is unknown because it was never commanded and `at` does not
+/// contain it.
 PartProgram corrected_program(const std::string& text, const std::string& file, const model::States& at,
                               const std::vector<char>& known, const PartProgramOptions& options,
                               Corrector& corrector);

@@ -23,11 +23,12 @@ struct PathPiece {
   bool whole = false;  // true: a full turn, which ends at its start point in the plane
 };
 
-/// Returns a small number of blocks that connect the first point to the last point. Each block is as long as
-/// possible. All points between its ends must be within `most` of the block (norm over all axes, one column
-/// per point). An arc passes through the points at its ends. An arc turns by at most 270 degrees, or by one
-/// full turn. If a line reaches as far as an arc, the line is used. The position along a block is a function
-/// of the time, not of the path length. If no guide is given, fit_path uses only straight lines.
+/// Returns a small number of blocks that connect the first point to the last point. Each block of the fitted
+/// path is as long as possible. All points between its ends must be within `most` of the block (norm over
+/// all axes, one column per point). An arc passes through the points at its ends. An arc turns by at most
+/// 270 degrees, or by one full turn. If a line reaches as far as an arc, the line is used. The position
+/// along a block is a function of the time, not of the path length. If no guide is given, fit_path uses only
+/// straight lines.
 std::vector<PathPiece> fit_path(const Eigen::MatrixXd& points, const std::optional<ArcGuide>& guide,
                                 double most);
 

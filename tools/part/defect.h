@@ -56,8 +56,9 @@ struct PartDefect {
 
 /// Computes the defect of the part: Mdef(u) = n . (displacement of the tool at the point - displacement at
 /// the origin of the work coordinates, where the offsets were set). A displacement is actual minus nominal
-/// chain. The part stays clamped on the table on which it was cut, and is not aligned. Each point counts as
-/// cut at its own parameter u. The true contact point of the envelope is up to 0.55 mm further along the
+/// chain. The part counts as measured on the table on which it was cut, without unclamping and without
+/// alignment. The computation assumes that each point of the flank is cut when the cutter is at the
+/// parameter u of the point. The true contact point of the envelope is up to 0.55 mm further along the
 /// surface at 11 mm height.
 PartDefect part_defect(const BHeadMachine& machine, const std::vector<PartPoint>& points,
                        const DefectOptions& options = {});

@@ -12,8 +12,8 @@ namespace vernier::part {
 
 struct IdentifyOptions {
   DefectOptions defect;
-  /// True if the part was aligned to its model by best fit. Then six numbers of a rigid motion are fitted
-  /// together with the errors (`part.X` ... `part.rZ`; mm and deg about the work origin).
+  /// True if the part was aligned to its model by best fit. For an aligned part, six numbers of a rigid
+  /// motion are fitted together with the errors (`part.X` ... `part.rZ`; mm and deg about the work origin).
   bool aligned = false;
   /// True if the radius of the cutter is fitted too (`tool.radius`: actual - programmed, mm). A cutter with a
   /// too small radius leaves material on both flanks.

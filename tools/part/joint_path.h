@@ -32,9 +32,9 @@ JointPose joints_for(const ToolPose& pose, double pivot_mm, double b_deg, double
 
 /// Returns the axis positions along a path of tool poses (inverse kinematics). Where the tool is vertical, C
 /// is not determined. Where the tool is vertical, C changes linearly between its values at both ends of the
-/// vertical part. The path has two continuous solutions, which differ by half a turn of C. The solution with
-/// the smaller |C| is used. `poses`: tool poses in the order of the path, so close that C turns less than 90
-/// deg between two poses.
+/// vertical part. The inverse kinematics of the path has two continuous solutions, which differ by half a
+/// turn of C. Of the two continuous solutions for the path, the solution with the smaller |C| is used.
+/// `poses`: tool poses in the order of the path, so close that C turns less than 90 deg between two poses.
 std::vector<JointPose> back_solution(const std::vector<ToolPose>& poses, double pivot_mm,
                                      RotarySolution solution = RotarySolution::kContinuous);
 

@@ -35,10 +35,10 @@ struct CheckPlan {
 
 /// Selects the poses of a check, one after another. Each new pose is the one with the largest increase of the
 /// sum of log(1 + information) over the checked parameters. The information is about a change that moves the
-/// tool point by `expected_um`. The set-up is free, and the uncertainty of the fit is included. A change
-/// counts as detected from five standard deviations. The limit of five standard deviations follows from an
-/// evidence of 100, with about thirty parameters of six sizes. Throws InputError if the machine was never
-/// fitted or an axis has no range.
+/// tool point by `expected_um`. The information of a pose allows for a free set-up and for the uncertainty
+/// of the last fit. A change counts as detected from five standard deviations. The limit of five standard
+/// deviations follows from an evidence of 100, with about thirty parameters of six sizes. Throws InputError
+/// if the machine was never fitted or an axis has no range.
 CheckPlan check_plan(const model::Machine& machine, const CheckPlanOptions& options = {});
 
 /// Returns a text for users about the changes that the poses can detect: the largest changes, the number of

@@ -6,8 +6,8 @@
 
 namespace vernier::plan {
 
-/// All comparisons that the selected rows must decide. Each pair of a true effect and an alternative effect
-/// that is refitted has one comparison.
+/// All comparisons between two effects that the readings of the selected rows must decide. Each pair of a
+/// true effect and an alternative effect that is refitted has one comparison.
 struct Sides {
   std::vector<Discrimination> side;
   std::vector<double> needed;

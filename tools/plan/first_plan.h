@@ -12,8 +12,8 @@
 namespace vernier::plan {
 
 struct FirstPlanOptions {
-  /// Required expanded uncertainty (k = 2) of the tool point over the work volume, um. The plan ends when it
-  /// is reached. nullopt: the expanded uncertainty of one reading.
+  /// Required expanded uncertainty (k = 2) of the tool point over the work volume, um. The plan ends when
+  /// the required expanded uncertainty is reached. nullopt: the expanded uncertainty of one reading.
   std::optional<double> accuracy_um;
   double reading_um = 5;      // standard uncertainty of one coordinate of the planned readings
   double expected_um = 100;   // plausible motion of the tool point by one parameter, rms over the volume

@@ -20,7 +20,7 @@ model::Measurement append_rows(const model::Measurement& first, const model::Mea
 /// effects, evenly distributed.
 model::Measurement rows_to_build_on(const model::Measurement& all, const Drivers& drivers, std::size_t most);
 
-/// The existing rows, followed by rows that could be measured next.
+/// The rows of the existing measurement, followed by rows that could be measured next.
 struct Offers {
   model::Measurement rows;                // rows in the form that the machine of the measurement requires
   std::size_t existing = 0;               // number of existing rows: the rows [0, existing) are measured

@@ -64,7 +64,7 @@ struct Knowledge {
 };
 
 /// Region in which the accuracy is required: the features of a part, or else the working ranges of the axes
-/// (`<volume>`). All tools of the file count.
+/// (`<volume>`). The region of required accuracy is evaluated with all tools of the machine file.
 struct AccuracyAim {
   std::string words;  // name of the region for texts: "the volume"
   std::optional<tolerance::PlacedPart> part;

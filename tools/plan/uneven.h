@@ -13,7 +13,7 @@ namespace vernier::plan {
 /// Returns `count` additional positions of an axis between `low` and `high`, in the unit of the axis and
 /// increasing. At these positions and the existing positions `taken`, two cyclic errors with different
 /// periods (down to 1/1000 of the range) are never equal. Of many random sets of positions, the set is used
-/// whose spectral window has the smallest maximum. Equal input gives the same positions.
+/// whose spectral window has the smallest maximum. Equal arguments give the same additional positions.
 std::vector<double> uneven_positions(double low, double high, const std::vector<double>& taken,
                                      std::size_t count);
 

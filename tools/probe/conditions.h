@@ -24,8 +24,8 @@ double following_error(const TouchConditions& conditions, double feed);
 /// the following error times the published ratio 5.1 mm / 1.78 mm.
 double least_approach(const TouchConditions& conditions, double feed);
 /// Returns the smallest distance from the surface to the programmed end of the approach, mm. The smallest
-/// distance equals the following error. With a distance equal to the following error, the commanded position
-/// is still moving when the contact occurs.
+/// distance beyond the surface equals the following error of the axis. With a distance equal to the
+/// following error, the commanded position is still moving when the contact occurs.
 double least_overtravel(const TouchConditions& conditions, double feed);
 /// Returns the deflection of the stylus when the machine has stopped after a touch, mm. The deflection is the
 /// path during the delay plus the following error, which the axis still has to travel.

@@ -56,8 +56,8 @@ struct MeasuredFeature {
 MeasuredFeature fit_feature(TouchTable& table, const FeatureSetup& setup);
 
 /// Returns the touches as the text of a measurement file: `d` along `nx ny nz` from the fitted feature at `px
-/// py pz` (FORMATS section 2). All other columns are unchanged, except for the recorded point, which is not
-/// in the file.
+/// py pz` (FORMATS section 2). All other columns are unchanged, except that the recorded point is not
+/// written to the measurement file.
 std::string feature_csv(const TouchTable& table, const MeasuredFeature& feature);
 
 }  // namespace vernier::probe

@@ -45,10 +45,10 @@ struct TouchFitOptions {
 /// Fits the parameters by Gauss-Newton iteration with step halving, beginning at `start`. After the
 /// iteration, touches are excluded one by one. The touch with the least probable deleted residual is excluded
 /// if its p-value (Student's t, Bonferroni) is below outlier_level. The covariance is computed from u, and is
-/// multiplied by chi^2/dof if chi^2/dof exceeds 1. Without u, the covariance is computed from the residual.
-/// Throws InputError if there are fewer observations than parameters plus one, or if the touches do not
-/// determine the parameters (with the `names` of the weakest). The test is that of R. D. Cook and S.
-/// Weisberg, Residuals and Influence in Regression, 1982, 2.2.
+/// multiplied by chi^2/dof if chi^2/dof exceeds 1. If the touches have no u, the covariance of the
+/// parameters is computed from the residual. Throws InputError if there are fewer observations than
+/// parameters plus one, or if the touches do not determine the parameters (with the `names` of the weakest).
+/// The test is that of R. D. Cook and S. Weisberg, Residuals and Influence in Regression, 1982, 2.2.
 TouchFit fit_touches(const TouchModel& model, const Eigen::VectorXd& start, const TouchFitOptions& options,
                      const std::vector<std::string>& names);
 

@@ -8,12 +8,12 @@
 
 namespace vernier::provenance {
 
-/// A file and its content, made again.
+/// An output file of a command, and the content that a repetition of the command gives.
 struct Remade {
   std::string name, text;
 };
 
-/// A file with a provenance, and the way to make the file again.
+/// An output file with a provenance, and the command that makes the file again.
 class MadeFile {
  public:
   /// Reads the provenance of a file, or of `improve.json` or `bound.json` in a folder. Throws InputError if

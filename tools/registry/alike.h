@@ -44,8 +44,9 @@ struct Drift {
 /// while an F test is significant at false_alarms / (2 x machines x quantities). The common curve is accepted
 /// by an F test at false_alarms / (2 x quantities). A change that most machines have is therefore a common
 /// change. Scatter beyond the stated uncertainty increases all uncertainties, and so does the wander of the
-/// machines (wander.h). A drift is therefore a change that is larger than the wander of the other machines. A
-/// rate is not reported if it is not significant without one of its readings.
+/// machines (wander.h). A drift is therefore a change that is larger than the wander of the other machines.
+/// The rate of a machine is not reported if the rate is no longer significant when any one of its readings
+/// is omitted.
 std::vector<Drift> drifts(const std::vector<FleetReading>& readings, const AlikeOptions& options);
 
 }  // namespace vernier::registry

@@ -17,9 +17,9 @@ struct DueMachine {
                                                 // no value if no checks are requested
 };
 
-/// Returns all machines; the machine whose check is most overdue is first. A check is due in four cases: its
-/// time has come; no check was ever made; the last check was not conclusive; or the running image was loaded
-/// after the last check.
+/// Returns all machines; the machine whose check is most overdue is first. A check of a machine is due in
+/// four cases: the time of the next check has come; no check was ever made; the last check was not
+/// conclusive; or the running image was loaded after the last check.
 std::vector<DueMachine> due_machines(Registry& registry, std::int64_t at_us);
 
 }  // namespace vernier::registry

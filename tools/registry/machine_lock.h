@@ -24,7 +24,7 @@ class MachineLocks {
   /// example "rollout spring". `lease_s`: duration of the lease, at least 1 s. Throws LimitNotMet with the
   /// name of a machine that another caller has locked, and the latest end of that lock.
   MachineLocks(Registry& registry, std::vector<std::string> machines, std::string purpose, double lease_s);
-  /// The destructor releases the machines that are still locked.
+  /// The destructor releases the locks of the machines that this object still holds.
   ~MachineLocks();
   MachineLocks(const MachineLocks&) = delete;
   MachineLocks& operator=(const MachineLocks&) = delete;

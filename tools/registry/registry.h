@@ -89,7 +89,7 @@ class Registry {
   /// permitted (machine_name.h).
   void put(const FleetMachine& machine);
   std::vector<FleetMachine> machines();
-  /// Throws InputError if no machine has this name.
+  /// Throws InputError if no machine of the registry has the given name.
   FleetMachine machine(const std::string& name);
   /// Changes the name of a machine and of all its entries. Throws InputError if no machine has the old name,
   /// or if the new name is already used or not permitted.

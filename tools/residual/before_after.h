@@ -55,8 +55,9 @@ struct BeforeAfterOptions {
 };
 
 /// Tests whether the correction reduced the errors of the machine. The error of a reading is the reading
-/// minus the prediction of the nominal chain at the commanded position. Each file has its best set-up
-/// (BaseShift, if it is free in the machine). The roles fit and check of the rows are ignored.
+/// minus the prediction of the nominal chain at the commanded position. Each measurement file has its
+/// best-fit set-up (BaseShift, if the BaseShift is free in the machine). The roles fit and check of the rows
+/// are ignored.
 ///
 /// If at least half of the rows in both files are at common poses (axes, approach direction, feed, point),
 /// whole poses are resampled, for both files together. If fewer rows are at common poses, blocks of

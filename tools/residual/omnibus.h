@@ -18,9 +18,9 @@ struct Omnibus {
 /// Returns one p-value for the statement "this residual has some structure". The p-value is the smallest of
 /// many tests. Each test has its share of the probability of a false alarm (weighted Bonferroni). The
 /// combined p-value is valid for any dependence between the tests. The tests are made for each kind of
-/// reading and for all kinds together. The tests are: constant; every column as a line, parabola, curve; all
-/// columns together; products of two columns; sines over the axes; neighbours in order and in position;
-/// repeats against lack of fit.
+/// reading and for all kinds together. The tests for structure are: constant; every column as a line,
+/// parabola, curve; all columns together; products of two columns; sines over the axes; neighbours in order
+/// and in position; repeats against lack of fit.
 Omnibus omnibus_test(const std::vector<KindSample>& samples, const std::vector<RecordedColumn>& columns,
                      const model::Measurement& measurement, const Repeats& repeats);
 

@@ -62,8 +62,8 @@ struct Basis {
 /// Returns the basis of functions at the given rows. Products are formed for at most kMostPairs pairs of
 /// columns.
 Basis make_basis(const std::vector<RecordedColumn>& columns, const std::vector<std::size_t>& rows);
-// The limit corresponds to 22 columns in pairs. If there are more pairs than readings, a product cannot be
-// significant.
+// The limit kMostPairs permits all pairs of 22 columns. If there are more pairs than readings, a product
+// cannot be significant.
 inline constexpr std::size_t kMostPairs = 250;
 
 }  // namespace vernier::residual

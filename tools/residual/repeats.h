@@ -11,8 +11,8 @@ namespace vernier::residual {
 
 /// Scatter of rows with equal conditions (pure error), compared with the residual between different
 /// conditions (lack of fit; Draper and Smith, Applied Regression Analysis, 3rd ed., section 2.1). Each
-/// measurement file counts as an instrument with its own scatter. A file with few repeats does not contribute
-/// to these numbers.
+/// measurement file counts as an instrument with its own scatter. A file with few repeats does not
+/// contribute to the scatter and the lack of fit.
 struct Repeats {
   std::size_t freedom = 0;                              // degrees of freedom of the pure error, for all
                                                         // lengths

@@ -30,7 +30,8 @@ struct KindSample {
   maths::Moments moments;              // moments of this kind alone, without projection
   /// The moments after projection on the complement of the fit's Jacobian, which combines all kinds of
   /// readings. The sum and the degrees of freedom are those of all kinds together, each in units of its
-  /// standard deviation. If there is no Jacobian, `projected` equals `moments`.
+  /// standard deviation. If the fit has no Jacobian, the projected moments (`projected`) equal the moments
+  /// of the residual (`moments`).
   maths::Moments projected;
 
   const char* name() const { return format::name_of(kind); }

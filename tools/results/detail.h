@@ -33,9 +33,9 @@ nlohmann::ordered_json circular_json(const model::Machine& machine, const model:
 
 /// Returns diagrams of the residuals of two models over the columns of the strongest findings
 /// (findings_json): [{observation, unit (um or urad), column, column_unit, x[], before[], after[], check[]}].
-/// The function returns at most three diagrams of 4000 readings. If there are no findings, the residuals are
-/// shown over the row number. `before`, `after`: residuals of the two models, one value per observation, mm
-/// or deg.
+/// The function returns at most three diagrams of 4000 readings. If there are no findings about the
+/// residual, the diagrams show the residuals over the row number. `before`, `after`: residuals of the two
+/// models, one value per observation, mm or deg.
 nlohmann::ordered_json before_after_pictures(const nlohmann::ordered_json& findings,
                                              const model::Machine& machine,
                                              const model::Measurement& measurement,

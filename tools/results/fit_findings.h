@@ -16,8 +16,8 @@ namespace vernier::results {
 nlohmann::ordered_json findings_json(const model::Machine& machine);
 
 /// Adds the findings of the last fit to an assurance. The assurance fails if the machine was never fitted, or
-/// if its fit did not converge, was not plausible or gave no improvement. Other findings are listed as not
-/// covered.
+/// if its fit did not converge, was not plausible or gave no improvement. All other findings of the last fit
+/// are listed in the assurance as not covered.
 void add_findings(text::Assurance& word, const model::Machine& machine);
 
 /// Tests whether a fit describes its readings. A good fit must have converged, its values must be plausible,

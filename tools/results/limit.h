@@ -9,8 +9,8 @@
 namespace vernier::results {
 
 /// A limit for residuals: "2u" (a multiple of the standard uncertainty u of each row), "0.2mm", "25um",
-/// "0.025deg" (for readings of orientation). The limit "rms=1.5u" is for the rms of the residuals. Without
-/// "rms=" the limit is for each row.
+/// "0.025deg" (for readings of orientation). The limit "rms=1.5u" is for the rms of the residuals. A limit
+/// without "rms=" applies to the residual of each row.
 struct ResidualLimit {
   std::string words;
   bool rms = false, of_u = false, rotation = false;
@@ -22,9 +22,10 @@ ResidualLimit residual_limit(const std::string& words);
 
 /// Tests the residuals against a limit: {limit, of (largest or rms), role (check rows if the file has any),
 /// rows, beyond, worst: {file, line, value, limit} in um or mdeg as `unit` states, pass}. For a row with x y
-/// z, the distance in space is tested (for a rotation, the angle). Each other reading is tested separately.
-/// `residual`: one value per observation, mm or deg. Throws InputError if the file has no reading of the kind
-/// in the limit, or if the limit is in u and a reading has no standard uncertainty.
+/// z, the distance in space is tested (for a rotation, the angle). Each reading other than x y z and
+/// rotations is tested separately against the limit. `residual`: one value per observation, mm or deg.
+/// Throws InputError if the file has no reading of the kind in the limit, or if the limit is in u and a
+/// reading has no standard uncertainty.
 nlohmann::ordered_json judge_residuals(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                        const ResidualLimit& limit);
 

@@ -12,8 +12,8 @@ namespace vernier::results {
 /// are in `not_covered` of the assurance.
 nlohmann::ordered_json safe_to_run_json(const safety::SafetySheet& sheet);
 
-/// Returns all rules of the safety sheet as JSON for the workbench page. The value is null if the machine
-/// file has no number.
+/// Returns all rules of the safety sheet as JSON for the workbench page. The value of a rule is null if the
+/// machine file contains no number for the rule.
 nlohmann::ordered_json safety_json(const safety::SafetySheet& sheet);
 
 /// Returns the safety sheet as text for users, one line for each rule.

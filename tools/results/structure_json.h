@@ -8,7 +8,7 @@ namespace vernier::results {
 
 /// Returns the findings about the residual as JSON, strongest first: [{observation, column, second_column,
 /// shape, share_alone, share_after, p_value, rms_um, low_um, high_um, period, runs, runs_agreeing,
-/// in_all_runs, alike[], sentence}]. A field that does not apply is null.
+/// in_all_runs, alike[], sentence}]. A key that does not apply to the finding has the value null.
 nlohmann::ordered_json findings_json(const residual::FailurePicture& picture);
 
 /// Adds two keys to a result: `findings` (findings_json) and `structure` {omnibus_p, omnibus_by, chi_p,

@@ -56,7 +56,8 @@ struct SafetySheet {
   std::vector<std::string> not_known() const;
   std::uint32_t accepted_mask() const;  // bit n is rule n
   /// Returns one line of text: the rule with the largest excess over its limit, its value, limit and culprit,
-  /// and then the other rules that are not met. The line is empty if all rules are met.
+  /// and then the other rules that are not met. The returned line is empty if all rules of the safety sheet
+  /// are met.
   std::string refusal() const;
 };
 

@@ -19,7 +19,7 @@ bool is_date_format(unsigned id);
 /// to 9999, returns the serial number as text.
 std::string date_text(double serial, bool from_1904);
 
-/// True if a cell has a form that `date_text` can write.
+/// True if the text of a cell is a date or time in a form that `date_text` writes.
 bool is_date(std::string_view cell);
 
 }  // namespace vernier::sheet

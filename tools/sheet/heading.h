@@ -11,7 +11,7 @@
 namespace vernier::sheet {
 
 /// Converts a unit in any usual spelling to a unit of the file formats: "µm", "micron", "(°C)", "Grad",
-/// "inch", "mm/Min.", "U/min". Brackets around the word are ignored. The function unit_meant() returns
+/// "inch", "mm/Min.", "U/min". Brackets around the unit are ignored. The function unit_meant() returns
 /// nullopt if the word is not a unit.
 std::optional<std::string> unit_meant(std::string_view word);
 

@@ -11,8 +11,8 @@ namespace vernier::sheet {
 /// returns nullopt if the cell is not a number with this decimal sign.
 std::optional<std::string> plain_number(std::string_view cell, bool decimal_comma);
 
-/// Decimal sign in the number of a cell: a comma, a point, neither, or either. In the cell "1,234", the comma
-/// can be a decimal sign or a separator of thousands.
+/// Decimal sign that the number in a cell shows: a comma, a point, no decimal sign, or an ambiguous sign. In
+/// the cell "1,234", the comma can be a decimal sign or a separator of thousands.
 enum class DecimalSign { kNeither, kPoint, kComma, kEither };
 DecimalSign decimal_sign_in(std::string_view cell);
 

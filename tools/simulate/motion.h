@@ -8,7 +8,7 @@ namespace vernier::simulate {
 
 /// Returns the motion state of a machine at every tick of a path. Positions and inputs between the rows of
 /// the path are interpolated linearly. Recorded motion columns are also interpolated; a direction keeps the
-/// value of its row. All other quantities are computed from the positions:
+/// value of its row. All quantities of the motion that are not recorded are computed from the positions:
 ///   v      slope of the path's segment
 ///   a      change of segment speed at each row, over the time between the segments' middles; linear between
 ///          the rows, the first and last row as their neighbours

@@ -56,7 +56,8 @@ class Assurance {
 
   AssuranceKind kind() const { return kind_; }
   bool holds() const;
-  /// Returns the rules that are not met. If all rules are met, returns all rules.
+  /// Returns the rules that are not met. If all rules of the assurance are met, the function returns all
+  /// rules.
   std::vector<AssuranceRule> because() const;
   const std::vector<std::string>& uncovered() const { return uncovered_; }
 

@@ -20,7 +20,7 @@ struct ProcessResult {
 struct RunningProcess {
   std::atomic<pid_t> group{0};  // process group of the program; 0 before its start and after its end
   std::atomic<bool> cancelled{false};
-  /// Ends the program immediately. If it is not yet started, it ends as soon as it starts.
+  /// Ends the program immediately. A program that is ended before it is started ends as soon as it starts.
   void cancel();
 };
 

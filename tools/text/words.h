@@ -22,7 +22,8 @@ std::vector<std::string> parts_of(std::string_view text, char separator);
 /// Returns several words as one text with a separator between them: "a,b".
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
 
-/// Replaces each occurrence of `what` (not empty) by `with`. The inserted text is not searched again.
+/// Replaces each occurrence of `what` (not empty) by `with`. The inserted text `with` is not searched for
+/// `what` again.
 void replace_all(std::string& text, std::string_view what, std::string_view with);
 
 /// Returns a text from an input file in a form that is safe for a terminal and for JSON. Control characters,

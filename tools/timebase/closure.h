@@ -18,8 +18,8 @@ struct Closure {
 
 /// Tests whether the last rows of a run repeat its first rows. `points`: the path, which must close (the pose
 /// after the last row is the first pose). `series`: rows x channels of one unit, without gaps. Returns
-/// nullopt if the path does not close. If the start is also similar to other parts of the run (a periodic
-/// error), examine_closure returns no finding.
+/// nullopt if the path does not close (end at its start). If the start is also similar to other parts of the
+/// run (a periodic error), examine_closure returns no finding.
 std::optional<Closure> examine_closure(const Eigen::MatrixXd& points, const Eigen::MatrixXd& series);
 
 }  // namespace vernier::timebase

@@ -14,10 +14,10 @@ namespace vernier::timebase {
 Eigen::MatrixXd path_points(const model::Measurement& m, const std::vector<std::size_t>& rows);
 
 /// Returns, for each point of a path, the number of rows after which the path passes the point again in the
-/// same direction. The number is interpolated between two rows by projection. The number is NaN if the path
-/// does not return to the point. A pause of the motion at a point does not count as a return. Poses that were
-/// set one by one (steps of a tenth of the extent) do not count as a path. `points`: result of path_points,
-/// in time order.
+/// same direction. The number of rows until the return is interpolated between two rows by projection. The
+/// number of rows is NaN if the path does not return to the point. A pause of the motion at a point does not
+/// count as a return. Poses that were set one by one (steps of a tenth of the extent) do not count as a
+/// path. `points`: result of path_points, in time order.
 Eigen::VectorXd revisit_lags(const Eigen::MatrixXd& points);
 
 /// Relation between two paths over the same points: row on the second path = offset + rate * row on the first

@@ -14,9 +14,9 @@ std::optional<Eigen::MatrixXd> stretch(const Eigen::MatrixXd& series, Eigen::Ind
 /// is 1 only if the blocks are equal. The definition is that of Lin, Biometrics 45 (1989).
 double concordance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Returns the effective number of independent rows if the rows of `a` and `b` are correlated (Bartlett). The
-/// number is conservative, because absolute products are used. An oscillation of the samples therefore does
-/// not increase the number.
+/// Returns the effective number of independent rows if the rows of `a` and `b` are correlated (Bartlett).
+/// The effective number of independent rows is conservative, because absolute products are used. An
+/// oscillation of the samples therefore does not increase the effective number of rows.
 double effective_rows(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// Returns the probability that two unrelated blocks with `rows` independent rows have this correlation or a

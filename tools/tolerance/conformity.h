@@ -17,8 +17,8 @@ struct ConformityOptions {
   std::uint64_t seed = 1;
   /// Monte Carlo trials continue in blocks of ten thousand until the ends of the interval are stable. An end
   /// of the interval is stable if twice the standard deviation of its average is below this share of the
-  /// standard uncertainty (JCGM 101:2008, 7.9). If the model has a discrepancy, twice this share is
-  /// permitted.
+  /// standard uncertainty (JCGM 101:2008, 7.9). If the model has a discrepancy, the permitted share for a
+  /// stable interval end is doubled.
   double tolerance = 0.05;
   std::size_t most_trials = 500000;
   /// Probability from which a tolerance is met, or not met: the default conformance probability limit of ISO

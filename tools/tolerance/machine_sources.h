@@ -12,7 +12,7 @@ namespace vernier::tolerance {
 
 /// One source of error of a machine, with its name from the catalogue of effects: `squareness of Y in X`.
 /// Constants and table columns with the same effect of the same axis at the same location belong to one
-/// source.
+/// source of error.
 struct MachineSource {
   std::string name;
   std::string effect;                   // id of the effect in the catalogue; "custom" if the catalogue does

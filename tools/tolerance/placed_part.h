@@ -15,8 +15,9 @@ namespace vernier::tolerance {
 struct PlacedFeature {
   PartFeature feature;
   std::size_t first = 0, count = 0;  // first state of the feature in PlacedPart::states, and number of states
-  /// Evaluated direction at each point of the feature: the surface normal. For a path it is the tangent,
-  /// along which deviations are not evaluated. For a zero vector every direction is evaluated.
+  /// Evaluated direction at each point of the feature: the surface normal. For a path, the stored direction
+  /// is the tangent, along which deviations are not evaluated. For a zero vector every direction is
+  /// evaluated.
   Eigen::Matrix3Xd direction;
 };
 
@@ -32,8 +33,8 @@ struct PlacedPart {
 /// Returns the number of points at which a circle is evaluated, between 12 and 384. The number starts at 12
 /// and is doubled until size and form of the machine's error are stable. Size and form are stable if twice
 /// and three times as many points change them by at most 0.05 um or 2 % of the form, whichever is larger.
-/// With too few points, a cyclic error of a short period can appear as an error of the size. `placed` returns
-/// the states of n points on the circle and the outward directions at these points.
+/// With too few points on the circle, a cyclic error of a short period can appear as an error of the size.
+/// `placed` returns the states of n points on the circle and the outward directions at these points.
 std::size_t points_on_circle(
     const model::Machine& machine,
     const std::function<std::pair<model::States, Eigen::Matrix3Xd>(std::size_t)>& placed);

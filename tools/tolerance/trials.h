@@ -49,7 +49,7 @@ class TrialTally {
   /// Returns the share of the trials whose value is within the limits.
   double conforming() const;
   /// Returns twice the standard deviation of the averaged interval ends, the larger of the lower and upper
-  /// end (JCGM 101:2008, 7.9.4). The function doubt() needs at least two blocks.
+  /// end (JCGM 101:2008, 7.9.4). The function doubt() needs at least two blocks of Monte Carlo trials.
   double doubt() const;
 
  private:

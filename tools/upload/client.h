@@ -24,7 +24,7 @@ struct BoardSignal {
   bool rotary = false, rollover = false;
 };
 
-/// Properties that a board reports about itself.
+/// Properties of a board (name, axes, inputs) that the board itself reports.
 struct BoardInfo {
   HelloReply hello;
   std::string board;  // name of the board; empty: the board has no name
@@ -68,7 +68,7 @@ struct BoardState {
   std::uint8_t settings = 0;  // flags of the type SettingFlag
 };
 /// Returns messages for the user about the operator's settings that the board has not stored, one line for
-/// each flag. The text is empty if all settings are stored.
+/// each flag. The text is empty if the board has stored all settings of the operator.
 std::string settings_text(std::uint8_t settings);
 /// Returns the state of a correction image as a word: "confirmed", "on trial", "lost" or "none". limits_text
 /// returns the active limits of an axis, "at the image's limit, on its way", or an empty text.
@@ -159,8 +159,8 @@ class Client {
   /// `refused_commands` of the board show whether the board accepted the command.
   void command(Command command);
   void weight(std::uint8_t axis, double share);
-  /// Returns the touches from number `first` on, as many as one reply of the board can contain. The list is
-  /// empty if the board has had no touch since.
+  /// Returns the touches from number `first` on, as many as one reply of the board can contain. The list of
+  /// touches is empty if the board has had no touch with the number `first` or a later number.
   BoardTouches touches(std::uint64_t first);
   /// Sets the location of the workpiece: origin in machine coordinates in mm, angle about Z in deg. The
   /// location of the workpiece applies to later touches.

@@ -15,8 +15,9 @@ namespace vernier::upload {
 inline constexpr std::chrono::milliseconds kReplyDeadline{15'000}, kSerialReplyDeadline{60'000};
 
 /// Opens the connection to a board. wait: longest time until a reply is complete, including all intervals
-/// between its bytes; without a value, one of the two deadlines above applies. Over Modbus, a request has two
-/// replies. Throws InputError with the address of the board if the connection fails.
+/// between its bytes; without a value, one of the two deadlines above applies. Over Modbus, a board sends
+/// two replies to each request of a client. Throws InputError with the address of the board if the
+/// connection fails.
 std::unique_ptr<Transport> open_transport(const BoardUrl& url,
                                           std::optional<std::chrono::milliseconds> wait = std::nullopt);
 

@@ -36,11 +36,12 @@ struct PathPlace {
 };
 
 /// Returns for each point (one column) the nearest position on the path (columns in order of time). The
-/// function is for records without a common clock. The points must be in the order of the motion. The search
-/// for a point starts at the position of the previous point and covers at most the length `reach` of the path
-/// (mm). A second pass over the same positions is therefore not confused with the first pass. The position of
-/// the first point is searched within the length `reach` from the start of the path. Throws InputError if the
-/// path has fewer than two samples, or if path and points have different numbers of axes.
+/// search for the nearest path positions is for records without a common clock. The given points must be in
+/// the order of the motion along the path. The search for a point starts at the position of the previous
+/// point and covers at most the length `reach` of the path (mm). A second pass over the same positions is
+/// therefore not confused with the first pass. The position of the first point is searched within the length
+/// `reach` from the start of the path. Throws InputError if the path has fewer than two samples, or if path
+/// and points have different numbers of axes.
 std::vector<PathPlace> nearest_places(const Eigen::MatrixXd& path, const Eigen::MatrixXd& points,
                                       double reach);
 

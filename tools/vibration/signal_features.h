@@ -19,7 +19,8 @@ inline constexpr std::array<const char*, 13> kFeatureNames = {
 using SignalFeatures = std::array<double, kFeatureNames.size()>;
 
 /// Returns true if the feature has the unit of the signal: MAV, RMS and PEAK. VAR and BANDPOWER have the
-/// square of the signal's unit, and FREQUENCY is in Hz. Features other than these six have no unit.
+/// square of the signal's unit, and FREQUENCY is in Hz. Features other than MAV, RMS, PEAK, VAR, BANDPOWER
+/// and FREQUENCY have no unit.
 bool in_signal_unit(std::size_t feature);
 
 /// Returns the features of a window of samples x, sampled at rate_Hz; the length of x must be that of

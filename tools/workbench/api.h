@@ -23,8 +23,8 @@ class Api {
   Api(const std::string& directory, const std::string& program, std::string version,
       const nlohmann::ordered_json& commands);
 
-  /// Answers a request and never throws an exception. The status is 422 with {"message"} for bad input, 404
-  /// for an unknown path, and 500 for an internal error.
+  /// Answers a request of the workbench page and never throws an exception. The status is 422 with
+  /// {"message"} for bad input, 404 for an unknown path, and 500 for an internal error.
   ApiReply reply(const ApiRequest& request);
 
  private:

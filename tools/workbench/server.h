@@ -14,10 +14,11 @@ inline constexpr std::size_t kMostBodyBytes = std::size_t{64} << 20;
 /// Returns an access token: 32 random bytes from the operating system, as hexadecimal digits.
 std::string new_token();
 
-/// HTTP server of the workbench page and its API, at the address 127.0.0.1. The server answers a request only
-/// if three conditions are met. The request names this host and port (protection against DNS rebinding), has
-/// no other origin, and contains the token of the session as a cookie. Opening the printed address sets this
-/// cookie once. A request that writes data must also have the header X-Vernier.
+/// HTTP server of the workbench page and its API, at the address 127.0.0.1. The workbench server answers a
+/// request only if the request meets three conditions. The request must name the host and port of this
+/// server (protection against DNS rebinding), have no other origin, and contain the session token as a
+/// cookie. When the user opens the printed address, the browser stores the session token as a cookie. A
+/// request that writes data must also have the header X-Vernier.
 class WorkbenchServer {
  public:
   /// `port`: 0 selects any free port. Throws InputError if another program uses the port.

@@ -48,7 +48,7 @@ class Gate {
   /// that challenge() uses. Not real-time safe.
   Opened open(const std::uint8_t* request, std::uint32_t size, LinkAccess access, const Caller& from,
               TimeUs now) noexcept;
-  /// True if the request asks for a challenge. A challenge can be used once.
+  /// True if the request asks for a challenge. The board accepts each challenge only once.
   static bool is_challenge(const std::uint8_t* request, std::uint32_t size) noexcept;
   /// Creates a new challenge for one connection. The new challenge replaces the previous challenge of this
   /// connection. If the table is full, the oldest challenge of the same link is removed. If the table has no

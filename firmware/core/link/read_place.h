@@ -9,10 +9,10 @@
 
 namespace vernier {
 
-/// Reads the record at a numbered place of a slot store. Erased flash memory reads as ones. A place whose
-/// bits are all one counts as not written. A store of an earlier version may not have this place. If the data
-/// at the place `number` are longer than one record, this board did not write these data. The place then
-/// counts as written, without a record. Not real-time safe.
+/// Reads the record at a numbered place of a slot store. Erased flash memory reads as ones. A record place
+/// in the store whose bits are all one counts as not written. A store of an earlier version may not have
+/// this place. If the data at the place `number` are longer than one record, this board did not write these
+/// data. The place then counts as written, without a record. Not real-time safe.
 template <class Record>
 StoredPlace<Record> read_place(SlotStore& store, std::uint32_t number) noexcept {
   constexpr std::uint8_t kErased = 0xff;

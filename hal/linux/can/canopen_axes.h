@@ -11,8 +11,8 @@
 namespace vernier {
 
 /// Reads the positions of CiA 402 drives from a TPDO with the position actual value (0x6064) and the
-/// statusword. All drives of a bus use one socket. The TPDOs contain only positions. The firmware computes
-/// the motion from the positions.
+/// statusword. The board uses one socket for all drives of a CAN bus. The TPDOs contain only positions. The
+/// firmware computes the motion from the positions.
 class CanopenAxes : public PositionReader {
  public:
   struct Axis {

@@ -20,8 +20,8 @@ struct CanopenSettings {
   std::uint32_t rpdo = 0x501;             // offset of the position (32 bits)
   InstantNs sync_timeout{20'000'000};     // longest permitted time without SYNC, and without the TPDO
   InstantNs heartbeat_time{200'000'000};  // longest permitted time without a heartbeat
-  /// Largest change of the offset from one SYNC to the next, in parts of a count of the object. If the limit
-  /// is not a whole number of counts, it is kept as a mean over several SYNCs.
+  /// Largest change of the offset from one SYNC to the next, in parts of a count of the object. A limit that
+  /// is not a whole number of counts is kept as a mean over several SYNCs.
   static constexpr std::int64_t kPartsOfCount = 1 << 20;
   std::int64_t parts_per_sync = kPartsOfCount;
 };

@@ -42,7 +42,7 @@ struct IioBufferCounts {
 /// a tick uses it. If the clock of the sensor is faster than the ticks, the queue grows to kMostWaiting
 /// scans. If the queue has kMostWaiting scans and the clock of the sensor is faster than the ticks, a scan is
 /// removed from time to time. If the clock of the sensor is slower than the ticks, some ticks have no scan
-/// (kNoReading). The window of a feature then repeats a sample.
+/// (kNoReading). In a tick without a scan, the window of a feature repeats a sample.
 class IioBuffer : public InputReader {
  public:
   static constexpr std::uint32_t kMostWaiting = 4;  // number of ticks by which a tick may be late without

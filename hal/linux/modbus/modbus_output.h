@@ -52,9 +52,10 @@ struct ModbusOutputSettings {
 /// until the sequence number has not changed for the time that another board may need for a block.
 class ModbusOutput : public OutputDevice {
  public:
-  /// Returns the longest time for an answer, which the Modbus line must use. After a missing answer, a serial
-  /// line is not used for the same time again. The wait and the pause after a missing answer are together
-  /// half of the time-out, so that one missing answer is not a loss of the controller.
+  /// Returns the longest time for an answer, which the Modbus line must use. After a missing answer, a
+  /// serial line is not used for a pause as long as the wait for the answer. The wait and the pause after a
+  /// missing answer are together half of the time-out, so that one missing answer is not a loss of the
+  /// controller.
   static TimeUs wait_for_answer(TimeUs timeout, bool serial) {
     return TimeUs(timeout.count / (serial ? 4 : 2));
   }

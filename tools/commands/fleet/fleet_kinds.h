@@ -16,7 +16,8 @@ void add_registry(CLI::App& command, std::string& place);
 /// Opens the registry with the given name. If the name is a file that does not exist, the file is created.
 /// Throws InputError if the name is empty or the registry is not available.
 registry::Registry make_registry(const std::string& place);
-/// Opens an existing registry. A wrong file name is therefore an error, and no new registry is created.
+/// Opens an existing registry. A wrong file name of a registry is therefore an error, and no new registry is
+/// created.
 registry::Registry open_registry(const std::string& place);
 
 /// Converts a time that a user wrote to us since 1970. If the text is empty, returns `otherwise`. Throws

@@ -13,8 +13,8 @@ struct ImportOutput {
 /// Adds the options `-o FILE` (required) and `--json FILE` to a kind of import.
 void add_import_output(CLI::App& kind, ImportOutput& output);
 
-// For each kind of import there is one function. The function of a kind of import adds the options and the
-// callback to the subcommand.
+// Each kind of import (instrument file format) has one function of this type. The function of a kind of
+// import adds the options and the callback to the subcommand.
 #define X(id, name, reads, ending) void add_##id##_kind(CLI::App& kind);
 #include "tools/import/kinds.inc"
 #undef X

@@ -59,12 +59,13 @@ class Enclosure {
 };
 
 /// Returns a lower bound of a node over the declared ranges, by bisection of the positions on which the node
-/// depends. At most `boxes` boxes are evaluated. The lower bound is never above the true minimum.
+/// depends. The bisection evaluates at most `boxes` parts (boxes) of the ranges. The lower bound is never
+/// above the true minimum.
 double lower_bound_of(const Graph& graph, NodeId node, std::size_t boxes);
 
 /// Upper bounds of |d node / d channel| over the declared ranges. For a table, the slope of its steepest
-/// segment counts. For a choice (min, max), the steeper side counts. The steps of comparisons are excluded.
-/// `table_slopes`: largest slope of each table column, by graph node.
+/// segment counts. For a choice (min, max), the steeper side counts. The bounds of the derivatives exclude
+/// the steps of comparisons (==, <). `table_slopes`: largest slope of each table column, by graph node.
 class Slopes {
  public:
   Slopes(const Graph& graph, NodeId channel, const std::map<NodeId, double>& table_slopes)

@@ -23,7 +23,7 @@ struct ControllerTable {
 
   double position(std::size_t point) const { return from + static_cast<double>(point) * step; }
   /// Returns the value at a position of the input axis. Outside the table, the first or last value is used.
-  /// If direction < 0, the values `reverse` are used.
+  /// If the direction of motion is negative (direction < 0), the values `reverse` are used.
   double at(double position_mm, double direction) const;
 };
 

@@ -16,7 +16,8 @@ struct LayoutThresholds {
   /// Factor between the largest step within a pose and the smallest step between two poses. Source:
   /// experiment with poses that were read to 2 um.
   double pose_gap = 20;
-  /// Limit for a step between rows, as a share of the range of an axis. A smaller step is rounding error.
+  /// Limit for a step between rows, as a share of the range of an axis. A step between rows below this limit
+  /// is rounding error.
   double no_step = 1e-9;
 
   /// Share of the rows that must return to an earlier position. The distances between neighbouring positions
@@ -40,8 +41,8 @@ struct LayoutThresholds {
 /// Thresholds for the evidence that is required to report correlated errors of readings.
 struct NoiseThresholds {
   /// Decrease of -2 log likelihood that is required for a noise component with one parameter on the boundary
-  /// of its range. The tail probability of chi^2 is 1e-3. Source of this test at the boundary: Self and Liang
-  /// 1987.
+  /// of its range. At the required decrease, the tail probability of chi^2 is 1e-3. Source of this test at
+  /// the boundary: Self and Liang 1987.
   double one_component = 9.5;
   /// Decrease of -2 log likelihood that is required for a drift, because a drift has two parameters.
   double drift_component = 13;

@@ -46,8 +46,9 @@ struct Pairing {
 /// pair_points aligns both sequences so that times, and distances between neighbouring points, agree best.
 /// (Distances do not depend on the frame.) Dwells and points without a partner are skipped; the order of both
 /// sequences does not change. After the alignment, pair_points fits one clock relation and one rigid motion
-/// for all pairs. Pairs that do not agree with them are separated again. Throws InputError if neither times
-/// nor nominal tool points are given, and the numbers of dwells and points are different.
+/// for all pairs. Pairs that do not agree with the fitted clock relation and rigid motion are separated
+/// again. Throws InputError if neither times nor nominal tool points are given, and the numbers of dwells
+/// and points are different.
 Pairing pair_points(const PairingInput& input);
 
 }  // namespace vernier::importer

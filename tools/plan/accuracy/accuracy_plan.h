@@ -26,7 +26,7 @@ Knowledge knowledge_of(const model::Machine& fitted);
 AccuracyPlan accuracy_plan(const Knowledge& knowledge, const AccuracyAim& aim,
                            const AccuracyOptions& options);
 
-/// Returns U95 over the aim, um, after readings at the given poses. The computation is the same as in
+/// Returns U95 over the aim, um, after readings at the given poses. U95 after the readings is computed as in
 /// accuracy_plan.
 double expected_accuracy_um(const Knowledge& knowledge, const AccuracyAim& aim, const model::States& poses);
 

@@ -42,12 +42,12 @@ struct PositioningTest {
 };
 
 /// Selects targets with unequal intervals. Target i is at (i - 1) times the interval plus a random number.
-/// The random number is at most one period, or 30 % of the interval if no period is given. The random numbers
-/// are equal for equal requests. Numbers of targets and runs by the standard: for axes up to 2000 mm at least
-/// five targets, five in each metre, and five runs; for longer axes an interval of at most 250 mm and one
-/// run; for rotary axes three targets up to 90 deg, five up to 180 deg, eight above. Throws InputError for:
-/// an unknown axis, an axis without range, targets outside the range, too few targets or runs for an
-/// evaluation.
+/// The random number is at most one period, or 30 % of the interval if no period is given. Equal requests
+/// for a positioning test give equal random numbers. Numbers of targets and runs by the standard: for axes
+/// up to 2000 mm at least five targets, five in each metre, and five runs; for longer axes an interval of at
+/// most 250 mm and one run; for rotary axes three targets up to 90 deg, five up to 180 deg, eight above.
+/// Throws InputError for: an unknown axis, an axis without range, targets outside the range, too few targets
+/// or runs for an evaluation.
 PositioningTest positioning_test(const model::Machine& machine, const PositioningTestOptions& options);
 
 /// Returns a text for users that describes the test and the command to use next.

@@ -7,8 +7,8 @@
 namespace vernier::workbench {
 
 /// A row of a measurement file that a user excluded. In the file, the comment `# excluded "reason": row`
-/// replaces this row. Commands ignore an excluded row. All other rows keep their line numbers, and no data
-/// are lost.
+/// replaces this row. Commands ignore an excluded row. All rows that are not excluded keep their line
+/// numbers, and no data are lost.
 struct ExcludedRow {
   std::size_t line = 0;  // line number, from 1
   std::string reason, row;

@@ -30,7 +30,7 @@ class Conversation {
   Conversation& operator=(const Conversation&) = delete;
 
   /// Sends a question to the program and reads the answer. Returns false if the program ended or gave no
-  /// answer for `patience_s`. The Conversation cannot be used after that.
+  /// answer for `patience_s`. After a failed question, the Conversation cannot be used any more.
   bool ask(const Message& question, double patience_s, Message& answer);
   /// Ends the program and returns how it ended: "exit status 70", "signal 11", or "no answer" if it was still
   /// running.
