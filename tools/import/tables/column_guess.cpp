@@ -7,6 +7,7 @@
 
 #include "tools/format/units.h"
 #include "tools/import/tables/sheet_words.h"
+#include "tools/import/tables/sign_words.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -142,7 +143,7 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
     }
     if (axis.empty() && is_axis(word)) axis = word;
   }
-  deviation |= says_nominal_less_actual(heading.text, true) || says_nominal_less_actual(heading.name, true);
+  deviation |= sign_said(heading.text, SignPlace::kHeading) != SignSaid::kNothing;
   if (deviation) return {SheetColumn::Use::kDeviation, axis, heading.unit, "by its heading"};
   if (!axis.empty() && measured) {
     if (const auto reading = reading_of(axis)) {
