@@ -73,7 +73,7 @@ TEST_F(ImportRemedies, OfATrackerReadTheFileThatIsThere) {
   ASSERT_EQ(run(call + "--column 1=point --nominal nom.csv -o c.csv"), 0) << said;
   EXPECT_THAT(said, HasSubstr("3 points joined with the positions of nom.csv by the names in point"));
   EXPECT_THAT(text::read_file(folder + "/c.csv"),
-              testing::StartsWith("X[mm],Y[mm],point,x[mm],y[mm],z[mm]\n0,400,P1,0.01,400,0\n"));
+              testing::StartsWith("X[mm],Y[mm],x[mm],y[mm],z[mm],point\n0,400,0.01,400,0,P1\n"));
 }
 
 }  // namespace

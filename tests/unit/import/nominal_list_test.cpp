@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Points of a tracker and a separate list of nominal positions.
-#include "tools/import/tables/nominal_list.h"
+#include "tools/import/logs/nominal_list.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

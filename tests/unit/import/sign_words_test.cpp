@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sign of deviations, as titles and headings state it: a sign that is read wrongly doubles an error.
-#include "tools/import/tables/sign_words.h"
+#include "tools/import/words/sign_words.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "tools/format/columns.h"
 #include "tools/import/tables/delimited.h"
 #include "tools/import/tables/machine_log.h"
-#include "tools/import/tables/nominal_list.h"
+#include "tools/import/logs/nominal_list.h"
 #include "tools/import/tables/survey.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "tools/format/units.h"
-#include "tools/import/tables/sheet_words.h"
-#include "tools/import/tables/sign_words.h"
+#include "tools/import/words/sheet_words.h"
+#include "tools/import/words/sign_words.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -15,7 +15,7 @@ namespace {
 
 namespace columns = format::columns;
 
-const std::string kSensePrefix = format::entry_of(format::AxisQuantity::kSense).prefix;
+const std::string kSenseOfAxis = format::entry_of(format::AxisQuantity::kSense).prefix;
 
 /// Name of a column whose heading names no axis.
 std::string other(const sheet::Heading& heading) {
@@ -34,21 +34,21 @@ std::string other(const sheet::Heading& heading) {
                                                             {"unsicherheit", columns::kUncertainty},
                                                             {"uncertainty", columns::kUncertainty},
                                                             {"rolle", columns::kRole},
-                                                            {"richtung", kSensePrefix},
-                                                            {"direction", kSensePrefix},
-                                                            {"sense", kSensePrefix},
+                                                            {"richtung", kSenseOfAxis},
+                                                            {"direction", kSenseOfAxis},
+                                                            {"sense", kSenseOfAxis},
                                                             {"länge", columns::kLength},
                                                             {"laenge", columns::kLength},
-                                                            {kSensePrefix, kSensePrefix},
-                                                            {"dir.", kSensePrefix},
-                                                            {"richtg", kSensePrefix},
-                                                            {"richtg.", kSensePrefix},
-                                                            {"richt.", kSensePrefix},
-                                                            {"sinn", kSensePrefix},
-                                                            {"fahrtrichtung", kSensePrefix},
-                                                            {"anfahrrichtung", kSensePrefix},
-                                                            {"approach", kSensePrefix},
-                                                            {"motion", kSensePrefix}};
+                                                            {kSenseOfAxis, kSenseOfAxis},
+                                                            {"dir.", kSenseOfAxis},
+                                                            {"richtg", kSenseOfAxis},
+                                                            {"richtg.", kSenseOfAxis},
+                                                            {"richt.", kSenseOfAxis},
+                                                            {"sinn", kSenseOfAxis},
+                                                            {"fahrtrichtung", kSenseOfAxis},
+                                                            {"anfahrrichtung", kSenseOfAxis},
+                                                            {"approach", kSenseOfAxis},
+                                                            {"motion", kSenseOfAxis}};
   const auto found = kNames.find(text::in_small_letters(heading.name));
   return found == kNames.end() ? sheet::name_from_words(heading.name) : found->second;
 }
@@ -82,7 +82,7 @@ bool is_label(const std::string& name) {
   const format::ColumnGroup* const column = format::find_column(name);
   return column != nullptr && column->words;
 }
-bool is_sense(const std::string& name) { return name.starts_with(kSensePrefix); }
+bool is_sense(const std::string& name) { return name.starts_with(kSenseOfAxis); }
 bool is_pure(const std::string& name) {
   const format::ColumnGroup* const column = format::find_column(name);
   return is_sense(name) || (column != nullptr && !column->words && *column->unit == '\0');

@@ -2,12 +2,12 @@
 #include "tools/import/tables/column_map.h"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 
 #include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
 #include "tools/format/units.h"
-#include "tools/import/tables/column_guess.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/csv.h"
@@ -128,8 +128,12 @@ std::string cell_of(const std::string& text, const MappedColumn& column, bool de
 
 /// True for a column of names ("point"): its name has no meaning in the format, and no cell is a number.
 bool holds_names(const DelimitedFile& file, const MappedColumn& column, std::size_t index) {
+  // dirX, vJ1: columns of an axis have numbers.
+  const auto is_axis = [](const std::string& word) {
+    return !word.empty() && word.size() <= 2 && std::isupper(static_cast<unsigned char>(word[0])) != 0;
+  };
   if (column.source.empty() || !column.unit.empty() || column.name.size() < 3 ||
-      format::find_column(column.name) != nullptr || Guess(SheetWishes{}).of_axis(column.name))
+      format::find_column(column.name) != nullptr || format::axis_column_named(column.name, is_axis))
     return false;
   return std::none_of(file.rows.begin(), file.rows.end(), [&](const std::vector<std::string>& row) {
     return number_cell(row[index], false) || number_cell(row[index], true);

@@ -11,7 +11,7 @@
 
 #include "tools/format/units.h"
 #include "tools/import/tables/column_guess.h"
-#include "tools/import/tables/sheet_words.h"
+#include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"

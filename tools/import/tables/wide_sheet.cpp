@@ -11,8 +11,8 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
-#include "tools/import/tables/sheet_words.h"
-#include "tools/import/tables/sign_words.h"
+#include "tools/import/words/sheet_words.h"
+#include "tools/import/words/sign_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"

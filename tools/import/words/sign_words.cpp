@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/sign_words.h"
+#include "tools/import/words/sign_words.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/import/tables/sheet_words.h"
+#include "tools/import/words/sheet_words.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -20,11 +20,9 @@ using WordSet = std::set<std::string, std::less<>>;
 
 /// Words before a nominal or an actual value, or behind it, without a meaning for the sign.
 const WordSet kBesideOperand = {
-    "x",     "y",         "z",   "a",          "b",         "c",          "u",     "v",
-    "w",     "position",  "pos", "positionen", "positions", "value",      "wert",  "werte",
-    "axis",  "achse",     "der", "die",        "das",       "des",        "the",   "values",
-    "von",   "of",        "maß", "mass",       "lage",      "koordinate", "punkt", "coordinate",
-    "point", "dimension", "m",   "p",          "value",     "stellung"};
+    "position", "pos",  "positionen", "positions", "value",      "wert",   "werte",     "axis",    "achse",
+    "der",      "die",  "das",        "des",       "the",        "values", "von",       "of",      "maß",
+    "mass",     "lage", "koordinate", "punkt",     "coordinate", "point",  "dimension", "stellung"};
 /// Words of a comparison or of a document: "Soll-Ist-Vergleich" states no sign.
 const WordSet kComparisons = {"vergleich", "comparison", "compare", "tabelle",  "table",     "protokoll",
                               "report",    "bericht",    "messung", "liste",    "list",      "daten",
@@ -66,7 +64,9 @@ bool says_actual(const std::string& word) {
 
 OperandRole role_of(const std::string& word) {
   static const WordSet kReferences = {"reference", "ref", "referenz", "referenzwert"};
-  if (kBesideOperand.contains(word)) return OperandRole::kAside;
+  const bool letter =
+      word.size() == 1 && std::string_view("xyzabcuvwmp").find(word[0]) != std::string_view::npos;
+  if (letter || kBesideOperand.contains(word)) return OperandRole::kAside;
   if (kReferences.contains(word)) return OperandRole::kReference;
   // X_soll, xist: the letter of an axis before the word.
   for (const bool cut : {false, true}) {

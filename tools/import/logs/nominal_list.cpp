@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/nominal_list.h"
+#include "tools/import/logs/nominal_list.h"
 
 #include <fmt/format.h>
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/sheet_words.h"
+#include "tools/import/words/sheet_words.h"
 
 #include <algorithm>
 #include <array>
