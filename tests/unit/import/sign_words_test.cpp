@@ -50,7 +50,11 @@ const Case kCases[] = {
     {"Abweichung = Ist minus Soll", kTitle, kActual},
     {"Vorzeichen: Ist - Soll", kTitle, kActual},
     {"Deviation = measured minus commanded", kTitle, kActual},
+    {"Abweichung = Maschine - Laser", kTitle, kNominal},
+    {"Abweichung = Laser - Maschine", kTitle, kActual},
     // Headings are about their column.
+    {"Abweichung (Soll-Ist) 1+ [um]", kHeading, kNominal},
+    {"Position error (cmd-act)", kHeading, kNominal},
     {"Soll-Ist X [um]", kHeading, kNominal},
     {"Soll-Ist", kHeading, kNominal},
     {"Abweichung X Soll\u2013Ist [um]", kHeading, kNominal},
@@ -77,7 +81,10 @@ const Case kCases[] = {
     {"1- [um]", kHeading, kNothing},
     {"Abw. - [\u00b5m]", kHeading, kNothing},
     {"Soll-Ist Soll X [mm]", kHeading, kNothing},
+    {"Abweichungen Portal 4 - Laser XL-80", kTitle, kNothing},
+    {"Abweichung X-Achse - Laser", kTitle, kNothing},
     // A sign that cannot be decided.
+    {"Abweichungen Maschine - Laser", kTitle, kUnclear},
     {"Soll-Ist-Abweichung X [um]", kHeading, kUnclear},
     {"Soll-Ist-Differenz", kTitle, kUnclear},
     {"Soll-Ist-Vergleich X [um]", kHeading, kUnclear},

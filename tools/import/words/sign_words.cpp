@@ -79,6 +79,12 @@ OperandRole role_of(const std::string& word) {
   return OperandRole::kNone;
 }
 
+/// A machine or an instrument instead of its position.
+bool is_instrument(const std::string& word) {
+  static const WordSet kWords = {"machine", "maschine", "laser", "tracker"};
+  return kWords.contains(word);
+}
+
 /// A word for a deviation or for its sign.
 bool says_deviation_or_sign(const std::string& word) {
   static const WordSet kWords = {"sign", "signs",  "convention", "konvention", "dx",     "dy",
@@ -197,7 +203,9 @@ class Difference {
     // "Soll-Ist-Abweichung" often means only the deviation of both.
     if (says_deviation_or_sign(next)) return turned ? SignSaid::kUnclear : SignSaid::kNothing;
     if (compound_) return turned ? SignSaid::kUnclear : SignSaid::kNothing;
-    if (place_ == SignPlace::kHeading || of_deviation_) return sign;
+    // "Abweichungen Maschine - Laser" may only list the two.
+    const bool list = is_instrument(list_[*left_].word) || is_instrument(list_[*right_].word);
+    if (place_ == SignPlace::kHeading || (of_deviation_ && !list)) return sign;
     return turned ? SignSaid::kUnclear : SignSaid::kNothing;
   }
 
@@ -227,6 +235,7 @@ class Difference {
       --at;
     if (at == 0) return;
     equals_ = list_[at - 1].kind == SignKind::kEquals;
+    defined_ = equals_ || list_[at - 1].kind == SignKind::kColon || list_[at - 1].kind == SignKind::kOpen;
     const bool opened = list_[at - 1].kind == SignKind::kOpen;
     negated_ = opened && at > 1 && list_[at - 2].kind == SignKind::kMinus &&
                (at == 2 || list_[at - 3].kind != SignKind::kWord);  // "1- (Soll-Ist)" is a run backward
@@ -270,13 +279,14 @@ class Difference {
     const bool spaced = minus.strong || (!minus.before && !minus.behind);
     if (!spaced || !of_deviation_ || !left_ || !right_) return false;
     if (a == OperandRole::kNone && b == OperandRole::kNone) return equals_;
-    return a != b;
+    return (defined_ || minus.strong) && a != b;
   }
 
   const std::vector<SignToken>& list_;
   std::size_t minus_;
   SignPlace place_;
   std::optional<std::size_t> left_, right_;
+  bool defined_ = false;  // the difference follows = : or a bracket
   bool equals_ = false, negated_ = false, compared_ = false;
   bool of_deviation_ = false, of_correction_ = false;
   mutable bool compound_ = false;
