@@ -106,8 +106,7 @@ TEST_P(SignWords, StateTheSignOrItsDoubt) {
 INSTANTIATE_TEST_SUITE_P(Texts, SignWords, testing::ValuesIn(kCases));
 
 /// The measured position at X = 100 mm with a deviation of 1.5 um, or the refusal.
-std::string read(const std::string& bytes, const std::string& sign = "") {
-  SheetWords words;
+std::string read(const std::string& bytes, const std::string& sign = "", SheetWords words = {}) {
   words.sign = sign;
   try {
     const SheetReading reading = read_as_sheet(bytes, "s.csv", words);
@@ -132,6 +131,15 @@ TEST(SheetSign, RemarksAndCellsOfWordsStateTheSignToo) {
   EXPECT_EQ(read("# Abweichung = Soll - Ist\nSoll X [mm];Abweichung X [um]\n100;1,5\n"), "99.9985");
   EXPECT_EQ(read("Soll X [mm];Abweichung X [um];Bemerkung\n100;1,5;Abweichung = Soll - Ist\n200;1;\n"),
             "99.9985");
+}
+
+TEST(SheetSign, SkippedLinesAndTheTitleOfTheFileStateTheSignToo) {
+  const std::string table = "Soll X [mm];Abw. X [um]\n100;1,5\n200;1\n";
+  SheetWords skip, second;
+  skip.skip = 1;
+  second.table = 2;
+  EXPECT_EQ(read("Abweichung = Soll - Ist\n" + table, "", skip), "99.9985");
+  EXPECT_EQ(read("Abweichung = Soll - Ist;\n" + table + "Lauf 2\n" + table, "", second), "99.9985");
 }
 
 TEST(SheetSign, AnUnclearSignIsRefusedWithTheOptionThatStatesIt) {

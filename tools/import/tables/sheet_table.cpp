@@ -207,6 +207,50 @@ void refuse_readings_without_position(const ImportTable& table, const Guess& gue
   }
 }
 
+/// Refuses deviations whose sign a text states, but not clearly.
+void refuse_unclear_signs(const std::vector<SheetColumn>& columns) {
+  for (const SheetColumn& column : columns)
+    if (column.use == SheetColumn::Use::kDeviation && !column.sign_text.empty())
+      throw text::InputError(column.sign_place, column.sign_text,
+                             "this text does not state clearly whether the deviations are actual - nominal "
+                             "or nominal - actual: give --sign actual-nominal or --sign nominal-actual");
+}
+
+/// Refuses positions and readings without a unit, with the options that state the units.
+void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                          const std::vector<SheetColumn>& columns, const Readings& readings,
+                          const Guess& guess) {
+  const text::Place heading{sheet.file, sheet.line[table.heading_row]};
+  std::string without, doubt;
+  bool other_than_deviation = false;  // one unit for all would decide the unit of the deviations as well
+  Words units;                        // suggested for the columns without one
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    const bool geometry = guess.is_axis(column.name) ||
+                          ((is_known_name(column.name) || readings.contain(column)) && wants_unit(column));
+    const bool deviation = column.use == SheetColumn::Use::kDeviation;
+    if (!wants_unit(column) || !column.unit.empty() || (!deviation && !geometry)) continue;
+    if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
+      throw text::InputError(heading, table.headings[k].text,
+                             "[" + unknown + "] is no known unit; known are " + format::known_units() +
+                                 "; convert the values to one of these units, and correct the heading");
+    const double largest = largest_value(sheet, table, k);
+    const std::string unit =
+        deviation ? unit_of_deviation(columns, column.name, largest) : unit_to_say(column.name, columns);
+    if (deviation) doubt += unit_doubt(column, table.headings[k].text, unit, largest);
+    other_than_deviation |= !deviation;
+    units.insert(unit);
+    without += fmt::format(" {} \"{}[{}]={}\"", deviation ? "--deviation" : "--column", column.name, unit,
+                           table.headings[k].text);
+  }
+  if (without.empty()) return;
+  const bool one = units.size() == 1 && (doubt.empty() || !other_than_deviation);
+  throw text::InputError(heading, "",
+                         "no unit: give it for " +
+                             (one ? "all (--unit " + *units.begin() + ") or for " : "") + "each, such as" +
+                             without + doubt);
+}
+
 /// The headings of readings whose cells are all empty: a template that was not filled in.
 std::string empty_readings(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns) {
   std::vector<std::string> found;
@@ -263,9 +307,6 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   ImportTable result{sheet.file, {}, {}};
   const Guess guess(wishes);
   const text::Place heading{sheet.file, sheet.line[table.heading_row]};
-  std::string without, doubt;
-  bool other_than_deviation = false;  // one unit for all would decide the unit of the deviations as well
-  Words units;                        // suggested for the columns without one
   // The same value in every row (--set) is a column too.
   std::vector<SheetColumn> all = columns;
   for (const MappedColumn& constant : wishes.constants)
@@ -275,38 +316,11 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                               [&](const SheetColumn& column) { return readings.contain(column); });
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
-    const bool geometry = guess.is_axis(column.name) ||
-                          ((is_known_name(column.name) || readings.contain(column)) && wants_unit(column));
-    const bool deviation = column.use == SheetColumn::Use::kDeviation;
-    if (wants_unit(column) && column.unit.empty() && (deviation || geometry)) {
-      const double largest = largest_value(sheet, table, k);
-      const std::string unit =
-          deviation ? unit_of_deviation(columns, column.name, largest) : unit_to_say(column.name, columns);
-      if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
-        throw text::InputError(heading, table.headings[k].text,
-                               "[" + unknown + "] is no known unit; known are " + format::known_units() +
-                                   "; convert the values to one of these units, and correct the heading");
-      if (deviation) doubt += unit_doubt(column, table.headings[k].text, unit, largest);
-      other_than_deviation |= !deviation;
-      units.insert(unit);
-      without += fmt::format(" {} \"{}[{}]={}\"", deviation ? "--deviation" : "--column", column.name, unit,
-                             table.headings[k].text);
-    }
     if (column.use == SheetColumn::Use::kLeft) continue;
     measured |= column.use == SheetColumn::Use::kDeviation || readings.contain(column);
   }
-  for (const SheetColumn& column : columns)
-    if (column.use == SheetColumn::Use::kDeviation && !column.sign_text.empty())
-      throw text::InputError(column.sign_place, column.sign_text,
-                             "this text does not state clearly whether the deviations are actual - nominal "
-                             "or nominal - actual: give --sign actual-nominal or --sign nominal-actual");
-  if (!without.empty())
-    throw text::InputError(heading, "",
-                           "no unit: give it for " +
-                               (units.size() == 1 && (doubt.empty() || !other_than_deviation)
-                                    ? "all (--unit " + *units.begin() + ") or for "
-                                    : "") +
-                               "each, such as" + without + doubt);
+  refuse_unclear_signs(columns);
+  refuse_without_units(sheet, table, columns, readings, guess);
   if (const std::string empty = measured ? "" : empty_readings(table, columns); !empty.empty())
     throw text::InputError(heading, "",
                            "the columns of readings are empty (" + empty +
