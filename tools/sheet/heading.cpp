@@ -143,6 +143,31 @@ bool is_second_line(const Sheet& sheet, std::size_t row) {
   return wanting;
 }
 
+/// Rows that have numbers, but more words: a list of distances between named points.
+void refuse_rows_of_words(const Sheet& sheet) {
+  std::size_t first = sheet.rows.size(), rows = 0;
+  std::string number;
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
+    const auto& cells = sheet.rows[row];
+    const auto found = std::find_if(cells.begin(), cells.end(),
+                                    [&](const std::string& cell) { return is_numeric(cell, sheet); });
+    if (found == cells.end()) continue;
+    ++rows;
+    if (first < row) continue;
+    first = row;
+    number = *found;
+  }
+  if (2 * rows <= sheet.rows.size()) return;
+  throw text::InputError({sheet.file, sheet.line[first]}, text::joined(sheet.rows[first], "; ").substr(0, 40),
+                         "this row has one number (" + number + ") and " +
+                             std::to_string(sheet.rows[first].size() - 1) +
+                             " cells of words: a row of measured data needs the positions of the axes as "
+                             "numbers. If the words name "
+                             "points, add columns with the positions of the points (X[mm], Y[mm] and so on); "
+                             "for distances between "
+                             "points use the columns same, from and distance[mm] (tools/docs/touch.md)");
+}
+
 /// No row of data: the message names the probable cause.
 [[noreturn]] void refuse_without_numbers(const Sheet& sheet) {
   const std::string none = "no row of this table contains numbers";
@@ -161,6 +186,7 @@ bool is_second_line(const Sheet& sheet, std::size_t row) {
   if (2 * colons > sheet.rows.size())
     throw text::InputError({sheet.file, sheet.line.front()}, ":",
                            "a colon cannot separate columns; save the table with semicolons or tabs");
+  refuse_rows_of_words(sheet);
   throw text::InputError(
       {sheet.file, sheet.line.front()}, "",
       none + (sheet.sheets.size() > 1

@@ -68,7 +68,12 @@ void keep_table(Sheet& sheet, std::optional<std::size_t> number) {
                                        found));
   if (*number < 1 || *number > first.size())
     throw text::InputError({sheet.file, 0}, std::to_string(*number),
-                           fmt::format("the file has no table of this number: it has {}", found));
+                           "the file has no table of this number: it has " + found);
+  // A title at the top of the file may state the sign of the deviations of all its tables.
+  std::size_t data = 0;
+  while (data < sheet.rows.size() && !is_row_of_data(sheet, data)) ++data;
+  for (std::size_t row = 0; *number > 1 && row + 1 < data; ++row)
+    sheet.remarks.push_back({sheet.line[row], text::joined(sheet.rows[row], " ")});
   const auto part = [&](auto& list) {
     const auto at = [&](std::size_t table) {
       return table < first.size() ? list.begin() + static_cast<std::ptrdiff_t>(first[table]) : list.end();

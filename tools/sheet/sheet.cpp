@@ -55,9 +55,10 @@ bool are_numbered(const std::vector<Line>& lines, const std::vector<Line>& signe
   });
 }
 
-/// The lines of a table without remarks. `notes`: remarks that could be rows are named there.
+/// The lines of a table without remarks. `sheet`: gets the remarks, and a note for each remark that could be
+/// a row.
 std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std::string& comment,
-                           std::vector<std::string>* notes = nullptr) {
+                           Sheet* sheet = nullptr) {
   std::vector<Line> lines, numbered;
   std::size_t number = 0;
   for (std::size_t at = 0; at < text.size();) {
@@ -67,8 +68,10 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
     at = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
     ++number;
     const std::string bare = text::trimmed(line);
+    if (number <= skip && sheet != nullptr && !bare.empty()) sheet->remarks.push_back({number, bare});
     if (number <= skip || bare.empty()) continue;
     const bool remark = !comment.empty() && bare.starts_with(comment) && !begins_with_error_value(bare);
+    if (remark && sheet != nullptr) sheet->remarks.push_back({number, bare.substr(comment.size())});
     if (!remark)
       lines.push_back({line, number});
     else if (comment == "#" && number_of_row(bare) > 0)
@@ -82,10 +85,10 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
                earlier);
     return all;
   }
-  for (std::size_t k = 0; notes != nullptr && k < numbered.size() && k < 5; ++k)
-    notes->push_back(
-        fmt::format("line {} begins with # and is left out: \"{}\"; is it a row? (--comment none)",
-                    std::to_string(numbered[k].number), text::trimmed(numbered[k].text).substr(0, 30)));
+  for (std::size_t k = 0; sheet != nullptr && k < numbered.size() && k < 5; ++k)
+    sheet->notes.push_back(
+        "line " + std::to_string(numbered[k].number) + " begins with # and is left out: \"" +
+        text::trimmed(numbered[k].text).substr(0, 30) + "\"; is it a row? (--comment none)");
   return lines;
 }
 
@@ -229,14 +232,21 @@ void guess_decimal(Sheet& sheet) {
         case DecimalSign::kNeither:
           break;
       }
-  if (point > 0 && comma > 0)
+  if (point > 0 && comma > 0) {
+    const bool few_commas = comma < point;
+    const auto count = [](std::size_t cells) {
+      return std::to_string(cells) + (cells == 1 ? " cell" : " cells");
+    };
     throw text::InputError(
-        comma < point ? at_comma : at_point, comma < point ? comma_word : point_word,
-        std::string("a decimal ") + (comma < point ? "comma" : "point") + " here, a decimal " +
-            (comma < point ? "point" : "comma") + " in line " +
-            std::to_string((comma < point ? at_point : at_comma).line) + " (" +
-            (comma < point ? point_word : comma_word) +
-            "): give the decimal sign (--decimal comma or point), the other cells are then refused");
+        few_commas ? at_comma : at_point, few_commas ? comma_word : point_word,
+        std::string("a decimal ") + (few_commas ? "comma" : "point") + " here, a decimal " +
+            (few_commas ? "point" : "comma") + " in line " +
+            std::to_string((few_commas ? at_point : at_comma).line) + " (" +
+            (few_commas ? point_word : comma_word) + "); " + count(comma) + " with a comma, " + count(point) +
+            " with a point: write all numbers of the file with one decimal sign (find and replace); "
+            "--decimal comma or "
+            "point helps only if the other cells are in columns that are left out (--leave)");
+  }
   // Where each sign could part thousands as well ("1,234") the one that is there is taken for the decimal
   // sign.
   sheet.decimal_comma = comma > 0 || (point == 0 && either_comma > either_point);
@@ -283,8 +293,10 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
                     std::to_string(read.hidden_rows)));
   std::vector<std::vector<char>> is_number;
   for (std::size_t i = 0; i < read.rows.size(); ++i) {
-    if (read.line[i] <= format.skip) continue;
-    if (is_remark(read.rows[i].front(), format.comment)) continue;
+    if (read.line[i] <= format.skip || is_remark(read.rows[i].front(), format.comment)) {
+      sheet.remarks.push_back({read.line[i], text::joined(read.rows[i], " ")});
+      continue;
+    }
     sheet.rows.push_back(std::move(read.rows[i]));
     sheet.line.push_back(read.line[i]);
     is_number.push_back(std::move(read.is_number[i]));
@@ -336,6 +348,33 @@ const char* separator_word(char separator) {
   }
 }
 
+namespace {
+
+/// Refuses files that only have the name of a table: pages and documents that programs save as .xls.
+void refuse_document(const std::string& text, const std::string& file) {
+  const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  const std::string head = text::in_small_letters(text.substr(begin, 2000));
+  const auto begins = [&](const char* with) { return head.starts_with(with); };
+  const std::string save =
+      ": open it in the spreadsheet program, save it as .xlsx or as CSV, and import that file";
+  const bool xml = begins("<?xml") || begins("<workbook");
+  if (xml && head.find("urn:schemas-microsoft-com:office:spreadsheet") != std::string::npos)
+    throw text::InputError({file, 1}, "", "a workbook as XML (XML Spreadsheet 2003)" + save);
+  if (begins("<!doctype html") || begins("<html") || begins("<table") || begins("<head") || begins("<meta") ||
+      (xml && head.find("<html") != std::string::npos))
+    throw text::InputError(
+        {file, 1}, "",
+        "a web page (HTML) with a table, as some programs save it with the ending .xls" + save);
+  if (begins("%pdf"))
+    throw text::InputError({file, 1}, "",
+                           "a document (PDF), not a table: export the table as .xlsx or as CSV");
+  if (begins("{\\rtf"))
+    throw text::InputError({file, 1}, "",
+                           "a text document (RTF), not a table: save the table as .xlsx or as CSV");
+}
+
+}  // namespace
+
 Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetFormat& format) {
   Sheet sheet;
   sheet.file = file;
@@ -349,7 +388,8 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     if (text.find('\0') != std::string::npos)
       throw text::InputError({file, 0}, "",
                              "the file has bytes of value 0: it is neither a text nor a workbook (.xlsx)");
-    std::vector<Line> lines = lines_of(text, format.skip, format.comment, &sheet.notes);
+    refuse_document(text, file);
+    std::vector<Line> lines = lines_of(text, format.skip, format.comment, &sheet);
     const char said = said_separator(lines);
     sheet.separator = format.separator != 0 ? format.separator : said != 0 ? said : separator_of_lines(lines);
     split(sheet, lines);

@@ -21,6 +21,12 @@ struct SheetFormat {
                                       // with rows
 };
 
+/// A line of text that is no row of the table.
+struct Remark {
+  std::size_t line = 0;
+  std::string text;
+};
+
 /// The cells of a table, and the settings with which it was read.
 struct Sheet {
   std::string file;
@@ -38,6 +44,7 @@ struct Sheet {
   std::vector<std::size_t> line;               // line number of each row, from 1
   std::vector<std::size_t> written;            // number of cells of each row in the text; empty for a
                                                // workbook
+  std::vector<Remark> remarks;                 // comments, and lines at the top that were skipped
   std::vector<std::string> notes;              // notes for the user about rows that were left out
 };
 

@@ -72,17 +72,22 @@ TEST(PrinterFile, LogOfKlipperHasTimesAndTemperatures) {
       "// probe at 30.000,40.000 is z=2.012500\nprobe at 30.000,40.000 is z=2.900000 [discarded]\n"
       "Stats 1003.5: gcodein=0  heater_bed: target=60 temp=60.1 pwm=0.2 raspberry_pi: temp=48.5\n"
       "probe: at 130.000,40.000 bed will contact at z=-0.003000\n";
+  PrinterOptions nozzle;
+  nozzle.offset_mm = {0, 0};
   EXPECT_EQ(
-      read(log),
+      read(log, nozzle),
       "X[mm],Y[mm],Z[mm],on,t[s],T_heater_bed[degC],T_raspberry_pi[degC]\n30,40,2.0125,bed,0,59.8,48.3\n"
       "130,40,-0.003,bed,3,60.1,48.5\n");
-  EXPECT_EQ(read_printer_file(log, "k.log", {}).left_out, 1U);
+  EXPECT_EQ(read_printer_file(log, "k.log", nozzle).left_out, 1U);
   // A touch before the first state has no time: no column of times at all.
-  EXPECT_EQ(read("probe at 1.000,2.000 is z=3.000000\n" + log).substr(0, 21), "X[mm],Y[mm],Z[mm],on\n");
+  EXPECT_EQ(read("probe at 1.000,2.000 is z=3.000000\n" + log, nozzle).substr(0, 21),
+            "X[mm],Y[mm],Z[mm],on\n");
 }
 
 TEST(PrinterFile, LogOfMarlin) {
-  EXPECT_EQ(read("Bed X: 100.00 Y: 50.50 Z: -0.02\nok\nBed X:10 Y:20 Z:0.11\n"),
+  PrinterOptions nozzle;
+  nozzle.offset_mm = {0, 0};
+  EXPECT_EQ(read("Bed X: 100.00 Y: 50.50 Z: -0.02\nok\nBed X:10 Y:20 Z:0.11\n", nozzle),
             "X[mm],Y[mm],Z[mm],on\n100,50.5,-0.02,bed\n10,20,0.11,bed\n");
 }
 
@@ -120,6 +125,19 @@ TEST(PrinterFile, TouchesOfTheProbeArePositionsLessItsOffset) {
               HasSubstr("state it with --offset"));
 }
 
+TEST(PrinterFile, TouchesOfAProbeWithoutItsOffsetAreRefused) {
+  for (const char* text :
+       {"probe: at 30.0,40.0 bed will contact at z=0.5\n", "Bed X: 30.0 Y: 40.0 Z: 0.5\n",
+        "[printer]\nkinematics = cartesian\nprobe: at 30.0,40.0 bed will contact at z=0.5\n",
+        "RepRapFirmware height map file v2\nxmin,xmax,ymin,ymax,radius,xspacing,yspacing,xnum,ynum\n"
+        "0,10,0,0,-1,10,10,2,1\n0.1,0.2\n"})
+    EXPECT_THAT(read(text), HasSubstr("give --offset=X,Y in mm")) << text;
+  EXPECT_THAT(read(kConfiguration.substr(kConfiguration.find("#*#"))), HasSubstr("give --offset=X,Y in mm"));
+  // Klipper's default of a probe without x_offset is 0.
+  EXPECT_EQ(read("[probe]\nz_offset = 2\nprobe: at 30.0,40.0 bed will contact at z=0.5\n"),
+            "X[mm],Y[mm],Z[mm],on\n30,40,0.5,bed\n");
+}
+
 TEST(PrinterFile, LevellingAndRepeatsAreNoSurveyOfTheBed) {
   EXPECT_EQ(read("probe at 0,0 is z=5\nprobe at 9,0 is z=6\n// Gantry-relative probe points:\n"
                  "probe at 1,2 is z=3\nprobe at 2,2 is z=4\n"),
@@ -143,10 +161,13 @@ TEST(PrinterFile, PointsOfAHeightMapHaveItsSpacing) {
       "RepRapFirmware height map file "
       "v2\naxis0,axis1,min0,max0,min1,max1,radius,spacing0,spacing1,num0,num1\n"
       "X,Y,20.00,180.00,0.00,0.00,-1.00,50.00,50.00,4,1\n0.1,0.2,0.3,0.4\n";
-  EXPECT_EQ(read(map), "X[mm],Y[mm],Z[mm],on\n20,0,0.1,bed\n70,0,0.2,bed\n120,0,0.3,bed\n170,0,0.4,bed\n");
+  PrinterOptions nozzle;
+  nozzle.offset_mm = {0, 0};
+  EXPECT_EQ(read(map, nozzle),
+            "X[mm],Y[mm],Z[mm],on\n20,0,0.1,bed\n70,0,0.2,bed\n120,0,0.3,bed\n170,0,0.4,bed\n");
   std::string wrong = map;
   wrong.replace(wrong.find("50.00,50.00"), 5, "90.00");
-  EXPECT_THAT(read(wrong), HasSubstr("reach beyond the maximum"));
+  EXPECT_THAT(read(wrong, nozzle), HasSubstr("reach beyond the maximum"));
 }
 
 TEST(PrinterFile, AMeshThatWouldBeMirroredIsRefused) {
@@ -169,14 +190,17 @@ TEST(PrinterFile, HeightMapsOfBothVersions) {
       title +
       "axis0,axis1,min0,max0,min1,max1,radius,spacing0,spacing1,num0,num1\n"
       "X,Y,5.00,25.00,5.00,15.00,-1.00,10.00,10.00,3,2\n  0.100, -0.050,  0.000\n -0.000,  0.200,      0\n";
-  EXPECT_EQ(read(present),
+  PrinterOptions nozzle;
+  nozzle.offset_mm = {0, 0};
+  EXPECT_EQ(read(present, nozzle),
             "X[mm],Y[mm],Z[mm],on\n5,5,0.1,bed\n15,5,-0.05,bed\n25,5,0,bed\n5,15,-0,bed\n15,15,0.2,bed\n");
-  EXPECT_EQ(read_printer_file(present, "h.csv", {}).not_probed, 1U);
-  EXPECT_EQ(read(title +
-                 "xmin,xmax,ymin,ymax,radius,xspacing,yspacing,xnum,ynum\n0,10,0,0,-1,10,10,2,1\n0.1,0.2\n"),
-            "X[mm],Y[mm],Z[mm],on\n0,0,0.1,bed\n10,0,0.2,bed\n");
-  EXPECT_THAT(read(title + "axis0\nX\n"), HasSubstr("lacks this value"));
-  EXPECT_THAT(read(present.substr(0, present.size() - 26)), HasSubstr("fewer than the 2 rows"));
+  EXPECT_EQ(read_printer_file(present, "h.csv", nozzle).not_probed, 1U);
+  EXPECT_EQ(
+      read(title + "xmin,xmax,ymin,ymax,radius,xspacing,yspacing,xnum,ynum\n0,10,0,0,-1,10,10,2,1\n0.1,0.2\n",
+           nozzle),
+      "X[mm],Y[mm],Z[mm],on\n0,0,0.1,bed\n10,0,0.2,bed\n");
+  EXPECT_THAT(read(title + "axis0\nX\n", nozzle), HasSubstr("lacks this value"));
+  EXPECT_THAT(read(present.substr(0, present.size() - 26), nozzle), HasSubstr("fewer than the 2 rows"));
 }
 
 }  // namespace

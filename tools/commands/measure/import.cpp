@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
 #include "tools/import/kinds.h"
+#include "tools/model/measurement_names.h"
+#include "tools/text/error.h"
 
 namespace vernier::commands::import_cli {
 namespace {
@@ -13,7 +17,51 @@ constexpr AddKind kKinds[] = {
 #undef X
 };
 
+/// A word with quotes for a shell, if it needs them.
+std::string in_quotes(const std::string& word) {
+  if (!word.empty() && word.find_first_of(" \t'\"$&;*?()[]<>|`\\#!~") == std::string::npos) return word;
+  if (word.find_first_of("\"$`\\!") == std::string::npos) return "\"" + word + "\"";
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 }  // namespace
+
+std::string call_of(const CLI::App& kind, const std::vector<std::string>& without) {
+  std::string call = "vernier import " + kind.get_name(), options;
+  for (const CLI::Option* const option : kind.get_options()) {
+    if (option->count() == 0) continue;
+    const std::string name = "--" + (option->get_lnames().empty() ? "" : option->get_lnames().front());
+    if (std::find(without.begin(), without.end(), name) != without.end()) continue;
+    const bool flag = option->get_expected_max() == 0;
+    if (flag) options += " " + name;
+    for (const std::string& value : option->results()) {
+      if (flag) continue;
+      if (option->get_positional())
+        call += " " + in_quotes(value);
+      else
+        options += " " + name + (value.starts_with("-") ? "=" : " ") + in_quotes(value);
+    }
+  }
+  return call + options;
+}
+
+void require_axes(const importer::ImportTable& table, const model::Machine& machine, const CLI::App& kind,
+                  const std::string& hint) {
+  std::string first, set;
+  for (const model::Axis& axis : machine.axes) {
+    if (table.find(axis.name) != nullptr) continue;
+    if (first.empty()) first = axis.name;
+    set += " " + model::set_of_axis(axis);
+  }
+  if (first.empty()) return;
+  const CLI::Option* const output = kind.get_option_no_throw("--output");
+  const bool named = output != nullptr && output->count() > 0;
+  throw text::InputError({table.file, 0}, first,
+                         hint + call_of(kind, {"--output", "--json"}) + set + " -o " +
+                             (named ? in_quotes(output->results().front()) : "NEW.csv"));
+}
 
 void add_import_output(CLI::App& kind, ImportOutput& output) {
   kind.add_option("-o,--output", output.csv_path, "Measurement file to write (CSV)")

@@ -2,6 +2,10 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
+
+#include "tools/import/tables/column_map.h"
+#include "tools/model/machine.h"
 
 namespace vernier::commands::import_cli {
 
@@ -12,6 +16,15 @@ struct ImportOutput {
 
 /// Adds the options `-o FILE` (required) and `--json FILE` to a kind of import.
 void add_import_output(CLI::App& kind, ImportOutput& output);
+
+/// Returns the call of a kind of import as the user wrote it, with quotes for a shell: "vernier import table
+/// laser.xlsx --sheet "Achse Y"". `without`: options that are left out, for example "--json".
+std::string call_of(const CLI::App& kind, const std::vector<std::string>& without);
+
+/// Throws InputError if a table has no column for an axis of the machine. The message has the call of the
+/// user with the option that adds a constant position. `hint`: text before this call.
+void require_axes(const importer::ImportTable& table, const model::Machine& machine, const CLI::App& kind,
+                  const std::string& hint);
 
 // Each kind of import (instrument file format) has one function of this type. The function of a kind of
 // import adds the options and the callback to the subcommand.

@@ -71,9 +71,11 @@ void add_printer_kind(CLI::App& kind) {
                   "name of the saved mesh; default: the only saved mesh");
   kind.add_option("--on", arguments->options.artefact, "name of the <artefact> of the bed")
       ->capture_default_str();
-  kind.add_option("--offset", arguments->offset,
-                  "offset of the probe from the nozzle, X,Y in mm, for a mesh, a height map or a log with "
-                  "positions of the probe; default: the offset in the configuration of the file, else 0")
+  kind.add_option(
+          "--offset", arguments->offset,
+          "offset of the probe from the nozzle, X,Y in mm (--offset=-38,-8), for a mesh, a height map "
+          "or a log with positions of the probe; default: the offset in the configuration of the file; "
+          "required if the file has none")
       ->delimiter(',')
       ->expected(2);
   kind.add_option("--series", arguments->options.series,

@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
 #include "tools/format/columns.h"
+#include "tools/import/logs/nominal_list.h"
 #include "tools/import/tables/delimited.h"
 #include "tools/import/tables/machine_log.h"
 #include "tools/import/tables/survey.h"
@@ -25,7 +26,8 @@ struct SurveyArguments {
   std::vector<std::string> columns, constants;
   std::size_t skip = 0, check_every = 0;
   double radius_mm = 0;
-  std::string log;  // of the machine, tracker only
+  std::string log;      // of the machine, tracker only
+  std::string nominal;  // list of the positions of the axes, tracker only
   importer::LogOptions log_options;
   bool header = false, fixed_camera = false;
   ImportOutput output;
@@ -95,11 +97,33 @@ void print_pairing(std::FILE* out, const importer::LoggedTable& logged, const st
                logged.dwells[j].begin_s, logged.dwells[j].end_s);
 }
 
-void write_survey(const std::string& kind, const SurveyArguments& arguments,
-                  const importer::ImportTable& table, const std::optional<importer::LoggedTable>& logged) {
+void print_joined(std::FILE* out, const importer::NominalTable& joined, const std::string& list) {
+  fmt::print(out, "{} points joined with the positions of {} by {}", joined.table.line.size(), list,
+             joined.names.empty() ? "row number" : "the names in " + joined.names);
+  if (joined.rms_mm)
+    fmt::print(out, "; rms distance of the points from the positions of the nominal machine: {:.3g} mm",
+               *joined.rms_mm);
+  fmt::print(out, "\n");
+  if (joined.unused > 0) fmt::print(out, "{} positions of {} have no point\n", joined.unused, list);
+}
+
+/// The table with the positions of the axes, and where they came from.
+struct Survey {
+  importer::ImportTable table;
+  std::optional<importer::LoggedTable> logged;
+  std::optional<importer::NominalTable> joined;
+};
+
+void write_survey(const std::string& kind, const SurveyArguments& arguments, const Survey& survey) {
+  const auto& [table, logged, joined] = survey;
   const std::string text = importer::measurement_csv(table);
   Json result = summary(kind, table);
   if (logged) result["pairing"] = pairing_json(*logged);
+  if (joined)
+    result["nominal"] = {{"file", arguments.nominal},
+                         {"names", joined->names.empty() ? Json(nullptr) : Json(joined->names)},
+                         {"n_unused", joined->unused},
+                         {"rms_mm", text::or_null(joined->rms_mm)}};
   if (!arguments.machine.empty()) {
     // The same reading that a fit will do, with the machine's axes and inputs.
     const model::Measurement read =
@@ -110,32 +134,51 @@ void write_survey(const std::string& kind, const SurveyArguments& arguments,
   text::write_file(arguments.output.csv_path, text);
   write_json(arguments.output.json_path, result);
   if (logged) print_pairing(human_stream(arguments.output.json_path), *logged, arguments.file);
+  if (joined) print_joined(human_stream(arguments.output.json_path), *joined, arguments.nominal);
   fmt::print(human_stream(arguments.output.json_path), "{}: {} rows ({} fit, {} check)\n",
              arguments.output.csv_path, table.line.size(), result["n_fit"].get<std::size_t>(),
              result["n_check"].get<std::size_t>());
 }
 
 void run_survey(const std::string& kind_name, const SurveyArguments& arguments, const CLI::App& kind) {
-  importer::ImportTable table = importer::mapped_table(sheet::utf8_text(text::read_file(arguments.file)),
-                                                       arguments.file, map_of(arguments, kind));
+  Survey survey;
+  importer::ImportTable& table = survey.table;
+  table = importer::mapped_table(sheet::utf8_text(text::read_file(arguments.file)), arguments.file,
+                                 map_of(arguments, kind));
   if (kind_name == "tracker")
     importer::finish_tracker(table);
   else if (kind_name == "camera")
     importer::finish_camera(table, !arguments.fixed_camera);
   else
     importer::finish_probe(table, arguments.radius_mm);
-  std::optional<importer::LoggedTable> logged;
-  if (!arguments.log.empty()) {
-    if (arguments.machine.empty())
+  for (const auto& [option, file] :
+       {std::pair("--log", arguments.log), std::pair("--nominal", arguments.nominal)})
+    if (!file.empty() && arguments.machine.empty())
       throw text::InputError(
-          {}, "--log",
+          {}, option,
           "this option requires --machine: the machine file states the axis columns and the positions");
-    logged = importer::with_log(table, text::read_file(arguments.log), arguments.log,
-                                model::read_machine(arguments.machine), arguments.log_options);
-    table = logged->table;
+  if (!arguments.log.empty()) {
+    survey.logged = importer::with_log(table, text::read_file(arguments.log), arguments.log,
+                                       model::read_machine(arguments.machine), arguments.log_options);
+    table = survey.logged->table;
   }
+  if (!arguments.nominal.empty()) {
+    survey.joined =
+        importer::with_nominal(table, text::read_file(arguments.nominal), arguments.nominal,
+                               model::read_machine(arguments.machine), arguments.log_options.tolerance_mm);
+    table = survey.joined->table;
+  }
+  if (!arguments.machine.empty())
+    require_axes(table, model::read_machine(arguments.machine), kind,
+                 std::string("no column of the table is the position of this axis. ") +
+                     (kind_name == "tracker" ? "If the positions are in another file, give --nominal FILE (a "
+                                               "list with the names or in the order of the points) or --log "
+                                               "FILE (a log with times). "
+                                             : "") +
+                     "If a column has the position, give --column with the name of the axis; if the axis did "
+                     "not move, give its position: ");
   if (arguments.check_every > 0) importer::set_roles(table, arguments.check_every);
-  write_survey(kind_name, arguments, table, logged);
+  write_survey(kind_name, arguments, survey);
 }
 
 void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& arguments) {
@@ -177,15 +220,20 @@ void add_tracker_kind(CLI::App& kind) {
                   "log of the machine (CSV: t and all axes); the command pairs each point with a dwell of "
                   "the machine, by order, distances and times; requires --machine")
       ->type_name(kReads);
+  kind.add_option("--nominal", arguments->nominal,
+                  "list of the positions of the axes (table with a heading and a unit for each axis); the "
+                  "command joins it by the names of the points, or by row number; requires --machine")
+      ->type_name(kReads)
+      ->excludes("--log");
   kind.add_option("--dwell", log.dwell_s, "--log: least standstill, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   kind.add_option("--still", log.still, "--log: an axis is at rest if it stays within this range, mm or deg")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  kind.add_option(
-          "--tolerance", log.tolerance_mm,
-          "--log: largest permitted difference between measured and nominal distance of two points, mm")
+  kind.add_option("--tolerance", log.tolerance_mm,
+                  "--log, --nominal: largest permitted difference between measured and nominal distance of "
+                  "two points, mm")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   kind.footer(

@@ -41,7 +41,8 @@ void print_columns(std::FILE* out, const importer::SheetReading& reading) {
                importer::becomes(columns[k]), columns[k].why);
   for (const importer::SheetColumn& column : columns)
     if (column.turned)
-      fmt::print(out, "deviation of {}: labelled nominal - actual, its sign is reversed\n", column.name);
+      fmt::print(out, "deviation of {}: {} nominal - actual, its sign is reversed\n", column.name,
+                 wishes.turned ? "given as" : "labelled");
   for (const std::string& note : sheet.notes) fmt::print(out, "note: {}\n", note);
 }
 
@@ -55,7 +56,7 @@ void print_rows(std::FILE* out, const std::string& csv) {
   }
 }
 
-void run_table(const TableArguments& arguments) {
+void run_table(const TableArguments& arguments, const CLI::App& kind) {
   importer::SheetWishes wishes;
   if (!arguments.profile.empty())
     importer::read_sheet_profile(wishes, text::read_file(arguments.profile), arguments.profile);
@@ -77,6 +78,12 @@ void run_table(const TableArguments& arguments) {
       throw;
     }
   }();
+  if (!arguments.machine.empty())
+    require_axes(
+        read, model::read_machine(arguments.machine), kind,
+        "no column of the table is the position of this axis. If a column has this position under "
+        "another heading, give --column \"NAME[unit]=HEADING\" with the name of the axis; if the axis "
+        "did not move, give its position: ");
   if (arguments.check_every > 0) importer::set_roles(read, arguments.check_every);
   const std::string csv = importer::measurement_csv(read);
   Json result = {{"kind", "table"},
@@ -138,6 +145,9 @@ void add_table_kind(CLI::App& kind) {
       ->allow_extra_args(false);
   kind.add_flag("--one-motion", arguments->words.one_motion,
                 "columns of several axes side by side are poses of all axes, not several tables");
+  kind.add_option("--sign", arguments->words.sign,
+                  "sign of all deviations of the table, if its texts do not state the sign clearly")
+      ->check(CLI::IsMember({"actual-nominal", "nominal-actual"}));
   kind.add_option("--unit", arguments->words.unit,
                   "unit of the lengths and angles whose heading has no unit");
   kind.add_option("--separator", arguments->words.separator, "default: detected and printed")
@@ -178,7 +188,7 @@ void add_table_kind(CLI::App& kind) {
       "the heading of a deviation inverts its sign, with a note. The command prints the detected settings; "
       "with\n"
       "--preview it writes no file.");
-  kind.callback([arguments] { run_table(*arguments); });
+  kind.callback([arguments, &kind] { run_table(*arguments, kind); });
 }
 
 }  // namespace vernier::commands::import_cli

@@ -170,6 +170,24 @@ class Mesh {
   const std::string& file_;
 };
 
+/// The file states the points that a probe touched, and not the offset of the probe.
+[[noreturn]] void refuse_without_offset(const std::string& file) {
+  throw text::InputError(
+      {file, 0}, "--offset",
+      "the file states the points that the probe touched, but not the offset of the probe from the nozzle: "
+      "give --offset=X,Y in mm (Klipper: x_offset and y_offset of the configuration; Marlin: M851; "
+      "RepRapFirmware: G31), or --offset=0,0 if the nozzle itself touches");
+}
+
+/// True if the file has the configuration of a probe: without x_offset and y_offset its offset is then 0.
+bool configures_probe(const std::map<std::string, Section>& sections) {
+  return std::any_of(sections.begin(), sections.end(), [](const auto& one) {
+    return !one.first.starts_with(kMesh) &&
+           (one.second.contains("x_offset") || one.second.contains("y_offset") ||
+            one.second.contains("z_offset"));
+  });
+}
+
 /// Offset of the probe in the configuration, if it has one. Throws InputError if two sections give different
 /// offsets: nothing in the file says with which probe the mesh was measured.
 std::array<double, 2> offset_in(const std::map<std::string, Section>& sections, const std::string& file) {
@@ -439,7 +457,13 @@ class ProbeLog {
                              "applies: omit --offset");
     result_.offset_mm = {};
     if (!of_probe) return;
-    result_.offset_mm = options_.offset_mm ? *options_.offset_mm : offset_in(sections_of(text), file_);
+    if (options_.offset_mm) {
+      result_.offset_mm = *options_.offset_mm;
+    } else {
+      const auto sections = sections_of(text);
+      result_.offset_mm = offset_in(sections, file_);
+      if (!configures_probe(sections)) refuse_without_offset(file_);
+    }
     for (Touch& one : touches_)
       for (std::size_t k = 0; one.of_probe && k < 2; ++k) one.axes[k] -= result_.offset_mm[k];
   }
@@ -513,6 +537,7 @@ PrinterFile read_printer_file(const std::string& text, const std::string& file,
   result.offset_mm = options.offset_mm.value_or(std::array<double, 2>{});
   if (text.starts_with(kHeightMap)) {
     result.kind = PrinterFile::Kind::kHeightMap;
+    if (!options.offset_mm) refuse_without_offset(file);
     add_height_map(text, file, result.offset_mm, result, touches);
   } else if (text.find("probe at ") == std::string::npos && text.find("probe: at ") == std::string::npos &&
              text.find('[' + std::string(kMesh)) != std::string::npos) {
@@ -520,6 +545,9 @@ PrinterFile read_printer_file(const std::string& text, const std::string& file,
     result.kind = PrinterFile::Kind::kSavedMesh;
     result.name = mesh_name(sections, file, options.profile);
     if (!options.offset_mm) result.offset_mm = offset_in(sections, file);
+    const bool alone = std::all_of(sections.begin(), sections.end(),
+                                   [](const auto& one) { return one.first.starts_with(kMesh); });
+    if (!options.offset_mm && alone) refuse_without_offset(file);
     touches = Mesh(sections, file, result.name).touches(result.offset_mm);
   } else {
     touches = ProbeLog(result, file, options).read(text);

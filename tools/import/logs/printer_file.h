@@ -13,7 +13,7 @@ struct PrinterOptions {
   std::string profile;           // name of a saved mesh; empty: the only mesh of the file, or "default"
   std::string artefact = "bed";  // artefact that the nozzle or the probe touched
   std::optional<std::array<double, 2>> offset_mm;  // position of the probe minus position of the nozzle, X
-                                                   // and Y; default: the value in the file, otherwise 0
+                                                   // and Y; default: the value in the file
   std::optional<double> u_um;                      // standard uncertainty of a touch; no value: the table has
                                                    // no column u
   std::optional<std::size_t> series;               // number of the survey in a log with several surveys, from
@@ -38,7 +38,8 @@ struct PrinterFile {
 ///   or of Marlin ("Bed X: X Y: Y Z: Z"),
 /// - a height map of RepRapFirmware (heightmap.csv, version 2).
 /// Meshes, height maps, Marlin's G30 and Klipper's newer line ("probe: at X,Y bed will contact at z=Z") state
-/// the point that the probe touched. The position of the axes is the probed point minus the probe offset.
+/// the point that the probe touched. The position of the axes is the probed point minus the probe offset. If
+/// neither the options nor a configuration in the file state the offset, throws InputError.
 /// Touches during levelling, and repeated touches at one position (PROBE_ACCURACY), are excluded. If a log
 /// has several surveys of the bed, the option `series` is necessary. If the file is not valid, throws
 /// InputError with file, line and word.

@@ -8,7 +8,8 @@
 #include <set>
 
 #include "tools/format/units.h"
-#include "tools/import/tables/sheet_words.h"
+#include "tools/import/words/sheet_words.h"
+#include "tools/import/words/sign_words.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -16,7 +17,7 @@ namespace {
 
 namespace columns = format::columns;
 
-const std::string kSensePrefix = format::entry_of(format::AxisQuantity::kSense).prefix;
+const std::string kSenseOfAxis = format::entry_of(format::AxisQuantity::kSense).prefix;
 
 /// Name of a column whose heading names no axis.
 std::string other(const sheet::Heading& heading) {
@@ -35,21 +36,21 @@ std::string other(const sheet::Heading& heading) {
                                                             {"unsicherheit", columns::kUncertainty},
                                                             {"uncertainty", columns::kUncertainty},
                                                             {"rolle", columns::kRole},
-                                                            {"richtung", kSensePrefix},
-                                                            {"direction", kSensePrefix},
-                                                            {"sense", kSensePrefix},
+                                                            {"richtung", kSenseOfAxis},
+                                                            {"direction", kSenseOfAxis},
+                                                            {"sense", kSenseOfAxis},
                                                             {"länge", columns::kLength},
                                                             {"laenge", columns::kLength},
-                                                            {kSensePrefix, kSensePrefix},
-                                                            {"dir.", kSensePrefix},
-                                                            {"richtg", kSensePrefix},
-                                                            {"richtg.", kSensePrefix},
-                                                            {"richt.", kSensePrefix},
-                                                            {"sinn", kSensePrefix},
-                                                            {"fahrtrichtung", kSensePrefix},
-                                                            {"anfahrrichtung", kSensePrefix},
-                                                            {"approach", kSensePrefix},
-                                                            {"motion", kSensePrefix}};
+                                                            {kSenseOfAxis, kSenseOfAxis},
+                                                            {"dir.", kSenseOfAxis},
+                                                            {"richtg", kSenseOfAxis},
+                                                            {"richtg.", kSenseOfAxis},
+                                                            {"richt.", kSenseOfAxis},
+                                                            {"sinn", kSenseOfAxis},
+                                                            {"fahrtrichtung", kSenseOfAxis},
+                                                            {"anfahrrichtung", kSenseOfAxis},
+                                                            {"approach", kSenseOfAxis},
+                                                            {"motion", kSenseOfAxis}};
   const auto found = kNames.find(text::in_small_letters(heading.name));
   return found == kNames.end() ? sheet::name_from_words(heading.name) : found->second;
 }
@@ -83,7 +84,7 @@ bool is_label(const std::string& name) {
   const format::ColumnGroup* const column = format::find_column(name);
   return column != nullptr && column->words;
 }
-bool is_sense(const std::string& name) { return name.starts_with(kSensePrefix); }
+bool is_sense(const std::string& name) { return name.starts_with(kSenseOfAxis); }
 bool is_pure(const std::string& name) {
   const format::ColumnGroup* const column = format::find_column(name);
   return is_sense(name) || (column != nullptr && !column->words && *column->unit == '\0');
@@ -144,7 +145,7 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
     }
     if (axis.empty() && is_axis(word)) axis = word;
   }
-  deviation |= says_nominal_less_actual(heading.text, true) || says_nominal_less_actual(heading.name, true);
+  deviation |= sign_said(heading.text, SignPlace::kHeading) != SignSaid::kNothing;
   if (deviation) return {SheetColumn::Use::kDeviation, axis, heading.unit, "by its heading"};
   if (!axis.empty() && measured) {
     if (const auto reading = reading_of(axis)) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 
 #include "tools/format/columns.h"
@@ -129,6 +130,20 @@ std::string cell_of(const std::string& text, const MappedColumn& column, bool de
   return *number;
 }
 
+/// True for a column of names ("point"): its name has no meaning in the format, and no cell is a number.
+bool holds_names(const DelimitedFile& file, const MappedColumn& column, std::size_t index) {
+  // dirX, vJ1: columns of an axis have numbers.
+  const auto is_axis = [](const std::string& word) {
+    return !word.empty() && word.size() <= 2 && std::isupper(static_cast<unsigned char>(word[0])) != 0;
+  };
+  if (column.source.empty() || !column.unit.empty() || column.name.size() < 3 ||
+      format::find_column(column.name) != nullptr || format::axis_column_named(column.name, is_axis))
+    return false;
+  return std::none_of(file.rows.begin(), file.rows.end(), [&](const std::vector<std::string>& row) {
+    return number_cell(row[index], false) || number_cell(row[index], true);
+  });
+}
+
 }  // namespace
 
 void add_column(ColumnMap& map, const std::string& words, const text::Place& place) {
@@ -220,10 +235,12 @@ ImportTable mapped_table(const std::string& text, const std::string& file, const
     const bool constant = column.source.empty();
     const std::size_t index = constant ? 0 : source_index(read, column);
     if (!constant && !read.header.empty()) refuse_another_unit(read, index, column);
+    const bool names = holds_names(read, column, index);
     const std::string same = constant ? constant_cell(column, format.decimal_comma) : "";
     for (std::size_t i = 0; i < read.rows.size(); ++i)
-      cells.cells.push_back(cell_of(constant ? same : read.rows[i][index], column,
-                                    !constant && format.decimal_comma, {file, read.line[i]}));
+      cells.cells.push_back(names ? read.rows[i][index]
+                                  : cell_of(constant ? same : read.rows[i][index], column,
+                                            !constant && format.decimal_comma, {file, read.line[i]}));
     table.columns.push_back(std::move(cells));
   }
   return table;

@@ -221,6 +221,13 @@ void settle_reading(const sheet::Sheet& sheet, const sheet::SheetTable& table,
 
 }  // namespace
 
+std::string other_decimal_sign(const sheet::Sheet& sheet) {
+  return fmt::format(
+      "this cell has a decimal {}, and the table is read with a decimal {}; write the cells of the file with "
+      "one decimal sign (find and replace in this column), because --decimal applies to all cells",
+      sheet.decimal_comma ? "point" : "comma", sheet.decimal_comma ? "comma" : "point");
+}
+
 void settle_by_values(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                       std::vector<SheetColumn>& columns) {
   if (!table.has_headings) return;

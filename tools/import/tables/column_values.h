@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <string>
 #include <vector>
 
 #include "tools/import/tables/sheet_wishes.h"
@@ -14,6 +15,9 @@ namespace vernier::importer {
 /// deviations.
 void settle_by_values(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                       std::vector<SheetColumn>& columns);
+
+/// Returns the end of a message about a cell with the other decimal sign than the table is read with.
+std::string other_decimal_sign(const sheet::Sheet& sheet);
 
 /// Throws InputError if the sheet may contain two tables side by side. Two tables side by side have two
 /// blocks of columns, each with target and readings of its own axis, and both targets change from row to row.

@@ -21,10 +21,11 @@ using WordSet = std::set<std::string, std::less<>>;
 
 // Words of computed rows in German and English, in small letters.
 const WordSet kAlways = {
-    "mittel",       "mittelwert", "mittelwerte", "mean",   "average",   "avg", "ø",
-    "durchschnitt", "stdev",      "stddev",      "stdabw", "stabw",     "std", "standardabweichung",
-    "spannweite",   "varianz",    "variance",    "sigma",  "σ",         "rms", "median",
-    "summe",        "mittelw",    "streuung",    "rmse",   "standardab"};
+    "mittel", "mittelwert", "mittelwerte", "mean", "average", "avg", "ø", "durchschnitt", "stdev", "stddev",
+    "stdabw", "stabw", "std", "standardabweichung", "spannweite", "varianz", "variance", "sigma", "σ", "rms",
+    "median", "summe", "mittelw", "streuung", "rmse", "standardab",
+    // Signs of a mean, a sum and a standard deviation; capitals beyond ASCII have no small letters here.
+    "Ø", "⌀", "∅", "x̄", "x̅", "Σ", "∑", "2σ", "3σ", "±2σ", "gesamtmittel", "mittelung", "averages", "means"};
 // States of a machine can have these names too.
 const WordSet kSometimes = {"max",   "maximum", "maximal",  "min",    "minimum", "minimal", "range",
                             "sum",   "total",   "gesamt",   "anzahl", "count",   "spread",  "s",
@@ -37,6 +38,9 @@ const WordSet kBeside = {"value",    "values",    "wert",   "werte",  "dev",   "
 
 enum class Names { kNoRow, kRowAtTheEnd, kRow };
 
+/// True for a word of digits: "Ø 6,1" has its value in the same cell.
+bool is_count(const std::string& word) { return word.find_first_not_of("0123456789") == std::string::npos; }
+
 Names computed_word(const std::string& cell) {
   Names found = Names::kNoRow;
   bool standard = false, deviation = false;
@@ -47,7 +51,7 @@ Names computed_word(const std::string& cell) {
       found = Names::kRow;
     else if (kSometimes.contains(word))
       found = std::max(found, Names::kRowAtTheEnd);
-    else if (word.size() > 1 && !kBeside.contains(word))  // a letter alone is an axis
+    else if (word.size() > 1 && !kBeside.contains(word) && !is_count(word))  // a letter alone is an axis
       return Names::kNoRow;
   }
   return standard && deviation ? Names::kRow : found;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tools/format/columns.h"
-#include "tools/import/tables/sheet_words.h"
+#include "tools/import/words/sheet_words.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"

@@ -11,7 +11,8 @@
 #include "tools/format/columns.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/column_values.h"
-#include "tools/import/tables/sheet_words.h"
+#include "tools/import/words/sheet_words.h"
+#include "tools/import/words/sign_words.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/words.h"
@@ -52,6 +53,17 @@ bool holds_units(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
     units += sheet::number_and_unit(cell, sheet.decimal_comma) ? 1 : 0;
   }
   return 2 * units > filled;
+}
+
+/// True if most of the filled cells are numbers, some of them with the other decimal sign.
+bool holds_other_sign(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
+  std::size_t numbers = 0, filled = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::string& cell = sheet.rows[row][column];
+    filled += is_missing(cell) ? 0 : 1;
+    numbers += sheet::plain_number(cell, true) || sheet::plain_number(cell, false) ? 1 : 0;
+  }
+  return 2 * numbers > filled;
 }
 
 /// A column of words that no known name claims labels its rows.
@@ -166,18 +178,57 @@ void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& 
       leave(columns[k], "this column is computed from the readings in the other columns");
 }
 
-/// A sign that is stated: in the heading of a deviation, or in a title for all of them.
+/// A text about the sign of deviations, and what it states.
+struct SignText {
+  SignSaid said = SignSaid::kNothing;
+  std::size_t line = 0;
+  std::string text;
+
+  void add(SignSaid sign, std::size_t at, const std::string& words) {
+    const SignSaid both = both_signs(said, sign);
+    if (both != said) *this = {both, at, words};
+  }
+};
+
+/// The sign that the file states outside the headings: in titles, remarks, and cells of words in the rows.
+SignText sign_of_texts(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  SignText found;
+  const auto look = [&](const std::string& text, std::size_t line) {
+    found.add(sign_said(text, SignPlace::kTitle), line, text);
+  };
+  for (const sheet::Remark& remark : sheet.remarks) look(remark.text, remark.line);
+  const std::size_t headings = table.upper_row ? *table.upper_row : table.heading_row;
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
+    if (table.has_headings && row >= headings && row < table.first_data) continue;
+    for (const std::string& cell : sheet.rows[row])
+      if (cell.size() > 4 && !sheet::plain_number(cell, sheet.decimal_comma)) look(cell, sheet.line[row]);
+  }
+  return found;
+}
+
+/// A sign that is stated: by the user, in the heading of a deviation, or in another text for all of them.
 void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
-                  std::vector<SheetColumn>& columns) {
-  const std::vector<std::string> titles = title_cells(sheet, table);
-  const bool all = std::any_of(titles.begin(), titles.end(), [](const std::string& title) {
-    return says_nominal_less_actual(title, false);
-  });
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    if (columns[k].use == SheetColumn::Use::kDeviation)
-      columns[k].turned = all || says_nominal_less_actual(table.headings[k].text, true) ||
-                          says_nominal_less_actual(table.headings[k].name, true) ||
-                          names_correction(table.headings[k]);
+                  std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
+  const SignText texts = sign_of_texts(sheet, table);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kDeviation) continue;
+    if (wishes.turned) {
+      column.turned = *wishes.turned;
+      continue;
+    }
+    const sheet::Heading& heading = table.headings[k];
+    SignText sign;
+    sign.add(sign_said(heading.text, SignPlace::kHeading), sheet.line[table.heading_row], heading.text);
+    if (sign.said == SignSaid::kNothing && names_correction(heading))
+      sign.said = SignSaid::kNominalLessActual;  // the titles are about deviations
+    else
+      sign.add(texts.said, texts.line, texts.text);
+    column.turned = sign.said == SignSaid::kNominalLessActual;
+    if (sign.said != SignSaid::kUnclear) continue;
+    column.sign_place = {sheet.file, sign.line};
+    column.sign_text = sign.text;
+  }
 }
 
 /// Deviations and directions without an axis belong to the only axis; columns that remain open are omitted
@@ -240,7 +291,8 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       leave(column, "this column has dates or times of day, not seconds");
     // Dates where a position or a reading should be are refused with their row.
     else if (!column.words && !is_label(column.name) && !is_sense(column.name) &&
-             content != Holds::kNumbers && content != Holds::kDates && !holds_units(sheet, table, k))
+             content != Holds::kNumbers && content != Holds::kDates && !holds_units(sheet, table, k) &&
+             !holds_other_sign(sheet, table, k))  // such cells are refused with their row
       leave(column, content == Holds::kNothing ? "empty" : "no numbers");
   }
 }
@@ -287,7 +339,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   settle_by_values(sheet, table, columns);
   settle(sheet, table, columns, guess, wishes.constants);
   if (!wishes.one_motion) refuse_tables_side_by_side(sheet, table, columns);
-  settle_signs(sheet, table, columns);
+  settle_signs(sheet, table, columns, wishes);
   keep_names_apart(table, columns);
   for (SheetColumn& column : columns) {
     if (!column.unit.empty() || wishes.unit.empty() || !wants_unit(column)) continue;

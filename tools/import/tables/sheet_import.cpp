@@ -9,8 +9,11 @@
 #include "tools/format/columns.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/computed_rows.h"
+#include "tools/import/tables/table_shape.h"
 #include "tools/import/tables/wide_sheet.h"
+#include "tools/import/words/sheet_words.h"
 #include "tools/sheet/several_tables.h"
+#include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -31,6 +34,7 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   if (!words.axes.empty()) wishes.axes = words.axes;
   wishes.fill.insert(wishes.fill.end(), words.fill.begin(), words.fill.end());
   wishes.one_motion |= words.one_motion;
+  if (!words.sign.empty()) wishes.turned = turned_of(words.sign);
   if (!words.unit.empty()) {
     const auto unit = sheet::unit_meant(words.unit);
     if (!unit) throw text::InputError("--unit " + words.unit + ": unknown unit");
@@ -55,6 +59,31 @@ bool is_filled_down(const SheetReading& reading, std::size_t k) {
          (column.name == format::columns::kRun || column.name == format::columns::kSetup);
 }
 
+/// Refuses to fill a cell of a row that has a word where the other rows have numbers: a mean or another row
+/// that is no measurement would get the position of the row above it.
+void refuse_to_fill(const SheetReading& reading, std::size_t row, std::size_t filled) {
+  const sheet::Sheet& sheet = reading.sheet;
+  for (std::size_t k = 0; k < reading.columns.size(); ++k) {
+    const std::string& cell = sheet.rows[row][k];
+    const auto number = [&](const std::string& text) {
+      return sheet::plain_number(text, sheet.decimal_comma).has_value();
+    };
+    if (k == filled || is_missing(cell) || number(cell)) continue;
+    std::size_t numbers = 0, words = 0;
+    for (std::size_t other = reading.table.first_data; other < sheet.rows.size(); ++other) {
+      if (is_missing(sheet.rows[other][k])) continue;
+      ++(number(sheet.rows[other][k]) ? numbers : words);
+    }
+    if (numbers > words)
+      throw text::InputError(
+          {sheet.file, sheet.line[row]}, cell,
+          fmt::format("this row has a word where the other rows have a number (\"{}\"), and no value for "
+                      "\"{}\": if the row is no measurement (a mean, a sum), delete the row; otherwise write "
+                      "the value into the empty cell",
+                      reading.table.headings[k].text, reading.table.headings[filled].text));
+  }
+}
+
 void fill_down(SheetReading& reading) {
   sheet::Sheet& sheet = reading.sheet;
   for (std::size_t k = 0; k < reading.columns.size(); ++k) {
@@ -69,6 +98,7 @@ void fill_down(SheetReading& reading) {
         above = cells[k];
         continue;
       }
+      refuse_to_fill(reading, row, k);
       cells[k] = above;
       ++filled;
     }
@@ -135,6 +165,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
   sheet::keep_table(result.sheet, result.wishes.format.table);
   result.table = sheet::parts_of_sheet(result.sheet);
+  refuse_transposed(result.sheet, result.table);
   note_short_rows(result.sheet, result.table);
   leave_computed_rows(result.sheet, result.table);
   result.runs = unfold_runs(result.sheet, result.table);
@@ -154,6 +185,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   fill_down(result);
   note_sparse_columns(result);
   note_rotating_frame(result);
+  note_exchanged_headings(result.sheet, result.table, result.columns);
   return result;
 }
 

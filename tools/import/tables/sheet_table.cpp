@@ -4,13 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/tables/column_guess.h"
-#include "tools/import/tables/sheet_words.h"
+#include "tools/import/tables/column_values.h"
+#include "tools/import/words/sheet_words.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/numbers.h"
@@ -24,13 +26,39 @@ namespace columns = format::columns;
 
 bool is_linear(const std::string& axis) { return axis == "X" || axis == "Y" || axis == "Z"; }
 
-/// Suggested unit for a deviation without one: of a rotary axis arcsec.
-std::string unit_of_deviation(const std::vector<SheetColumn>& columns, const std::string& axis) {
+/// The largest absolute value of a column of numbers.
+double largest_value(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k) {
+  double largest = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto number = sheet::plain_number(sheet.rows[row][k], sheet.decimal_comma);
+    if (const auto value = number ? text::parse_number(*number) : std::nullopt)
+      largest = std::max(largest, std::abs(*value));
+  }
+  return largest;
+}
+
+/// Suggested unit for a deviation without one: of a rotary axis arcsec, of a linear axis um or mm by the size
+/// of the values.
+std::string unit_of_deviation(const std::vector<SheetColumn>& columns, const std::string& axis,
+                              double largest) {
   const bool rotary = std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
     return one.use == SheetColumn::Use::kColumn && one.name == axis &&
            (one.unit.empty() ? !is_linear(axis) : is_angle(one.unit));
   });
-  return rotary ? "arcsec" : "um";
+  if (rotary) return "arcsec";
+  // Instruments resolve 0.1 um at best, and errors of machines are below 0.5 mm: small values are mm.
+  constexpr double kSmallest = 0.5;
+  return largest < kSmallest ? "mm" : "um";
+}
+
+/// Says that only the user knows the unit of a deviation: the other usual unit, and the largest value.
+std::string unit_doubt(const SheetColumn& column, const std::string& heading, const std::string& unit,
+                       double largest) {
+  const std::string other = unit == "arcsec" ? "deg" : unit == "um" ? "mm" : "um";
+  return fmt::format(
+      ", or --deviation \"{0}[{1}]={2}\": only you know the unit of \"{2}\"; its largest value {3:.4g} is "
+      "{3:.4g} {4} or {3:.4g} {1}",
+      column.name, other, heading, largest, unit);
 }
 
 /// Suggested unit for a column without one: that of the format, for an axis mm or deg.
@@ -146,15 +174,17 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
   }
   const std::string name = axis == columns.end() ? "X" : axis->name;
   if (reading.empty()) reading = "HEADING";
+  const std::string which = unit.empty() ? "; [mm] and [um] are examples: state the unit of the values" : "";
   if (correction)
-    return fmt::format("{}--deviation \"{}{}={}\" (a correction is nominal - actual: its sign is reversed)",
-                       position, name, unit.empty() ? "[um]" : "", reading);
+    return fmt::format("{}--deviation \"{}{}={}\" (a correction is nominal - actual: its sign is reversed){}",
+                       position, name, unit.empty() ? "[um]" : "", reading, which);
   return fmt::format(
-      "{}--column \"{}{}={}\" for a measured position, or {}--deviation \"{}{}={}\" for a deviation",
+      "{}--column \"{}{}={}\" for a measured position, or {}--deviation \"{}{}={}\" for a deviation{}",
       position, reading_of(name).value_or("x"),
       unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[mm]" : "[deg]") : "", reading,
       position, name,
-      unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[um]" : "[arcsec]") : "", reading);
+      unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[um]" : "[arcsec]") : "", reading,
+      which);
 }
 
 /// A row with a reading needs the position of every axis that has a column.
@@ -175,6 +205,50 @@ void refuse_readings_without_position(const ImportTable& table, const Guess& gue
               "it applies, give --fill with the heading of the column");
     }
   }
+}
+
+/// Refuses deviations whose sign a text states, but not clearly.
+void refuse_unclear_signs(const std::vector<SheetColumn>& columns) {
+  for (const SheetColumn& column : columns)
+    if (column.use == SheetColumn::Use::kDeviation && !column.sign_text.empty())
+      throw text::InputError(column.sign_place, column.sign_text,
+                             "this text does not state clearly whether the deviations are actual - nominal "
+                             "or nominal - actual: give --sign actual-nominal or --sign nominal-actual");
+}
+
+/// Refuses positions and readings without a unit, with the options that state the units.
+void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                          const std::vector<SheetColumn>& columns, const Readings& readings,
+                          const Guess& guess) {
+  const text::Place heading{sheet.file, sheet.line[table.heading_row]};
+  std::string without, doubt;
+  bool other_than_deviation = false;  // one unit for all would decide the unit of the deviations as well
+  Words units;                        // suggested for the columns without one
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    const bool geometry = guess.is_axis(column.name) ||
+                          ((is_known_name(column.name) || readings.contain(column)) && wants_unit(column));
+    const bool deviation = column.use == SheetColumn::Use::kDeviation;
+    if (!wants_unit(column) || !column.unit.empty() || (!deviation && !geometry)) continue;
+    if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
+      throw text::InputError(heading, table.headings[k].text,
+                             "[" + unknown + "] is no known unit; known are " + format::known_units() +
+                                 "; convert the values to one of these units, and correct the heading");
+    const double largest = largest_value(sheet, table, k);
+    const std::string unit =
+        deviation ? unit_of_deviation(columns, column.name, largest) : unit_to_say(column.name, columns);
+    if (deviation) doubt += unit_doubt(column, table.headings[k].text, unit, largest);
+    other_than_deviation |= !deviation;
+    units.insert(unit);
+    without += fmt::format(" {} \"{}[{}]={}\"", deviation ? "--deviation" : "--column", column.name, unit,
+                           table.headings[k].text);
+  }
+  if (without.empty()) return;
+  const bool one = units.size() == 1 && (doubt.empty() || !other_than_deviation);
+  throw text::InputError(heading, "",
+                         "no unit: give it for " +
+                             (one ? "all (--unit " + *units.begin() + ") or for " : "") + "each, such as" +
+                             without + doubt);
 }
 
 /// The headings of readings whose cells are all empty: a template that was not filled in.
@@ -219,14 +293,12 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
                            fmt::format("a number with the unit {}, for {}; write the unit in the heading "
                                        "([{}]), numbers alone in the cells",
                                        both->second, column.name, both->second));
-  const bool other_sign = sheet::plain_number(cell, !sheet.decimal_comma).has_value();
-  throw text::InputError(
-      place, cell,
-      "not a number, for " + column.name +
-          (other_sign
-               ? std::string("; a decimal ") + (sheet.decimal_comma ? "point" : "comma") +
-                     "? (give --decimal point or --decimal comma)"
-               : std::string("; write - in a cell without a value, or leave the column out (--leave)")));
+  if (sheet::plain_number(cell, !sheet.decimal_comma))
+    throw text::InputError(place, cell,
+                           "not a number, for " + column.name + ": " + other_decimal_sign(sheet));
+  throw text::InputError(place, cell,
+                         "not a number, for " + column.name +
+                             "; write - in a cell without a value, or leave the column out (--leave)");
 }
 
 }  // namespace
@@ -236,8 +308,6 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   ImportTable result{sheet.file, {}, {}};
   const Guess guess(wishes);
   const text::Place heading{sheet.file, sheet.line[table.heading_row]};
-  std::string without;
-  Words units;  // suggested for the columns without one
   // The same value in every row (--set) is a column too.
   std::vector<SheetColumn> all = columns;
   for (const MappedColumn& constant : wishes.constants)
@@ -247,29 +317,11 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                               [&](const SheetColumn& column) { return readings.contain(column); });
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
-    const bool geometry = guess.is_axis(column.name) ||
-                          ((is_known_name(column.name) || readings.contain(column)) && wants_unit(column));
-    const bool deviation = column.use == SheetColumn::Use::kDeviation;
-    if (wants_unit(column) && column.unit.empty() && (deviation || geometry)) {
-      const std::string unit =
-          deviation ? unit_of_deviation(columns, column.name) : unit_to_say(column.name, columns);
-      if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
-        throw text::InputError(heading, table.headings[k].text,
-                               fmt::format("[{}] is no known unit; known are {}; convert the values to one "
-                                           "of these units, and correct the heading",
-                                           unknown, format::known_units()));
-      units.insert(unit);
-      without += fmt::format(" {} \"{}[{}]={}\"", deviation ? "--deviation" : "--column", column.name, unit,
-                             table.headings[k].text);
-    }
     if (column.use == SheetColumn::Use::kLeft) continue;
     measured |= column.use == SheetColumn::Use::kDeviation || readings.contain(column);
   }
-  if (!without.empty())
-    throw text::InputError(heading, "",
-                           "no unit: give it for " +
-                               (units.size() == 1 ? "all (--unit " + *units.begin() + ") or for " : "") +
-                               "each, such as" + without);
+  refuse_unclear_signs(columns);
+  refuse_without_units(sheet, table, columns, readings, guess);
   if (const std::string empty = measured ? "" : empty_readings(table, columns); !empty.empty())
     throw text::InputError(
         heading, "",
@@ -348,10 +400,11 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         const std::string at = moves ? cell_text(sheet, columns[base], cells[base], row)
                                      : constant_cell(*still, sheet.decimal_comma);
         if (at.empty())
-          throw text::InputError({sheet.file, sheet.line[row]}, column.name,
-                                 fmt::format("the cell of the position is empty in a row with a deviation; "
-                                             "if the value above it applies, give --fill \"{}\"",
-                                             table.headings[base].text));
+          throw text::InputError(
+              {sheet.file, sheet.line[row]}, column.name,
+              "a deviation without its position: the cell of \"" + table.headings[base].text +
+                  "\" is empty; if the value above it applies, give --fill \"" + table.headings[base].text +
+                  "\"; if the row is no measurement (a mean, a sum), delete the row");
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
         text = text::fixed_text(mm(at, position_unit) + sign * mm(text, column.unit), 9);
       }

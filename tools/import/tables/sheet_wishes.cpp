@@ -84,6 +84,12 @@ void assign_deviation(SheetWishes& wishes, const std::string& words, const text:
   wishes.assignments.push_back({right, column, place});
 }
 
+bool turned_of(const std::string& words, const text::Place& place) {
+  if (words != "nominal-actual" && words != "actual-nominal")
+    throw text::InputError(place, words, "the sign of deviations is actual-nominal or nominal-actual");
+  return words == "nominal-actual";
+}
+
 void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std::string& file) {
   std::size_t number = 0;
   for (const std::string& raw : text::parts_of(text, '\n')) {
@@ -122,13 +128,15 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
         wishes.format.sheet = value;
       else if (name == "comment")
         wishes.format.comment = value == "none" ? "" : value;
+      else if (name == "sign")
+        wishes.turned = turned_of(value, place);
       else if (name == "unit" && sheet::unit_meant(value))
         wishes.unit = *sheet::unit_meant(value);
       else
         throw text::InputError(
             place, name,
             "this line of the profile has an unknown keyword; known keywords are column, deviation, leave, "
-            "fill, set, separator, decimal, skip, table, sheet, comment, unit");
+            "fill, set, separator, decimal, skip, table, sheet, comment, unit, sign");
     }
   }
 }
@@ -145,6 +153,8 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
     text += std::string("decimal = ") + (sheet.decimal_comma ? "comma" : "point") + "\n";
   if (wishes.format.table) text += "table = " + std::to_string(*wishes.format.table) + "\n";
   if (wishes.format.skip > 0) text += "skip = " + std::to_string(wishes.format.skip) + "\n";
+  if (wishes.turned)
+    text += std::string("sign = ") + (*wishes.turned ? "nominal-actual" : "actual-nominal") + "\n";
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     const std::string& heading = table.headings[k].text;

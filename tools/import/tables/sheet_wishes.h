@@ -23,6 +23,8 @@ struct SheetColumn {
   bool to_target = false;  // true for a deviation whose measured position is given, so that the target
                            // position is computed
   bool by_values = false;  // true: the values determined whether the column is a position or a deviation
+  text::Place sign_place = {};  // place of a text that states the sign of this deviation, but not clearly
+  std::string sign_text = {};   // this text; empty: the sign is clear
 };
 
 /// Description of the columns by the user: assignments by heading or number, constants, and the unit of
@@ -39,6 +41,7 @@ struct SheetWishes {
   std::string unit;
   std::vector<std::string> axes;  // axes of the machine if it is known, otherwise X Y Z A B C U V W J1 …
   std::vector<std::string> fill;  // headings whose empty cells have the value above them
+  std::optional<bool> turned;     // sign of all deviations as the user states it: true: nominal - actual
   bool one_motion = false;        // true: columns of several axes side by side are poses of all axes together
 };
 
@@ -54,9 +57,11 @@ void assign_deviation(SheetWishes& wishes, const std::string& words, const text:
 /// line; comments begin with #:
 ///   separator = semicolon    decimal = comma    skip = 2    sheet = Tabelle1    unit = mm
 ///   column X ist = x[mm]     deviation Abw. = X[um]     leave Bemerkung     set run = a
-///   fill Lauf
+///   fill Lauf                sign = nominal-actual
 /// If the profile is not valid, throws InputError with file, line and word.
 void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std::string& file);
+/// Returns true for "nominal-actual" and false for "actual-nominal". Throws InputError for other words.
+bool turned_of(const std::string& words, const text::Place& place = {});
 /// Returns a profile with the recognised columns. With this profile the next file of the same form needs no
 /// further settings.
 std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& table,

@@ -13,7 +13,8 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
-#include "tools/import/tables/sheet_words.h"
+#include "tools/import/words/sheet_words.h"
+#include "tools/import/words/sign_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
@@ -103,9 +104,11 @@ std::string with_its_sign(const sheet::Heading& heading) {
 std::optional<RunColumn> run_column(const sheet::Heading& heading) {
   RunColumn column;
   column.unit = heading.unit;
-  column.turned = says_nominal_less_actual(heading.name, true);
+  const SignSaid sign = sign_said(heading.text, SignPlace::kHeading);
+  if (sign == SignSaid::kUnclear) return std::nullopt;
+  column.turned = sign == SignSaid::kNominalLessActual;
   std::string name = with_its_sign(heading);
-  if (column.turned) {  // the text in brackets gives the sign only
+  if (sign != SignSaid::kNothing) {  // the text in brackets gives the sign only
     const auto open = name.find_first_of("(["), close = name.find_last_of(")]");
     if (open == std::string::npos || close == std::string::npos || close < open) return std::nullopt;
     name.erase(open, close - open + 1);

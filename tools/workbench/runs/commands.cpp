@@ -26,7 +26,7 @@ struct Allowed {
 constexpr Allowed kAllowed[] = {
     {"new", false, true, "type axis tool-side work-side name urdf tip reading output measurements"},
     {"import table", false, true,
-     "file separator decimal skip table sheet unit column deviation leave set check-every output! "
+     "file separator decimal skip table sheet unit sign column deviation leave set check-every output! "
      "save-profile"},
     {"import ballbar", false, true, "files repair-time-base output"},
     {"import ballbar-trace", false, true, "files radius plane length feed output"},

@@ -39,10 +39,6 @@ bool is_missing(const std::string& cell);
 /// for other words.
 int sense_said(std::string_view word);
 
-/// True if a text describes a deviation as nominal - actual: "(nominal-actual)", "= Soll - Ist". `whole`:
-/// true if the text may also be only this description; "Soll-Ist-Vergleich" (comparison) defines no sign.
-bool says_nominal_less_actual(std::string_view text, bool whole);
-
 /// Returns the cells above the headings of a table.
 std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table);
 

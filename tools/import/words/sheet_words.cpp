@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/sheet_words.h"
+#include "tools/import/words/sheet_words.h"
 
 #include <algorithm>
 #include <array>
@@ -66,17 +66,6 @@ const WordSet kBackWords = {"-1",
                             "\u2193",
                             "\u2190"};
 
-/// Small letters without blanks, every dash a hyphen.
-std::string bare_signs(std::string_view text) {
-  std::string bare = text::in_small_letters(text);
-  for (const std::string_view dash : {"\u2212", "\u2013", "\u2014"})
-    for (std::size_t at = 0; (at = bare.find(dash, at)) != std::string::npos;)
-      bare.replace(at, dash.size(), "-");
-  bare.erase(std::remove_if(bare.begin(), bare.end(), [](char c) { return c == ' ' || c == '\t'; }),
-             bare.end());
-  return bare;
-}
-
 }  // namespace
 
 std::vector<std::string> heading_words(const std::string& name) {
@@ -105,27 +94,6 @@ bool is_missing(const std::string& cell) {
 int sense_said(std::string_view word) {
   const std::string small = text::in_small_letters(word);
   return kForthWords.contains(small) ? 1 : kBackWords.contains(small) ? -1 : 0;
-}
-
-bool says_nominal_less_actual(std::string_view text, bool whole) {
-  constexpr std::array<std::string_view, 6> kNominal = {"nominal", "target",       "nom",
-                                                        "soll",    "sollposition", "sollwert"};
-  constexpr std::array<std::string_view, 7> kActual = {"actual", "measured",    "act",    "meas",
-                                                       "ist",    "istposition", "istwert"};
-  const std::string bare = bare_signs(text);
-  for (const std::string_view nominal : kNominal)
-    for (const std::string_view actual : kActual) {
-      const std::string formula = std::string(nominal) + "-" + std::string(actual);
-      for (std::size_t at = 0; (at = bare.find(formula, at)) != std::string::npos; ++at) {
-        const std::size_t end = at + formula.size();
-        if (whole && at == 0 && end == bare.size()) return true;
-        if (at == 0) continue;
-        const char before = bare[at - 1], after = end < bare.size() ? bare[end] : '\0';
-        const bool closed = after == '\0' || after == ')' || after == ']' || after == ',' || after == ';';
-        if (closed && (before == '=' || ((before == '(' || before == '[') && after != '\0'))) return true;
-      }
-    }
-  return false;
 }
 
 std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table) {

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The remedies that an import prints: as a user pastes them, with the options of the first call.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "tools/text/files.h"
+
+namespace vernier::import_remedies_test {
+
+using testing::HasSubstr;
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMachine =
+    R"xml(<machine name="m"><variables><static><k value="0" nominal="0"/></static>
+  <machineaxes><X rotary="false" min="0" max="600"/><Y rotary="false" min="0" max="400"/></machineaxes></variables>
+  <transforms><sixdof n="1" X="X" Y="Y+k*X" Z="0" rX="0" rY="0" rZ="0"/></transforms></machine>)xml";
+
+struct ImportRemedies : testing::Test {
+  ImportRemedies() {
+    fs::create_directories(folder);
+    text::write_file(folder + "/m.xml", kMachine);
+  }
+  ~ImportRemedies() override { fs::remove_all(folder); }
+
+  /// Exit status of shell commands; `said` holds their output.
+  int run(const std::string& commands) {
+    text::write_file(folder + "/call.sh", commands + "\n");
+    const int status = std::system(
+        ("cd '" + folder + "' && PATH=" VERNIER_BIN_DIR ":$PATH sh -e call.sh >said.txt 2>&1").c_str());
+    said = text::read_file(folder + "/said.txt");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  /// The last command in the output, with a number for its POSITION.
+  std::string remedy() const {
+    std::string call = said.substr(said.rfind("vernier import"));
+    for (std::size_t at = 0; (at = call.find("POSITION")) != std::string::npos;) call.replace(at, 8, "400");
+    return call;
+  }
+  const std::string folder = testing::TempDir() + "import_remedies_" + std::to_string(getpid());
+  std::string said;
+};
+
+TEST_F(ImportRemedies, OfATableKeepTheOptionsOfTheCall) {
+  fs::copy_file(VERNIER_SOURCE_DIR "/tests/data/sheets/survey.xlsx", folder + "/a survey.xlsx");
+  ASSERT_EQ(run("vernier import table 'a survey.xlsx' --sheet Messung --leave Temp. --set 'u[um]=1,5' "
+                "--machine m.xml -o read.csv"),
+            1)
+      << said;
+  EXPECT_THAT(said,
+              HasSubstr("vernier import table \"a survey.xlsx\" --leave Temp. --set \"u[um]=1,5\" --sheet "
+                        "Messung --machine m.xml --set \"Y[mm]=POSITION\" -o read.csv"));
+  ASSERT_EQ(run(remedy()), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/read.csv"), testing::StartsWith("X[mm],x[mm],run,u[um],Y[mm]\n"));
+}
+
+TEST_F(ImportRemedies, OfATrackerReadTheFileThatIsThere) {
+  text::write_file(folder + "/pts.txt", "// SA\nP1, 0.01, 400, 0\nP2, 100, 400.01, 0\nP3, 200, 400, 0.01\n");
+  const std::string call =
+      "vernier import tracker pts.txt --comment // --column 2=x[mm] --column 3=y[mm] --column 4=z[mm] "
+      "--machine m.xml ";
+  ASSERT_EQ(run(call + "-o c.csv"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("give --nominal FILE"));
+  EXPECT_THAT(said, HasSubstr("vernier import tracker pts.txt --column \"2=x[mm]\""));
+  text::write_file(folder + "/nom.csv", "Punkt;X [mm];Y [mm]\nP3;200;400\nP2;100;400\nP1;0;400\n");
+  ASSERT_EQ(run(call + "--column 1=point --nominal nom.csv -o c.csv"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("3 points joined with the positions of nom.csv by the names in point"));
+  EXPECT_THAT(text::read_file(folder + "/c.csv"),
+              testing::StartsWith("X[mm],Y[mm],x[mm],y[mm],z[mm],point\n0,400,0.01,400,0,P1\n"));
+}
+
+}  // namespace
+}  // namespace vernier::import_remedies_test

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points of a tracker and a separate list of nominal positions.
+#include "tools/import/logs/nominal_list.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tools/import/tables/survey.h"
+#include "tools/model/machine_reader.h"
+#include "tools/text/error.h"
+
+namespace vernier::nominal_list_test {
+
+using namespace vernier::importer;
+using testing::HasSubstr;
+namespace {
+
+constexpr const char* kMachine =
+    R"xml(<machine name="m"><variables><static><k value="0" nominal="0"/></static>
+  <machineaxes><X rotary="false" min="0" max="600"/><Y rotary="false" min="0" max="400"/></machineaxes></variables>
+  <transforms><sixdof n="1" X="X" Y="Y+k*X" Z="0" rX="0" rY="0" rZ="0"/></transforms></machine>)xml";
+
+/// Four points, 1000 and -500 mm from the machine's origin, with their names.
+constexpr const char* kPoints =
+    "A::Vol::P1, 1000.01, -500, 0\nA::Vol::P2, 1100, -500.01, 0\nA::Vol::P3, 1100, -440, 0.01\nA::Vol::P4, "
+    "1030, -420, 0\n";
+
+ImportTable points(bool names) {
+  ColumnMap map;
+  if (names) add_column(map, "1=point");
+  add_column(map, "2=x[mm]");
+  add_column(map, "3=y[mm]");
+  add_column(map, "4=z[mm]");
+  ImportTable table = mapped_table(kPoints, "pts.txt", map);
+  finish_tracker(table);
+  return table;
+}
+
+std::string join(const std::string& list, bool names, NominalTable* result = nullptr) {
+  try {
+    NominalTable joined =
+        with_nominal(points(names), list, "nom.csv", model::parse_machine(kMachine, "m.xml"), 2);
+    const std::string text = measurement_csv(joined.table);
+    if (result != nullptr) *result = std::move(joined);
+    return text;
+  } catch (const text::InputError& error) {
+    return std::string("refused: ") + error.what();
+  }
+}
+
+TEST(NominalList, IsJoinedByTheNamesOfThePoints) {
+  // Another order, a point more, and another heading of the names.
+  NominalTable result;
+  EXPECT_EQ(
+      join("Punkt;X [mm];Y [mm]\nP4;30;80\nP3;100;60\nP9;5;5\nP2;100;0\nP1;0;0\n", true, &result),
+      "X[mm],Y[mm],point,x[mm],y[mm],z[mm]\n0,0,A::Vol::P1,1000.01,-500,0\n"
+      "100,0,A::Vol::P2,1100,-500.01,0\n100,60,A::Vol::P3,1100,-440,0.01\n30,80,A::Vol::P4,1030,-420,0\n");
+  EXPECT_EQ(result.names, "point");
+  EXPECT_EQ(result.unused, 1U);
+  ASSERT_TRUE(result.rms_mm.has_value());
+  EXPECT_LT(*result.rms_mm, 0.02);  // errors of 0.01 mm in three coordinates
+}
+
+TEST(NominalList, IsJoinedByRowNumberWithoutNames) {
+  NominalTable result;
+  EXPECT_THAT(join("X [mm];Y [mm]\n0;0\n100;0\n100;60\n30;80\n", false, &result),
+              testing::StartsWith("X[mm],Y[mm],x[mm],y[mm],z[mm]\n0,0,1000.01,-500,0\n"));
+  EXPECT_TRUE(result.names.empty());
+}
+
+TEST(NominalList, AListInAnotherOrderIsRefused) {
+  EXPECT_THAT(join("X [mm];Y [mm]\n100;0\n0;0\n100;60\n30;80\n", false),
+              HasSubstr("from its nominal position after the best rigid motion of all points (joined by row "
+                        "number): check the order"));
+}
+
+TEST(NominalList, WhatCannotBeJoinedIsNamed) {
+  EXPECT_THAT(
+      join("X [mm];Y [mm]\n0;0\n100;0\n", false),
+      HasSubstr("pts.txt has 4 points, this list has 2 positions, and no column of names joins them"));
+  EXPECT_THAT(join("Punkt;X [mm];Y [mm]\nP4;30;80\nP3;100;60\nP2;100;0\n", true),
+              HasSubstr("pts.txt:1: \"A::Vol::P1\": the list of nominal positions (nom.csv) has no point"));
+  EXPECT_THAT(join("Punkt;X [mm];Y [mm]\nP1;0;0\nP1;1;0\nP2;100;0\nP3;100;60\nP4;30;80\n", true),
+              HasSubstr("nom.csv:3: \"P1\": the list of nominal positions has this point twice"));
+  EXPECT_THAT(
+      join("Punkt;X;Y\nP1;0;0\nP2;100;0\nP3;100;60\nP4;30;80\n", true),
+      HasSubstr("nom.csv:1: \"X\": this heading has no unit: write it into the list, for example X[mm]"));
+  EXPECT_THAT(join("Punkt;X [mm]\nP1;0\nP2;100\nP3;100\nP4;30\n", true),
+              HasSubstr("nom.csv:1: \"Y\": the list of nominal positions has no column for this axis"));
+}
+
+}  // namespace
+}  // namespace vernier::nominal_list_test

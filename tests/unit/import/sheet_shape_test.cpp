@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables of another shape than the command reads, and remedies that must not give false data.
+#include "tools/import/tables/table_shape.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tools/import/tables/sheet_import.h"
+#include "tools/text/error.h"
+
+namespace vernier::sheet_shape_test {
+
+using namespace vernier::importer;
+using testing::HasSubstr;
+using testing::Not;
+namespace {
+
+/// The measurement file of a table and its notes, or the refusal.
+std::string read(const std::string& bytes, const SheetWords& words = {}) {
+  try {
+    const SheetReading reading = read_as_sheet(bytes, "s.csv", words);
+    std::string text =
+        measurement_csv(table_of_sheet(reading.sheet, reading.table, reading.columns, reading.wishes));
+    for (const std::string& note : reading.sheet.notes) text += "note: " + note + "\n";
+    return text;
+  } catch (const text::InputError& error) {
+    return std::string("refused: ") + error.what();
+  }
+}
+
+TEST(SheetShape, SignsOfAMeanAreComputedRowsAlsoInAColumnThatIsLeftOut) {
+  SheetWords leave;
+  leave.left = {"Nr"};
+  leave.fill = {"Soll X [mm]"};
+  for (const char* label :
+       {"Ø", "Mittel", "Mean", "avg", "Σ", "Summe", "min", "max", "s", "Ø 6,15", "MITTELWERT"})
+    EXPECT_THAT(
+        read("Nr;Soll X [mm];Abweichung X [um]\n1;0;3\n2;50;5\n" + std::string(label) + ";;6,1\n", leave),
+        testing::AllOf(testing::StartsWith("X[mm],x[mm]\n0,0.003\n50,50.005\nnote: line 4: the row"),
+                       HasSubstr("is computed from the rows above it")))
+        << label;
+}
+
+TEST(SheetShape, ARowWithAnUnknownWordIsNotFilled) {
+  SheetWords fill;
+  fill.left = {"Nr"};
+  fill.fill = {"Soll X [mm]"};
+  EXPECT_THAT(read("Nr;Soll X [mm];Abweichung X [um]\n1;0;3\n2;50;5\nErgebnis;;6,1\n", fill),
+              HasSubstr("refused: s.csv:4: \"Ergebnis\": this row has a word where the other rows have a "
+                        "number (\"Nr\"), and no value for \"Soll X [mm]\""));
+  EXPECT_THAT(read("Nr;Soll X [mm];Abweichung X [um]\n1;0;3\n2;;5\n", fill),
+              testing::StartsWith("X[mm],x[mm]\n0,0.003\n0,0.005\n"));
+}
+
+TEST(SheetShape, AnUnstatedUnitOfADeviationIsNotGuessed) {
+  const std::string small = read("X;Abweichung\n0;0,0028\n300;0,0155\n");
+  EXPECT_THAT(small,
+              HasSubstr("--deviation \"X[mm]=Abweichung\", or --deviation \"X[um]=Abweichung\": only you "
+                        "know the unit of \"Abweichung\"; its largest value 0.0155 is 0.0155 mm or "
+                        "0.0155 um"));
+  EXPECT_THAT(small, Not(HasSubstr("--unit")));
+  EXPECT_THAT(read("X;Abweichung\n0;2,8\n300;15,5\n"),
+              HasSubstr("--deviation \"X[um]=Abweichung\", or --deviation \"X[mm]=Abweichung\""));
+}
+
+TEST(SheetShape, QuantitiesInRowsAreRefused) {
+  const std::string table = "Soll X [mm];0;50;100;150\nAbweichung X [um];3,0;4,5;7,0;9,0\n";
+  EXPECT_THAT(read(table), HasSubstr("refused: s.csv:1: the first column has the headings (\"Soll X [mm]\", "
+                                     "\"Abweichung X [um]\")"));
+  SheetWords words;
+  words.columns = {"x[mm]=2"};
+  EXPECT_THAT(read(table, words), HasSubstr("transpose the table"));
+  EXPECT_THAT(read("Punkt;1;2;3\nSoll X [mm];0;50;100\nIst X [mm];0,1;50,1;100,2\n"),
+              HasSubstr("transpose the table"));
+  EXPECT_THAT(read("Soll;mm;0;50;100\nIst;mm;0,1;50,1;100,2\n"), HasSubstr("transpose the table"));
+}
+
+TEST(SheetShape, LabelsOfRowsAreNoTransposedTable) {
+  EXPECT_EQ(read("Punkt;X [mm];x [mm]\nP1;0;1\nP2;9;10\n"), "Punkt,X[mm],x[mm]\nP1,0,1\nP2,9,10\n");
+  EXPECT_EQ(read("Art;X [mm];x [mm]\nactual;0;1\nmeasured;9;10\n"),
+            "Art,X[mm],x[mm]\nactual,0,1\nmeasured,9,10\n");
+}
+
+TEST(SheetShape, RoundActualsBesideUnevenTargetsGetANote) {
+  const std::string exchanged = read("Ist X [mm];Soll X [mm]\n0;0,0033\n50;50,0047\n100;100,0064\n");
+  EXPECT_THAT(exchanged, HasSubstr("note: the values of \"Ist X [mm]\" are round numbers"));
+  EXPECT_THAT(exchanged, HasSubstr("--column \"X=Ist X [mm]\" --column \"x=Soll X [mm]\""));
+  EXPECT_THAT(read("Soll X [mm];Ist X [mm]\n0;0,0033\n50;50,0047\n100;100,0064\n"), Not(HasSubstr("note")));
+  EXPECT_THAT(read("Soll X [mm];Ist X [mm]\n0,01;0,0133\n50,2;50,2047\n100;100,0064\n"),
+              Not(HasSubstr("note")));
+  SheetWords words;
+  words.columns = {"X=Ist X [mm]", "x=Soll X [mm]"};
+  const std::string assigned = read("Ist X [mm];Soll X [mm]\n0;0,0033\n50;50,0047\n100;100,0064\n", words);
+  EXPECT_THAT(assigned, testing::StartsWith("X[mm],x[mm]\n0,0.0033\n50,50.0047\n"));
+  EXPECT_THAT(assigned, Not(HasSubstr("note")));
+}
+
+TEST(SheetShape, TwoDecimalSignsNameTheCellsAndTheCorrection) {
+  const std::string table = "Soll X [mm];Abweichung X [um]\n0;3.0\n50;5,0\n100;7.2\n";
+  EXPECT_THAT(read(table),
+              HasSubstr("refused: s.csv:3: \"5,0\": a decimal comma here, a decimal point in line "
+                        "2 (3.0); 1 cell with a comma, 2 cells with a point: write all numbers "
+                        "of the file with one decimal sign"));
+  SheetWords comma, point;
+  comma.decimal = "comma", point.decimal = "point";
+  EXPECT_THAT(read(table, comma), HasSubstr("refused: s.csv:2: \"3.0\": not a number, for X: this cell has a "
+                                            "decimal point, and the table is read with a decimal comma"));
+  EXPECT_THAT(read(table, point), HasSubstr("refused: s.csv:3: \"5,0\": not a number, for X: this cell has a "
+                                            "decimal comma, and the table is read with a decimal point"));
+}
+
+TEST(SheetShape, DocumentsWithTheNameOfATableAreNamed) {
+  EXPECT_THAT(read("<html><table><tr><td>X</td></tr></table></html>"), HasSubstr("a web page (HTML)"));
+  EXPECT_THAT(read("\xEF\xBB\xBF\r\n<!DOCTYPE html>\n<html></html>\n"), HasSubstr("a web page (HTML)"));
+  EXPECT_THAT(read("<?xml version=\"1.0\"?>\n<Workbook "
+                   "xmlns=\"urn:schemas-microsoft-com:office:spreadsheet\"></Workbook>\n"),
+              HasSubstr("a workbook as XML"));
+  EXPECT_THAT(read("%PDF-1.7\n"), HasSubstr("a document (PDF)"));
+}
+
+TEST(SheetShape, ARowOfMoreWordsThanNumbersIsNamed) {
+  EXPECT_THAT(read("von;nach;Abstand [mm]\nA;C;141,27\nB;D;141,69\n"),
+              HasSubstr("refused: s.csv:2: \"A; C; 141,27\": this row has one number (141,27) and 2 cells of "
+                        "words"));
+}
+
+}  // namespace
+}  // namespace vernier::sheet_shape_test

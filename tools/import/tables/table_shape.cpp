@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/tables/table_shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "tools/format/units.h"
+#include "tools/import/tables/column_guess.h"
+#include "tools/import/words/sheet_words.h"
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/error.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+/// True if a cell reads like the heading of a quantity: it has a unit, or a word for target, measured or
+/// deviation.
+bool is_heading_of_quantity(const std::string& cell, bool unit_required) {
+  const sheet::Heading heading = sheet::parse_heading(cell);
+  if (!heading.unit.empty()) return true;
+  if (unit_required) return false;
+  const std::vector<std::string> words = heading_words(heading.name);
+  return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    const std::string small = text::in_small_letters(word);
+    return says_target(small) || says_measured(small) || says_deviation(small);
+  });
+}
+
+std::vector<double> values_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                              const SheetColumn& column, std::size_t k) {
+  const auto unit = format::find_unit(column.unit);
+  std::vector<double> values;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto number = sheet::plain_number(sheet.rows[row][k], sheet.decimal_comma);
+    if (const auto value = number ? text::parse_number(*number) : std::nullopt)
+      values.push_back(*value * (unit && !column.unit.empty() ? unit->factor : 1));
+  }
+  return values;
+}
+
+/// Number of values that are multiples of 0.1.
+std::size_t count_round(const std::vector<double>& values) {
+  return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](double value) {
+    return std::abs(10 * value - std::round(10 * value)) < 1e-6;
+  }));
+}
+
+}  // namespace
+
+void refuse_transposed(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  std::size_t rows = 0, labelled = 0;
+  std::string labels;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::vector<std::string>& cells = sheet.rows[row];
+    if (sheet::is_blank(cells)) continue;
+    if (sheet::plain_number(cells.front(), sheet.decimal_comma) || cells.size() < 3) return;
+    ++rows;
+    // With a line of headings, words alone may be the labels of rows: "target", "actual".
+    if (!is_heading_of_quantity(cells.front(), table.has_headings)) continue;
+    ++labelled;
+    if (labelled <= 2) labels += (labels.empty() ? "\"" : ", \"") + cells.front() + "\"";
+  }
+  if (labelled < 2 || 2 * labelled <= rows) return;
+  throw text::InputError(
+      {sheet.file, sheet.line[table.first_data]}, "",
+      "the first column has the headings (" + labels +
+          "), so each row of this table is a quantity, and the command reads quantities in "
+          "columns: transpose the table in the spreadsheet program (copy, paste special, "
+          "transpose), save it, and import it again");
+}
+
+void note_exchanged_headings(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                             const std::vector<SheetColumn>& columns) {
+  if (!table.has_headings) return;
+  for (std::size_t target = 0; target < columns.size(); ++target)
+    for (std::size_t actual = 0; actual < columns.size(); ++actual) {
+      const SheetColumn &a = columns[target], &b = columns[actual];
+      if (a.use != SheetColumn::Use::kColumn || b.use != SheetColumn::Use::kColumn ||
+          a.why != "by its heading" || b.why != "by its heading" || reading_of(a.name) != b.name)
+        continue;
+      const std::vector<double> targets = values_of(sheet, table, a, target),
+                                actuals = values_of(sheet, table, b, actual);
+      const std::set<double> different(actuals.begin(), actuals.end());
+      constexpr std::size_t kEnough = 3;  // fewer positions show no pattern
+      if (different.size() < kEnough || count_round(actuals) < actuals.size() ||
+          2 * count_round(targets) >= targets.size())
+        continue;
+      const std::string &one = table.headings[target].text, &other = table.headings[actual].text;
+      sheet.notes.push_back(fmt::format(
+          "the values of \"{1}\" are round numbers, and the values of \"{0}\" are not: the two headings may "
+          "be exchanged; if they are, give --column \"{2}={1}\" --column \"{3}={0}\"",
+          one, other, a.name, b.name));
+    }
+}
+
+}  // namespace vernier::importer

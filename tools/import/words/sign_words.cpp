@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/words/sign_words.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/import/words/sheet_words.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+using WordSet = std::set<std::string, std::less<>>;
+
+/// Words before a nominal or an actual value, or behind it, without a meaning for the sign.
+const WordSet kBesideOperand = {
+    "position", "pos",  "positionen", "positions", "value",      "wert",   "werte",     "axis",    "achse",
+    "der",      "die",  "das",        "des",       "the",        "values", "von",       "of",      "maß",
+    "mass",     "lage", "koordinate", "punkt",     "coordinate", "point",  "dimension", "stellung"};
+/// Words of a comparison or of a document: "Soll-Ist-Vergleich" states no sign.
+const WordSet kComparisons = {"vergleich", "comparison", "compare", "tabelle",  "table",     "protokoll",
+                              "report",    "bericht",    "messung", "liste",    "list",      "daten",
+                              "data",      "analyse",    "werte",   "analysis", "vergleiche"};
+const WordSet kMinusWords = {"minus", "less", "weniger", "abzüglich", "abzueglich"};
+const WordSet kTowards = {"zu", "to", "gegen", "gegenüber", "vs", "versus", "bis"};
+
+enum class SignKind { kWord, kMinus, kEquals, kColon, kOpen, kClose, kBreak };
+
+struct SignToken {
+  SignKind kind = SignKind::kWord;
+  std::string word;
+  bool strong = false;                  // a minus that is no hyphen: the word, or U+2212
+  bool before = false, behind = false;  // a dash without a blank before it, behind it
+};
+
+enum class OperandRole { kNone, kAside, kNominal, kActual, kReference };
+
+bool says_nominal(const std::string& word) {
+  static const WordSet kWords = {"target",       "targets",   "nominal",     "nom",         "cmd",
+                                 "command",      "commanded", "setpoint",    "ziel",        "programmed",
+                                 "prog",         "desired",   "required",    "theoretical", "vorgabe",
+                                 "zielposition", "zielwert",  "theoretisch", "machine",     "maschine",
+                                 "expected",     "demand"};
+  return kWords.contains(word) || (word.starts_with("soll") && word != "sollte" && word != "sollten") ||
+         word.starts_with("nenn") || word.starts_with("nominal");
+}
+
+bool says_actual(const std::string& word) {
+  static const WordSet kWords = {"measured", "actual", "act",     "meas",     "mess",        "reading",
+                                 "real",     "laser",  "tracker", "feedback", "measurement", "messung",
+                                 "observed", "read",   "actuals", "readings"};
+  if (word.starts_with("ist"))
+    for (const char* rest : {"wert", "pos", "ma", "koord", "stell", "punkt", "lage"})
+      if (word.substr(3).starts_with(rest)) return true;
+  return kWords.contains(word) || word == "ist" || word.starts_with("gemessen") ||
+         word.starts_with("messwert") || word.starts_with("messpos");
+}
+
+OperandRole role_of(const std::string& word) {
+  static const WordSet kReferences = {"reference", "ref", "referenz", "referenzwert"};
+  const bool letter =
+      word.size() == 1 && std::string_view("xyzabcuvwmp").find(word[0]) != std::string_view::npos;
+  if (letter || kBesideOperand.contains(word)) return OperandRole::kAside;
+  if (kReferences.contains(word)) return OperandRole::kReference;
+  // X_soll, xist: the letter of an axis before the word.
+  for (const bool cut : {false, true}) {
+    if (cut && (word.size() < 4 || std::string_view("xyzabcp").find(word[0]) == std::string_view::npos))
+      break;
+    const std::string bare = cut ? word.substr(1) : word;
+    if (says_nominal(bare)) return OperandRole::kNominal;
+    if (says_actual(bare)) return OperandRole::kActual;
+  }
+  return OperandRole::kNone;
+}
+
+/// A machine or an instrument instead of its position.
+bool is_instrument(const std::string& word) {
+  static const WordSet kWords = {"machine", "maschine", "laser", "tracker"};
+  return kWords.contains(word);
+}
+
+/// A word for a deviation or for its sign.
+bool says_deviation_or_sign(const std::string& word) {
+  static const WordSet kWords = {"sign", "signs",  "convention", "konvention", "dx",     "dy",
+                                 "dz",   "\u0394", "\u0394x",    "\u0394y",    "\u0394z"};
+  return kWords.contains(word) || says_deviation(word) || word.starts_with("vorzeichen") ||
+         word.ends_with("abweichung") || word.ends_with("abweichungen") || word.ends_with("fehler") ||
+         word.ends_with("differenz");
+}
+
+/// SignTokens of a text; a dash between a word and a word beside it ("X-Soll", "Ist-Wert") is left out.
+class SignTokens {
+ public:
+  explicit SignTokens(std::string_view text) {
+    const std::string small = text::in_small_letters(text);
+    for (std::size_t at = 0; at < small.size();) at += take(small, at);
+    flush();
+    join();
+  }
+  const std::vector<SignToken>& list() const { return list_; }
+
+ private:
+  /// Reads one sign or one byte of a word; returns the number of bytes.
+  std::size_t take(const std::string& text, std::size_t at) {
+    static constexpr std::array<std::string_view, 9> kDashes = {
+        "-", "\u2212", "\u2010", "\u2011", "\u2012", "\u2013", "\u2014", "\u2015", "\uff0d"};
+    for (const std::string_view arrow : {std::string_view("->"), std::string_view("\u2192")})
+      if (text.compare(at, arrow.size(), arrow) == 0) {
+        flush();
+        list_.push_back({SignKind::kWord, "to", false, false, false});
+        return arrow.size();
+      }
+    for (const std::string_view dash : kDashes)
+      if (text.compare(at, dash.size(), dash) == 0) {
+        flush();
+        const auto blank = [&](std::size_t place) { return text[place] == ' ' || text[place] == '\t'; };
+        const std::size_t end = at + dash.size();
+        const bool again =
+            !list_.empty() && list_.back().kind == SignKind::kMinus && at > 0 && !blank(at - 1);
+        if (!again)
+          list_.push_back({SignKind::kMinus, "", dash == "\u2212", at > 0 && !blank(at - 1),
+                           end < text.size() && !blank(end)});
+        return dash.size();
+      }
+    const char c = text[at];
+    static const std::string kBlanks = " \t._\"'", kOpens = "([{<", kCloses = ")]}>", kBreaks = ",;/|+*";
+    const auto sign = [&](SignKind kind) {
+      flush();
+      list_.push_back({kind, "", false, false, false});
+    };
+    if (kBlanks.find(c) != std::string::npos)
+      flush();
+    else if (kOpens.find(c) != std::string::npos)
+      sign(SignKind::kOpen);
+    else if (kCloses.find(c) != std::string::npos)
+      sign(SignKind::kClose);
+    else if (kBreaks.find(c) != std::string::npos)
+      sign(SignKind::kBreak);
+    else if (c == '=' || c == ':')
+      sign(c == '=' ? SignKind::kEquals : SignKind::kColon);
+    else
+      word_ += c;
+    return 1;
+  }
+
+  void flush() {
+    if (word_.empty()) return;
+    const bool minus = kMinusWords.contains(word_);
+    list_.push_back({minus ? SignKind::kMinus : SignKind::kWord, word_, minus, false, false});
+    word_.clear();
+  }
+
+  void join() {
+    std::vector<SignToken> joined;
+    for (std::size_t k = 0; k < list_.size(); ++k) {
+      const SignToken& one = list_[k];
+      const bool hyphen = one.kind == SignKind::kMinus && !one.strong && one.before && one.behind && k > 0 &&
+                          k + 1 < list_.size() && list_[k - 1].kind == SignKind::kWord &&
+                          list_[k + 1].kind == SignKind::kWord;
+      if (hyphen && (role_of(list_[k - 1].word) == OperandRole::kAside ||
+                     role_of(list_[k + 1].word) == OperandRole::kAside))
+        continue;
+      joined.push_back(one);
+    }
+    list_ = std::move(joined);
+  }
+
+  std::string word_;
+  std::vector<SignToken> list_;
+};
+
+/// A difference "nominal - actual" or "actual - nominal" in a text.
+class Difference {
+ public:
+  Difference(const std::vector<SignToken>& list, std::size_t minus, SignPlace place)
+      : list_(list), minus_(minus), place_(place) {
+    left_ = operand(minus, -1);
+    right_ = operand(minus, +1);
+    find_subject();
+  }
+
+  SignSaid said() const {
+    const OperandRole a = role(left_), b = role(right_);
+    const bool known = (a == OperandRole::kNominal && b == OperandRole::kActual) ||
+                       (a == OperandRole::kActual && b == OperandRole::kNominal);
+    if (place_ == SignPlace::kTitle && of_correction_) return SignSaid::kNothing;
+    if (!known) return states_unknown(a, b) ? SignSaid::kUnclear : SignSaid::kNothing;
+    const bool turned = a == OperandRole::kNominal;
+    const SignSaid sign = turned ? SignSaid::kNominalLessActual : SignSaid::kActualLessNominal;
+    const std::string next = word_behind();
+    if (place_ == SignPlace::kHeading && names_operand_behind()) return SignSaid::kNothing;
+    if (kComparisons.contains(next) || compared_)
+      return place_ == SignPlace::kHeading && turned ? SignSaid::kUnclear : SignSaid::kNothing;
+    if (negated_) return SignSaid::kUnclear;
+    const bool strong = list_[minus_].strong;
+    if (equals_ || strong) return sign;
+    // "Soll-Ist-Abweichung" often means only the deviation of both.
+    if (says_deviation_or_sign(next)) return turned ? SignSaid::kUnclear : SignSaid::kNothing;
+    if (compound_) return turned ? SignSaid::kUnclear : SignSaid::kNothing;
+    // "Abweichungen Maschine - Laser" may only list the two.
+    const bool list = is_instrument(list_[*left_].word) || is_instrument(list_[*right_].word);
+    if (place_ == SignPlace::kHeading || (of_deviation_ && !list)) return sign;
+    return turned ? SignSaid::kUnclear : SignSaid::kNothing;
+  }
+
+ private:
+  OperandRole role(std::optional<std::size_t> at) const {
+    return at ? role_of(list_[*at].word) : OperandRole::kNone;
+  }
+
+  /// Index of the word for nominal or actual on one side of the minus, past the words beside it.
+  std::optional<std::size_t> operand(std::size_t from, int step) {
+    std::size_t at = from;
+    for (int passed = 0; passed < 4; ++passed) {
+      if (step < 0 && at == 0) return std::nullopt;
+      at = step < 0 ? at - 1 : at + 1;
+      if (at >= list_.size() || list_[at].kind != SignKind::kWord) return std::nullopt;
+      const OperandRole found = role_of(list_[at].word);
+      if (found != OperandRole::kAside) return at;
+    }
+    return std::nullopt;
+  }
+
+  /// The words before the difference, up to the beginning of the text or a break.
+  void find_subject() {
+    std::size_t at = left_ ? *left_ : minus_;
+    while (at > 0 && list_[at - 1].kind == SignKind::kWord &&
+           role_of(list_[at - 1].word) == OperandRole::kAside)
+      --at;
+    if (at == 0) return;
+    equals_ = list_[at - 1].kind == SignKind::kEquals;
+    defined_ = equals_ || list_[at - 1].kind == SignKind::kColon || list_[at - 1].kind == SignKind::kOpen;
+    const bool opened = list_[at - 1].kind == SignKind::kOpen;
+    negated_ = opened && at > 1 && list_[at - 2].kind == SignKind::kMinus &&
+               (at == 2 || list_[at - 3].kind != SignKind::kWord);  // "1- (Soll-Ist)" is a run backward
+    bool correction = false, state = false;
+    for (std::size_t k = at; k-- > 0 && list_[k].kind != SignKind::kBreak;) {
+      const std::string& word = list_[k].word;
+      if (list_[k].kind != SignKind::kWord) continue;
+      of_deviation_ |= says_deviation_or_sign(word);
+      correction |= says_correction(word);
+      state |= says_state_of_correction(word);
+      compared_ |= word.starts_with("vergleich") || word == "comparison";
+    }
+    of_correction_ = correction && !of_deviation_ && !state;
+  }
+
+  /// The word behind the difference, past the words beside the operand; empty if another sign follows.
+  std::string word_behind() const {
+    for (std::size_t k = *right_ + 1; k < list_.size(); ++k) {
+      if (list_[k].kind == SignKind::kMinus && !list_[k].strong && list_[k].before && list_[k].behind) {
+        compound_ = true;
+        continue;
+      }
+      if (list_[k].kind != SignKind::kWord) return "";
+      if (role_of(list_[k].word) != OperandRole::kAside) return list_[k].word;
+    }
+    return "";
+  }
+
+  /// "Soll-Ist" above "Soll X": the upper line of headings only groups the columns.
+  bool names_operand_behind() const {
+    for (std::size_t k = *right_ + 1; k < list_.size(); ++k)
+      if (const OperandRole role = role_of(list_[k].word);
+          role == OperandRole::kNominal || role == OperandRole::kActual)
+        return true;
+    return false;
+  }
+
+  /// A definition of the deviation with words that are not known: "Abweichung = Referenz - Messwert".
+  bool states_unknown(OperandRole a, OperandRole b) const {
+    const SignToken& minus = list_[minus_];
+    const bool spaced = minus.strong || (!minus.before && !minus.behind);
+    if (!spaced || !of_deviation_ || !left_ || !right_) return false;
+    if (a == OperandRole::kNone && b == OperandRole::kNone) return equals_;
+    return (defined_ || minus.strong) && a != b;
+  }
+
+  const std::vector<SignToken>& list_;
+  std::size_t minus_;
+  SignPlace place_;
+  std::optional<std::size_t> left_, right_;
+  bool defined_ = false;  // the difference follows = : or a bracket
+  bool equals_ = false, negated_ = false, compared_ = false;
+  bool of_deviation_ = false, of_correction_ = false;
+  mutable bool compound_ = false;
+};
+
+/// "Abweichung Soll zu Ist" names an order, but no sign.
+bool leads_from_nominal_to_actual(const std::vector<SignToken>& list) {
+  const bool deviation = std::any_of(list.begin(), list.end(), [](const SignToken& one) {
+    return one.kind == SignKind::kWord && says_deviation_or_sign(one.word);
+  });
+  for (std::size_t k = 1; deviation && k + 1 < list.size(); ++k)
+    if (kTowards.contains(list[k].word) && role_of(list[k - 1].word) == OperandRole::kNominal &&
+        role_of(list[k + 1].word) == OperandRole::kActual)
+      return true;
+  return false;
+}
+
+/// "positiv, wenn Ist kleiner als Soll": a comparison that states the sign in words.
+bool compares_in_words(const std::vector<SignToken>& list, std::string_view text) {
+  static const WordSet kSizes = {"größer", "groesser", "kleiner", "greater", "larger", "smaller",
+                                 "less",   "above",    "below",   "bigger",  "over",   "under"};
+  bool positive = false, nominal = false, actual = false;
+  bool size = text.find_first_of("<>") != std::string_view::npos;
+  for (const SignToken& one : list) {
+    positive |= one.word.starts_with("positiv") || one.word == "plus";
+    size |= kSizes.contains(one.word);
+    const OperandRole role = role_of(one.word);
+    nominal |= role == OperandRole::kNominal;
+    actual |= role == OperandRole::kActual;
+  }
+  return positive && nominal && actual && size;
+}
+
+}  // namespace
+
+SignSaid both_signs(SignSaid one, SignSaid other) {
+  if (one == SignSaid::kNothing) return other;
+  return other == SignSaid::kNothing || other == one ? one : SignSaid::kUnclear;
+}
+
+SignSaid sign_said(std::string_view text, SignPlace place) {
+  const SignTokens tokens(text);
+  const bool in_words = leads_from_nominal_to_actual(tokens.list()) || compares_in_words(tokens.list(), text);
+  SignSaid said = in_words ? SignSaid::kUnclear : SignSaid::kNothing;
+  for (std::size_t k = 0; k < tokens.list().size(); ++k)
+    if (tokens.list()[k].kind == SignKind::kMinus)
+      said = both_signs(said, Difference(tokens.list(), k, place).said());
+  return said;
+}
+
+}  // namespace vernier::importer

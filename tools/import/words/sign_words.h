@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string_view>
+
+namespace vernier::importer {
+
+/// Sign of the deviations of a table, as a text states the sign.
+enum class SignSaid {
+  kNothing,            // the text states no sign: a deviation is then actual - nominal
+  kActualLessNominal,  // "Ist - Soll", "actual minus nominal"
+  kNominalLessActual,  // "Soll - Ist", "commanded minus measured"
+  kUnclear             // the text names a difference, but its sign cannot be decided: "Soll-Ist-Abweichung"
+};
+
+/// Place of a text. The heading of a column is about the values of this column. A title is about the whole
+/// table, and may also describe other quantities ("Korrektur = Soll - Ist").
+enum class SignPlace { kHeading, kTitle };
+
+/// Returns the sign that a text states for deviations. Dashes of every kind and the words "minus", "less",
+/// "weniger" and "abzüglich" are the sign of a difference. "Soll-Ist-Vergleich" (a comparison) states no
+/// sign. In a title a difference states the sign only if the title also has a word for deviation or sign, or
+/// if the difference follows "=", or has the word "minus" or the sign U+2212; other differences of nominal
+/// and actual in a title are kUnclear.
+SignSaid sign_said(std::string_view text, SignPlace place);
+
+/// Returns the sign that two texts about the same deviations state together: kUnclear if they contradict each
+/// other.
+SignSaid both_signs(SignSaid one, SignSaid other);
+
+}  // namespace vernier::importer
